@@ -1,0 +1,42 @@
+# Options of the build, and the flags that every target of the project shares.
+
+set(POINTSKIN_CUDA AUTO CACHE STRING "Build the GPU path: AUTO (if nvcc is found), ON or OFF")
+set_property(CACHE POINTSKIN_CUDA PROPERTY STRINGS AUTO ON OFF)
+option(BUILD_TESTING "Build the tests and the examples" ON)
+option(POINTSKIN_BUILD_APPS "Build the command line program" ON)
+option(POINTSKIN_BUILD_BENCH "Build the benchmarks and generators" ON)
+option(POINTSKIN_STD_THREAD "Run CPU work on std::thread instead of oneTBB (ThreadSanitizer cannot see into oneTBB)" OFF)
+set(POINTSKIN_SANITIZE "" CACHE STRING "Sanitizers to build with: address, undefined, thread, or a comma-separated list")
+
+set(POINTSKIN_HAS_CUDA OFF)
+if(NOT POINTSKIN_CUDA STREQUAL "OFF")
+  include(CheckLanguage)
+  check_language(CUDA)
+  if(CMAKE_CUDA_COMPILER)
+    if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+      execute_process(COMMAND nvidia-smi -L RESULT_VARIABLE no_gpu OUTPUT_QUIET ERROR_QUIET)
+      set(CMAKE_CUDA_ARCHITECTURES "native")
+      if(no_gpu)
+        set(CMAKE_CUDA_ARCHITECTURES "all-major")
+      endif()
+    endif()
+    enable_language(CUDA)
+    find_package(CUDAToolkit REQUIRED)
+    set(POINTSKIN_HAS_CUDA ON)
+  elseif(POINTSKIN_CUDA STREQUAL "ON")
+    message(FATAL_ERROR "POINTSKIN_CUDA is ON, but no CUDA compiler was found; set CMAKE_CUDA_COMPILER or CUDACXX")
+  endif()
+endif()
+
+# Arithmetic must not depend on who compiles it: without fused multiply-adds the CPU and the GPU compute the same bits
+# (docs/determinism.md).
+add_library(pointskin_flags INTERFACE)
+target_compile_options(pointskin_flags INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -ffp-contract=off>
+  # CMake 3.25 does not know nvcc 13's C++20 mode, so it is asked for by hand.
+  $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --fmad=false --expt-relaxed-constexpr -Xcompiler=-Wall,-Wextra,-ffp-contract=off>)
+if(POINTSKIN_SANITIZE)
+  target_compile_options(pointskin_flags INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${POINTSKIN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
+  target_link_options(pointskin_flags INTERFACE -fsanitize=${POINTSKIN_SANITIZE})
+endif()

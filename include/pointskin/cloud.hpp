@@ -1,0 +1,45 @@
+// Point clouds on the host.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <pointskin/vector.hpp>
+
+namespace pointskin {
+
+/// How an attribute was stored in its file; it is written back the same way.
+enum class AttributeType { uint8, float32 };
+
+/// A named scalar per point or vertex, for example "red", "density", "confidence".
+struct Attribute {
+  std::string name;
+  AttributeType type = AttributeType::float32;
+  std::vector<float> values;  ///< shape (n); uint8 attributes hold 0..255
+};
+
+/// Points with optional unit-free outward normals and named scalars.
+///
+/// World position of point i = origin + positions[i]. Keeping a double offset apart lets survey coordinates near
+/// 1e6 keep their millimetres while everything else works in float.
+struct Cloud {
+  Vec3d origin{0, 0, 0};               ///< world units; zero unless the reader subtracted an offset
+  std::vector<Vec3f> positions;        ///< shape (n), relative to origin, world units, finite
+  std::vector<Vec3f> normals;          ///< shape (n) or (0); outward, any length (see Options::confidence)
+  std::vector<Attribute> attributes;   ///< each of shape (n)
+  std::int64_t dropped = 0;            ///< points of the source that had a non-finite coordinate and were left out
+
+  [[nodiscard]] std::int64_t size() const noexcept { return static_cast<std::int64_t>(positions.size()); }
+  [[nodiscard]] bool has_normals() const noexcept { return !positions.empty() && normals.size() == positions.size(); }
+};
+
+/// Axis-aligned box in the coordinates of Cloud::positions or Mesh::vertices (relative to origin).
+struct Bounds {
+  Vec3f lower{}, upper{};
+};
+
+/// Smallest box around `positions`; all zero if there are none. O(n), exact.
+Bounds bounds_of(const std::vector<Vec3f>& positions);
+
+}  // namespace pointskin

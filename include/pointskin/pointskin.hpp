@@ -1,0 +1,12 @@
+// Everything of the library in one include.
+#pragma once
+
+#include <pointskin/cloud.hpp>
+#include <pointskin/device.hpp>
+#include <pointskin/error.hpp>
+#include <pointskin/field.hpp>
+#include <pointskin/io.hpp>
+#include <pointskin/mesh.hpp>
+#include <pointskin/octree.hpp>
+#include <pointskin/reconstruct.hpp>
+#include <pointskin/vector.hpp>

@@ -1,0 +1,108 @@
+// Surface reconstruction: oriented points in, watertight mesh out.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pointskin/cloud.hpp>
+#include <pointskin/device.hpp>
+#include <pointskin/field.hpp>
+#include <pointskin/mesh.hpp>
+
+namespace pointskin {
+
+/// What happens where the surface meets the faces of the working cube.
+enum class DomainFaces {
+  closed,  ///< the cube's faces cap the surface: the mesh is always watertight
+  open,    ///< the surface ends there in boundary edges
+};
+
+/// Where a run is; handed to Options::progress.
+struct Progress {
+  const char* phase = "";  ///< one of "octree", "splat", "solve", "extract"
+  double fraction = 0;     ///< of the whole run, in [0, 1], never decreasing
+};
+
+struct Options {
+  int depth = 8;                 ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
+  double screening = 2;          ///< weight of the point constraints, >= 0; 0 is the unscreened problem of the paper
+  int iterations = 8;            ///< relaxations per level, in [1, 1000]
+  double scale = 1.1;            ///< working cube / bounding cube of the points, in [1, 100]
+  double samples_per_node = 1.5; ///< samples a cell should hold before normals are splatted at its depth, in [0, 100]
+  bool confidence = false;       ///< true: a normal's length is the weight of its point
+  bool linear_fit = false;       ///< true: edge crossings by linear instead of rescaled quadratic interpolation
+  bool density = false;          ///< true: the mesh carries "density", samples per unit of area (world units^-2)
+  bool normals = true;           ///< true: the mesh carries vertex normals, from the gradient of the field
+  DomainFaces domain_faces = DomainFaces::closed;
+  bool residuals = false;        ///< true: measure the residual of every level before and after its solve
+  std::int64_t max_memory_bytes = 0;  ///< refuse to start when the estimate is larger; 0: no limit
+
+  /// Called a few times per run from the calling thread; returning false cancels the run (Error interrupted).
+  std::function<bool(const Progress&)> progress;
+};
+
+struct LevelReport {
+  int depth = 0;
+  std::int64_t nodes = 0;      ///< cells of this depth
+  std::int64_t unknowns = 0;   ///< corners solved for at this depth
+  int iterations = 0;
+  double residual_before = 0;  ///< 2-norm of b - A u over the unknowns; 0 unless Options::residuals
+  double residual_after = 0;
+};
+
+/// What a run did and what it cost. Times are milliseconds of wall clock, the device synchronised at phase borders.
+struct RunReport {
+  std::int64_t points = 0;   ///< points used
+  int depth = 0;
+  std::int64_t nodes = 0;    ///< cells of all depths
+  std::vector<LevelReport> levels;  ///< depth 0 first
+  double isovalue = 0;       ///< weighted mean of the field over the samples
+  double upload_ms = 0, octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0, download_ms = 0;
+  std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
+};
+
+/// Owns a device's stream and memory pool, and is reused run after run. Not safe for two threads at once;
+/// several reconstructors may live side by side.
+class Reconstructor {
+ public:
+  explicit Reconstructor(Device device = Device::automatic());
+  ~Reconstructor();
+  Reconstructor(Reconstructor&&) noexcept;
+  Reconstructor& operator=(Reconstructor&&) noexcept;
+
+  /// Points to mesh: solve() and Field::extract() in one.
+  /// @throws Error as solve() and Field::extract()
+  Mesh reconstruct(const Cloud& cloud, const Options& options = {});
+
+  /// Fits the implicit function (screened Poisson, Kazhdan & Hoppe 2013, on the octree of Zhou et al. 2010).
+  /// The Field shares this reconstructor's device resources and may outlive it.
+  /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.
+  /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),
+  ///         empty_result (no points, or all points at one place), over_limit (memory or 32-bit indices),
+  ///         interrupted (Options::progress returned false)
+  Field solve(const Cloud& cloud, const Options& options = {});
+
+  /// Runs the in-memory job `times` times on points resident on the device, the mesh staying there too.
+  /// @returns milliseconds of each run (points on the device to mesh on the device)
+  std::vector<double> repeat(const Cloud& cloud, const Options& options, int times);
+
+  /// Report of the last run.
+  [[nodiscard]] const RunReport& report() const;
+
+  [[nodiscard]] const Device& device() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Upper estimate of the memory a run takes on its device, in bytes, from counts alone; the host copy of the cloud is not in it.
+std::int64_t estimate_device_bytes(std::int64_t points, const Options& options);
+
+/// @throws Error usage, naming the option and its range, if an option is out of range
+void validate(const Options& options);
+
+}  // namespace pointskin

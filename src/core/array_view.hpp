@@ -1,0 +1,31 @@
+// A pointer and a length that may travel into a kernel (std::span does not).
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "core/host_device.hpp"
+
+namespace pointskin {
+
+/// Non-owning view of `size` elements in whatever space they live. Trivially copyable; indexing is unchecked.
+template <class T>
+struct ArrayView {
+  T* data = nullptr;
+  std::int64_t size = 0;
+
+  PSK_HD T& operator[](std::int64_t i) const { return data[i]; }
+  PSK_HD T* begin() const { return data; }
+  PSK_HD T* end() const { return data + size; }
+  PSK_HD bool empty() const { return size == 0; }
+  PSK_HD ArrayView part(std::int64_t first, std::int64_t count) const { return {data + first, count}; }
+
+  // NOLINTNEXTLINE(google-explicit-constructor): a view of T is a view of const T.
+  PSK_HD operator ArrayView<const T>() const
+    requires(!std::is_const_v<T>)
+  {
+    return {data, size};
+  }
+};
+
+}  // namespace pointskin

@@ -1,0 +1,40 @@
+// The CPU space: worker threads and a memory pool. oneTBB, or std::thread where a sanitizer needs it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "exec/memory.hpp"
+
+namespace pointskin::exec {
+
+/// Runs work on CPU threads. Every primitive cuts its range into blocks whose borders depend on the range alone, so
+/// results are the same for any number of threads.
+class Cpu {
+ public:
+  /// @param threads  > 0, or 0 for all that the process may use
+  /// @throws Error usage if `threads` is negative
+  explicit Cpu(int threads = 0);
+  ~Cpu();
+  Cpu(const Cpu&) = delete;
+  Cpu& operator=(const Cpu&) = delete;
+
+  [[nodiscard]] int threads() const noexcept { return threads_; }
+  [[nodiscard]] const std::shared_ptr<MemoryPool>& pool() const noexcept { return pool_; }
+
+  /// Calls block(i) once for every i in [0, count), on any thread, in any order; returns when all are done.
+  /// An exception of one call is rethrown here after the others have stopped. Must not be nested.
+  void run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block);
+
+  /// Does nothing: CPU work is done when its call returns.
+  void synchronize() {}
+
+ private:
+  struct Workers;
+  int threads_;
+  std::unique_ptr<Workers> workers_;
+  std::shared_ptr<MemoryPool> pool_;
+};
+
+}  // namespace pointskin::exec

@@ -1,0 +1,148 @@
+// The data-parallel primitives on the CPU. Blocks depend on the range alone: same result for any number of threads.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "core/array_view.hpp"
+#include "exec/cpu.hpp"
+#include "exec/memory.hpp"
+
+namespace pointskin::exec {
+
+/// Indices per block of for_each, select and scan: large enough to hide the scheduling, small enough to balance.
+inline constexpr std::int64_t kCpuBlock = 2048;
+
+/// Elements per block of the radix sort.
+inline constexpr std::int64_t kCpuSortBlock = 1 << 16;
+
+inline std::int64_t block_count(std::int64_t n, std::int64_t block) { return (n + block - 1) / block; }
+
+/// Calls f(i) for every i in [0, n). f must not depend on the order of the calls.
+template <class F>
+void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
+  if (n <= 0) return;
+  // Heavy functors over few indices still spread over the threads.
+  const std::int64_t block = std::clamp<std::int64_t>(n / 64, 16, kCpuBlock);
+  ex.run_blocks(block_count(n, block), [&](std::int64_t b) {
+    const std::int64_t end = std::min(n, (b + 1) * block);
+    for (std::int64_t i = b * block; i < end; ++i) f(i);
+  });
+}
+
+/// The indices i in [0, n) with keep(i), ascending. Two passes over keep; O(n).
+template <class Keep>
+Buffer<std::int32_t> select(Cpu& ex, const char* /*label*/, std::int64_t n, const Keep& keep) {
+  const std::int64_t blocks = block_count(n, kCpuBlock);
+  std::vector<std::int64_t> first(static_cast<std::size_t>(blocks) + 1, 0);
+  ex.run_blocks(blocks, [&](std::int64_t b) {
+    std::int64_t count = 0;
+    for (std::int64_t i = b * kCpuBlock; i < std::min(n, (b + 1) * kCpuBlock); ++i) count += keep(i) ? 1 : 0;
+    first[static_cast<std::size_t>(b) + 1] = count;
+  });
+  for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
+  Buffer<std::int32_t> kept(ex.pool(), first.back());
+  ex.run_blocks(blocks, [&](std::int64_t b) {
+    std::int32_t* out = kept.data() + first[static_cast<std::size_t>(b)];
+    for (std::int64_t i = b * kCpuBlock; i < std::min(n, (b + 1) * kCpuBlock); ++i)
+      if (keep(i)) *out++ = static_cast<std::int32_t>(i);
+  });
+  return kept;
+}
+
+/// out[i] = in[0] + ... + in[i-1] for i in [0, out.size). out.size is in.size or in.size + 1 (the last is the total).
+/// `in` and `out` may be the same memory. O(n).
+template <class T>
+void exclusive_scan(Cpu& ex, const char* /*label*/, ArrayView<const T> in, ArrayView<T> out) {
+  const std::int64_t blocks = block_count(in.size, kCpuBlock);
+  std::vector<T> first(static_cast<std::size_t>(blocks) + 1, T{});
+  ex.run_blocks(blocks, [&](std::int64_t b) {
+    T sum{};
+    for (std::int64_t i = b * kCpuBlock; i < std::min(in.size, (b + 1) * kCpuBlock); ++i) sum += in[i];
+    first[static_cast<std::size_t>(b) + 1] = sum;
+  });
+  for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
+  ex.run_blocks(blocks, [&](std::int64_t b) {
+    T sum = first[static_cast<std::size_t>(b)];
+    for (std::int64_t i = b * kCpuBlock; i < std::min(in.size, (b + 1) * kCpuBlock); ++i) {
+      const T value = in[i];
+      out[i] = sum;
+      sum += value;
+    }
+  });
+  if (out.size > in.size) out[in.size] = first.back();
+}
+
+namespace detail {
+
+inline constexpr int kDigitBits = 8;
+inline constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+using Histogram = std::array<std::int64_t, kDigits>;
+
+inline std::size_t digit_of(std::uint64_t key, int shift) { return (key >> shift) & (kDigits - 1); }
+
+/// One stable counting pass over the digit at `shift`. @returns false, nothing written, if all keys share that digit.
+template <class Value>
+bool sort_pass(Cpu& ex, int shift, ArrayView<const std::uint64_t> keys, ArrayView<const Value> values,
+               ArrayView<std::uint64_t> keys_out, ArrayView<Value> values_out, std::vector<Histogram>& offsets) {
+  const std::int64_t n = keys.size;
+  const auto blocks = static_cast<std::int64_t>(offsets.size());
+  ex.run_blocks(blocks, [&](std::int64_t b) {
+    Histogram& count = offsets[static_cast<std::size_t>(b)];
+    count.fill(0);
+    for (std::int64_t i = b * kCpuSortBlock; i < std::min(n, (b + 1) * kCpuSortBlock); ++i) ++count[digit_of(keys[i], shift)];
+  });
+  std::int64_t next = 0;
+  for (std::size_t digit = 0; digit < kDigits; ++digit) {
+    const std::int64_t begin = next;
+    for (Histogram& count : offsets) next += std::exchange(count[digit], next);
+    if (next - begin == n) return false;
+  }
+  ex.run_blocks(blocks, [&](std::int64_t b) {
+    Histogram& offset = offsets[static_cast<std::size_t>(b)];
+    for (std::int64_t i = b * kCpuSortBlock; i < std::min(n, (b + 1) * kCpuSortBlock); ++i) {
+      const std::int64_t to = offset[digit_of(keys[i], shift)]++;
+      keys_out[to] = keys[i];
+      values_out[to] = values[i];
+    }
+  });
+  return true;
+}
+
+}  // namespace detail
+
+/// Sorts (key, value) pairs by the lowest `bits` bits of the keys, ascending and stable. Least significant digit
+/// first, 8 bits a pass, passes in which all keys agree are skipped. O(n bits / 8); n pairs of scratch.
+template <class Value>
+void sort_pairs(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, Buffer<Value>& values, int bits) {
+  const std::int64_t n = keys.size();
+  Buffer<std::uint64_t> other_keys(ex.pool(), n);
+  Buffer<Value> other_values(ex.pool(), n);
+  std::vector<detail::Histogram> offsets(static_cast<std::size_t>(block_count(n, kCpuSortBlock)));
+  for (int shift = 0; shift < bits; shift += detail::kDigitBits) {
+    if (detail::sort_pass<Value>(ex, shift, keys.cview(), values.cview(), other_keys.view(), other_values.view(), offsets)) {
+      keys.swap(other_keys);
+      values.swap(other_values);
+    }
+  }
+}
+
+template <class T>
+void copy(Cpu& /*ex*/, ArrayView<const T> from, ArrayView<T> to) {
+  if (from.size > 0) std::memcpy(to.data, from.data, static_cast<std::size_t>(from.size) * sizeof(T));
+}
+
+template <class T>
+void copy_to_host(Cpu& ex, ArrayView<const T> from, T* to) {
+  copy(ex, from, ArrayView<T>{to, from.size});
+}
+
+template <class T>
+void copy_to_device(Cpu& ex, const T* from, ArrayView<T> to) {
+  copy(ex, ArrayView<const T>{from, to.size}, to);
+}
+
+}  // namespace pointskin::exec

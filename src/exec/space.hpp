@@ -1,0 +1,35 @@
+// What an algorithm may ask of a space. Algorithms are templates over `Space`; only exec/ knows which there are.
+//
+// Primitives, found by argument-dependent lookup on the space (exec/cpu_primitives.hpp, exec/cuda_primitives.cuh):
+//
+//   for_each(ex, "label", n, f)                f(i) for every i in [0, n)
+//   select(ex, "label", n, keep)               Buffer<int32> of the i in [0, n) with keep(i), ascending
+//   exclusive_scan(ex, "label", in, out)       out[i] = in[0] + ... + in[i-1]; out may have one element more: the total
+//   sort_pairs(ex, "label", keys, values, bits)  stable ascending radix sort by the lowest `bits` bits of uint64 keys
+//   copy_to_host / copy_to_device / copy       checked copies on the space's stream
+//
+// and, written once over for_each, in exec/algorithms.hpp: fill, gather, reduce, sort_keys, unique, run_length_encode.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <memory>
+
+#include "exec/memory.hpp"
+
+namespace pointskin::exec {
+
+template <class T>
+concept Space = requires(T ex) {
+  { ex.pool() } -> std::convertible_to<std::shared_ptr<MemoryPool>>;
+  ex.synchronize();
+};
+
+/// An uninitialised array of `size` elements in the space `ex`.
+/// @throws Error over_limit if the space has no memory left
+template <class T, Space Exec>
+Buffer<T> make_buffer(Exec& ex, std::int64_t size) {
+  return Buffer<T>(ex.pool(), size);
+}
+
+}  // namespace pointskin::exec

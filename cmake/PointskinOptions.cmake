@@ -6,6 +6,7 @@ option(BUILD_TESTING "Build the tests and the examples" ON)
 option(POINTSKIN_BUILD_APPS "Build the command line program" ON)
 option(POINTSKIN_BUILD_BENCH "Build the benchmarks and generators" ON)
 option(POINTSKIN_STD_THREAD "Run CPU work on std::thread instead of oneTBB (ThreadSanitizer cannot see into oneTBB)" OFF)
+option(POINTSKIN_FUZZ "Build the fuzz programs under tests/fuzz (needs clang; see the preset `fuzz`)" OFF)
 set(POINTSKIN_SANITIZE "" CACHE STRING "Sanitizers to build with: address, undefined, thread, or a comma-separated list")
 
 set(POINTSKIN_HAS_CUDA OFF)

@@ -20,30 +20,39 @@ struct ReadOptions {
 
 /// Reads an oriented cloud. PLY (ascii, binary little and big endian, any property types, extra elements and lists
 /// skipped), XYZ, PTS, ASC, TXT, CSV text (3 columns: xyz; 4: xyz + scalar; 6: xyz + normal, or xyz + rgb when all
-/// three are whole numbers in 0..255 and some exceed 1; 7: xyz + scalar + rgb; 9: xyz + rgb + normal). The format is
-/// taken from the content ("ply" magic), else from the extension. `path` "-" reads stdin.
-/// Coordinates are read as double; points with a non-finite coordinate are dropped and counted in Cloud::dropped;
-/// a non-finite normal becomes a zero normal. Every extra scalar property travels by name.
-/// O(n); memory: the cloud plus the mapped file. Deterministic for any thread count.
+/// three are whole numbers in 0..255 and some exceed 1; 7: xyz + scalar + rgb; 9: xyz + rgb + normal, or xyz + normal +
+/// rgb where only that fits; any number when a first line or comment names the columns), and the vertices of OBJ, STL
+/// and OFF. The format is taken from the content ("ply" magic), else from the extension, else (no extension) from the
+/// content again. `path` "-" reads stdin.
+/// Coordinates are read as double; points with a coordinate that is not finite or larger than 1e38 are dropped and
+/// counted in Cloud::dropped; a non-finite normal becomes a zero normal. Every extra scalar property travels by name,
+/// as uint8 if the file stores it as uchar, else as float32.
+/// O(n); memory: the cloud plus the mapped file, for text also what its columns need (double for coordinates).
+/// Deterministic for any thread count. The file must not be shortened while it is read.
 /// @throws Error invalid_input with file and line or byte, when the file is missing, empty, truncated or garbled.
 ///         Counts are compared with the file's size before memory is taken.
 Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
 /// Reads a triangle mesh: PLY (as above, polygons are fanned), OBJ, STL (binary and ascii, equal corners merged), OFF.
-/// @throws Error invalid_input as read_cloud, also for an index out of range
+/// Normals get unit length; those of OBJ are taken if every corner names the normal with the number of its vertex.
+/// @throws Error invalid_input as read_cloud, also for an index out of range or a vertex that is not finite;
+///         over_limit for more than 2^31 - 1 vertices
 Mesh read_mesh(const std::string& path, const ReadOptions& options = {});
 
 /// Writes `mesh`; the format follows the extension: .ply (binary little endian, `list uchar int vertex_indices`), .obj,
 /// .stl (binary). `path` "-" writes PLY to stdout. Vertices are float, or double when mesh.origin is not zero.
 /// The file appears by atomic rename from a temporary file in the same folder: on any failure the old file, or none, is
-/// there. A symbolic link is followed; permissions of an existing file are kept; special files (/dev/null, pipes) are written directly.
-/// @throws Error output_not_written (with the reason of the operating system), usage for an unknown extension
+/// there. A symbolic link is followed; permissions of an existing file are kept; special files (/dev/null, pipes) are
+/// written directly. OBJ and STL hold world coordinates and no attributes. A name without an extension is refused
+/// unless it is a special file, which gets PLY.
+/// @throws Error output_not_written (with the reason of the operating system); usage for an unknown extension or arrays
+///         that do not fit together; invalid_input for a triangle that names a vertex that does not exist
 void write_mesh(const std::string& path, const Mesh& mesh, int threads = 0);
 
 /// Writes `cloud` as binary PLY (positions, normals, attributes); the same promises as write_mesh.
 void write_cloud(const std::string& path, const Cloud& cloud, int threads = 0);
 
-/// Replaces the file `path` by `bytes` atomically (see write_mesh).
+/// Replaces the file `path` by `bytes` atomically (see write_mesh); "-" is stdout.
 /// @throws Error output_not_written
 void write_file_atomically(const std::string& path, const std::string& bytes);
 

@@ -31,7 +31,7 @@ struct Options {
   double screening = 2;          ///< weight of the point constraints, >= 0; 0 is the unscreened problem of the paper
   int iterations = 8;            ///< relaxations per level, in [1, 1000]
   double scale = 1.1;            ///< working cube / bounding cube of the points, in [1, 100]
-  double samples_per_node = 1.5; ///< samples a cell should hold before normals are splatted at its depth, in [0, 100]
+  double samples_per_node = 1.5; ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
   bool confidence = false;       ///< true: a normal's length is the weight of its point
   bool linear_fit = false;       ///< true: edge crossings by linear instead of rescaled quadratic interpolation
   bool density = false;          ///< true: the mesh carries "density", samples per unit of area (world units^-2)

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include <thread>
 #else
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -117,12 +119,17 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
 
 #else
 
+static int available_threads() { return tbb::info::default_concurrency(); }
+
 struct Cpu::Workers {
-  explicit Workers(int count) : arena(count) {}
+  explicit Workers(int count) : arena(count) {
+    // oneTBB would ignore, and complain on stderr about, more threads than cores. The smallest of all living limits
+    // counts, so limits are only ever raised: no space slows another one down.
+    if (count > available_threads()) more_threads.emplace(tbb::global_control::max_allowed_parallelism, count);
+  }
+  std::optional<tbb::global_control> more_threads;
   tbb::task_arena arena;
 };
-
-static int available_threads() { return tbb::info::default_concurrency(); }
 
 void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block) {
   if (count == 1) return block(0);

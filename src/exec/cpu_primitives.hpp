@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "core/array_view.hpp"
@@ -53,8 +54,7 @@ Buffer<std::int32_t> select(Cpu& ex, const char* /*label*/, std::int64_t n, cons
   return kept;
 }
 
-/// out[i] = in[0] + ... + in[i-1] for i in [0, out.size). out.size is in.size or in.size + 1 (the last is the total).
-/// `in` and `out` may be the same memory. O(n).
+/// out[i] = in[0] + ... + in[i-1]; out.size is in.size (in place allowed) or in.size + 1 (the last is the total). O(n).
 template <class T>
 void exclusive_scan(Cpu& ex, const char* /*label*/, ArrayView<const T> in, ArrayView<T> out) {
   const std::int64_t blocks = block_count(in.size, kCpuBlock);
@@ -84,10 +84,11 @@ using Histogram = std::array<std::int64_t, kDigits>;
 
 inline std::size_t digit_of(std::uint64_t key, int shift) { return (key >> shift) & (kDigits - 1); }
 
-/// One stable counting pass over the digit at `shift`. @returns false, nothing written, if all keys share that digit.
-template <class Value>
-bool sort_pass(Cpu& ex, int shift, ArrayView<const std::uint64_t> keys, ArrayView<const Value> values,
-               ArrayView<std::uint64_t> keys_out, ArrayView<Value> values_out, std::vector<Histogram>& offsets) {
+/// One stable counting pass over the digit at `shift`: calls move(from, to) for every element.
+/// @returns false, nothing moved, if all keys share that digit
+template <class Move>
+bool sort_pass(Cpu& ex, int shift, ArrayView<const std::uint64_t> keys, std::vector<Histogram>& offsets,
+               const Move& move) {
   const std::int64_t n = keys.size;
   const auto blocks = static_cast<std::int64_t>(offsets.size());
   ex.run_blocks(blocks, [&](std::int64_t b) {
@@ -104,9 +105,7 @@ bool sort_pass(Cpu& ex, int shift, ArrayView<const std::uint64_t> keys, ArrayVie
   ex.run_blocks(blocks, [&](std::int64_t b) {
     Histogram& offset = offsets[static_cast<std::size_t>(b)];
     for (std::int64_t i = b * kCpuSortBlock; i < std::min(n, (b + 1) * kCpuSortBlock); ++i) {
-      const std::int64_t to = offset[digit_of(keys[i], shift)]++;
-      keys_out[to] = keys[i];
-      values_out[to] = values[i];
+      move(i, offset[digit_of(keys[i], shift)]++);
     }
   });
   return true;
@@ -123,10 +122,24 @@ void sort_pairs(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, Buf
   Buffer<Value> other_values(ex.pool(), n);
   std::vector<detail::Histogram> offsets(static_cast<std::size_t>(block_count(n, kCpuSortBlock)));
   for (int shift = 0; shift < bits; shift += detail::kDigitBits) {
-    if (detail::sort_pass<Value>(ex, shift, keys.cview(), values.cview(), other_keys.view(), other_values.view(), offsets)) {
+    const auto move = [&](std::int64_t from, std::int64_t to) {
+      other_keys.data()[to] = keys.data()[from];
+      other_values.data()[to] = values.data()[from];
+    };
+    if (detail::sort_pass(ex, shift, keys.cview(), offsets, move)) {
       keys.swap(other_keys);
       values.swap(other_values);
     }
+  }
+}
+
+/// Sorts keys alone; otherwise as sort_pairs.
+inline void sort_keys(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, int bits) {
+  Buffer<std::uint64_t> other(ex.pool(), keys.size());
+  std::vector<detail::Histogram> offsets(static_cast<std::size_t>(block_count(keys.size(), kCpuSortBlock)));
+  for (int shift = 0; shift < bits; shift += detail::kDigitBits) {
+    const auto move = [&](std::int64_t from, std::int64_t to) { other.data()[to] = keys.data()[from]; };
+    if (detail::sort_pass(ex, shift, keys.cview(), offsets, move)) keys.swap(other);
   }
 }
 

@@ -1,0 +1,78 @@
+# shellcheck shell=bash disable=SC2034,SC2191
+# Shared by ./quickstart, ./check and .ci/run: packages, configuring, logs. Sourced, with the working folder at the root.
+
+step() { printf '==> %s\n' "$*"; }
+die() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
+
+# What each task needs: Debian packages, or COMMAND=PACKAGE where any provider of the command will do.
+packages_to_build=(g++=g++ cmake=cmake ninja=ninja-build libtbb-dev libpng-dev libfmt-dev libcli11-dev
+  nlohmann-json3-dev)
+packages_to_test=(libgtest-dev libbenchmark-dev python3=python3 node=nodejs npm=npm)
+packages_to_format=(clang-format=clang-format python3=python3)
+packages_to_lint=(clang-tidy=clang-tidy)
+
+# missing_packages NEED...: prints the packages to install, one a line.
+missing_packages() {
+  local need
+  for need in "$@"; do
+    if [[ $need == *=* ]]; then
+      command -v "${need%%=*}" >/dev/null || echo "${need#*=}"
+    elif command -v dpkg-query >/dev/null; then
+      [ "$(dpkg-query -W -f='${db:Status-Status}' "$need" 2>/dev/null)" = installed ] || echo "$need"
+    fi
+  done
+}
+
+# as_root COMMAND...: runs it as root, directly or through sudo.
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+# install_packages NEED...: installs what is missing, and only that.
+install_packages() {
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  [ ${#missing[@]} = 0 ] && return
+  local advice="these Debian packages are missing: ${missing[*]}; install them with: apt-get install ${missing[*]}"
+  command -v apt-get >/dev/null || die "$advice"
+  [ "$(id -u)" = 0 ] || command -v sudo >/dev/null || die "$advice (as root)"
+  step "installing ${missing[*]}"
+  run_logged build/packages.log as_root apt-get update -q
+  run_logged build/packages.log as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y \
+    --no-install-recommends "${missing[@]}"
+}
+
+# run_logged LOG COMMAND...: quiet while it works, the end of its output when it fails.
+run_logged() {
+  local log=$1
+  shift
+  mkdir -p "$(dirname "$log")"
+  if ! "$@" </dev/null >"$log" 2>&1; then
+    tail -n 40 "$log" >&2
+    die "failed: $* (all of it is in $log)"
+  fi
+}
+
+# Puts nvcc on the path where CUDA lies in its usual place.
+find_nvcc() {
+  command -v nvcc >/dev/null || { [ -x /usr/local/cuda/bin/nvcc ] && PATH=$PATH:/usr/local/cuda/bin; }
+  nvcc --version >/dev/null 2>&1
+}
+
+# The preset for this machine: `cuda` where there are both a compiler and a GPU for it.
+best_preset() {
+  if find_nvcc && nvidia-smi -L 2>/dev/null | grep -q '^GPU'; then echo cuda; else echo cpu; fi
+}
+
+# configure PRESET FOLDER OPTION...: a folder that another generator or another source tree made is begun anew.
+configure() {
+  local preset=$1 folder=$2 cache=$2/CMakeCache.txt fresh=()
+  shift 2
+  find_nvcc || true
+  if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
+  if [ -f "$cache" ] && { ! grep -q '^CMAKE_GENERATOR:INTERNAL=Ninja$' "$cache" ||
+    ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" "$cache"; }; then
+    fresh=(--fresh)
+  fi
+  run_logged "$folder/configure.log" cmake "${fresh[@]}" --preset "$preset" -B "$folder" "$@"
+}

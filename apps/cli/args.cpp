@@ -1,0 +1,107 @@
+#include "args.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <pointskin/error.hpp>
+
+namespace pointskin::cli {
+namespace {
+
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+/// Reads a finite number at the start of `text` and moves `text` behind it.
+std::optional<double> take_number(std::string_view& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+/// Power of 1024 that a suffix stands for, or -1.
+int power_of(const std::string& suffix) {
+  if (suffix.empty() || suffix == "b") return 0;
+  const auto letter = std::string_view("kmgt").find(suffix[0]);
+  const std::string rest = suffix.substr(1);
+  const bool known = letter != std::string_view::npos && (rest.empty() || rest == "b" || rest == "ib");
+  return known ? static_cast<int>(letter) + 1 : -1;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(const std::string& text) {
+  std::string_view rest = text;
+  const std::optional<double> number = take_number(rest);
+  return rest.empty() ? number : std::nullopt;
+}
+
+std::int64_t parse_bytes(const std::string& text) {
+  std::string_view rest = text;
+  const std::optional<double> number = take_number(rest);
+  const int power = power_of(lower_case(std::string(rest)));
+  const double bytes = number.value_or(0) * std::pow(1024.0, std::max(power, 0));
+  if (!number || power < 0 || !(bytes >= 1) || !(bytes < 9e18)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("'{}' is no amount of memory; write for example 8G, 512M or a number of bytes", text));
+  }
+  return static_cast<std::int64_t>(bytes);
+}
+
+std::optional<Vec3d> parse_shift(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  Vec3d shift{0, 0, 0};
+  if (text == "none") return shift;
+  std::string_view rest = text;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axis > 0 && rest.starts_with(',')) rest.remove_prefix(1);
+    const std::optional<double> number = take_number(rest);
+    const bool ends_well = axis == 2 ? rest.empty() : rest.starts_with(',');
+    if (!number || !ends_well) {
+      throw Error(ErrorCode::usage, fmt::format("--shift: '{}' is neither auto, none nor x,y,z", text));
+    }
+    shift[axis] = *number;
+  }
+  return shift;
+}
+
+void check_threads(int threads) {
+  constexpr int kMost = 4096;
+  if (threads < 0 || threads > kMost) {
+    throw Error(ErrorCode::usage, fmt::format("--threads: {} is not in [0, {}]; 0 means all", threads, kMost));
+  }
+}
+
+Device parse_device(const std::string& text, int threads) {
+  check_threads(threads);
+  return Device::parse(text, threads);
+}
+
+std::vector<std::string> join_optional_values(std::vector<std::string> args) {
+  std::vector<std::string> joined;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    joined.push_back(std::move(args[i]));
+    if (i + 1 == args.size()) break;
+    const std::string& next = args[i + 1];
+    const bool confidence = joined.back() == "--confidence" && parse_number(next).has_value();
+    const bool linear_fit = joined.back() == "--linear-fit" && (next == "on" || next == "off");
+    if (confidence || linear_fit) joined.back() += "=" + args[++i];
+  }
+  return joined;
+}
+
+bool has_extension(const std::string& path, const std::string& extension) {
+  return lower_case(std::filesystem::path(path).extension().string()) == extension;
+}
+
+}  // namespace pointskin::cli

@@ -1,0 +1,127 @@
+// pointskin info: what a file holds.
+#include <memory>
+#include <string>
+#include <variant>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <pointskin/io.hpp>
+
+#include "args.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "input.hpp"
+#include "json_text.hpp"
+#include "spacing.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoArgs {
+  std::string file;
+  std::string shift = "auto";
+  int threads = 0;
+  bool json = false;
+};
+
+std::string type_name(AttributeType type) { return type == AttributeType::uint8 ? "uint8" : "float32"; }
+
+Json attributes_json(const std::vector<Attribute>& attributes) {
+  Json list = Json::array();
+  for (const Attribute& a : attributes) list.push_back({{"name", a.name}, {"type", type_name(a.type)}});
+  return list;
+}
+
+Json world(const Vec3f& p, const Vec3d& origin) { return {origin[0] + p.x, origin[1] + p.y, origin[2] + p.z}; }
+
+/// What a cloud and the vertices of a mesh have in common.
+Json points_json(const std::vector<Vec3f>& positions, const Vec3d& origin, const std::vector<Attribute>& attributes) {
+  const Bounds box = bounds_of(positions);
+  Json json;
+  json["bounds"] = {{"lower", world(box.lower, origin)}, {"upper", world(box.upper, origin)}};
+  json["origin"] = origin;
+  json["attributes"] = attributes_json(attributes);
+  json["spacing"] = median_spacing(positions);
+  return json;
+}
+
+Json describe(const Cloud& cloud) {
+  Json json = {{"kind", "cloud"}, {"points", cloud.size()}, {"dropped", cloud.dropped}};
+  json["normals"] = cloud.has_normals();
+  json.update(points_json(cloud.positions, cloud.origin, cloud.attributes));
+  return json;
+}
+
+Json describe(const Mesh& mesh) {
+  Json json = {{"kind", "mesh"}, {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}};
+  json["normals"] = !mesh.normals.empty();
+  json.update(points_json(mesh.vertices, mesh.origin, mesh.attributes));
+  return json;
+}
+
+std::string vector_text(const Json& v) {
+  return fmt::format("{:.9g} {:.9g} {:.9g}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+}
+
+std::string attributes_text(const Json& attributes) {
+  std::string text;
+  for (const Json& a : attributes) {
+    text +=
+        fmt::format("{}{} ({})", text.empty() ? "" : ", ", a["name"].get<std::string>(), a["type"].get<std::string>());
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string human_text(const Json& json) {
+  std::string text;
+  const auto line = [&text](const char* name, const std::string& value) {
+    text += fmt::format("{:<12}{}\n", name, value);
+  };
+  line("file", json["file"].get<std::string>());
+  line("kind", json["kind"].get<std::string>());
+  for (const char* count : {"points", "dropped", "vertices", "triangles"}) {
+    if (json.contains(count)) line(count, std::to_string(json[count].get<std::int64_t>()));
+  }
+  line("normals", json["normals"].get<bool>() ? "yes" : "no");
+  line("attributes", attributes_text(json["attributes"]));
+  line("lower", vector_text(json["bounds"]["lower"]));
+  line("upper", vector_text(json["bounds"]["upper"]));
+  line("origin", vector_text(json["origin"]));
+  line("spacing", fmt::format("{:.4g}", json["spacing"].get<double>()));
+  return text;
+}
+
+int run(const InfoArgs& args) {
+  check_threads(args.threads);
+  const ReadOptions options{.shift = parse_shift(args.shift), .threads = args.threads};
+  const std::variant<Cloud, Mesh> content = read_cloud_or_mesh(args.file, options);
+  Json json = {{"version", 1}, {"command", "info"}, {"file", args.file}};
+  json.update(std::visit([](const auto& held) { return describe(held); }, content));
+  write_stdout(args.json ? json_text(json) : human_text(json));
+  return 0;
+}
+
+constexpr char kFooter[] =
+    "Prints counts, normals, attributes and their types, the bounding box in world coordinates, the origin that was\n"
+    "subtracted while reading, and the spacing: the median distance to the nearest neighbour, in world units.";
+
+}  // namespace
+
+void add_info(CLI::App& program, Job& job) {
+  CLI::App* command = add_command(program, "info", "Print what a cloud or mesh file holds.");
+  auto args = std::make_shared<InfoArgs>();
+  command->footer(kFooter);
+  command->add_option("FILE", args->file, "cloud or mesh; - reads stdin")->required();
+  command->add_flag("--json", args->json, "print JSON")->group("Output");
+  command->add_option("--shift", args->shift, "offset subtracted on reading: auto, none or x,y,z in world units")
+      ->type_name("S")
+      ->group("Input")
+      ->capture_default_str();
+  add_threads_option(*command, args->threads, "Limits");
+  finish_command(*command, job, args, run);
+}
+
+}  // namespace pointskin::cli

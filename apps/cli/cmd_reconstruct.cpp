@@ -1,0 +1,190 @@
+// pointskin reconstruct: oriented clouds in, mesh out.
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <pointskin/error.hpp>
+#include <pointskin/io.hpp>
+
+#include "args.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "input.hpp"
+#include "json_text.hpp"
+#include "output_check.hpp"
+#include "progress.hpp"
+#include "reconstruct_args.hpp"
+#include "report.hpp"
+#include "signals.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Milliseconds since construction.
+  [[nodiscard]] double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
+
+/// Everything that can be found wrong before the input is opened.
+void check_files(const ReconstructArgs& args) {
+  if (args.inputs.empty()) throw_usage("no input; name one or more clouds, or - for stdin");
+  if (args.output.empty() && !args.dry_run && !args.repeat_given) throw_usage("no output; name it with -o");
+  if (args.report == "-") throw_usage("--report: stdout carries the mesh only; name a file");
+  if (std::count(args.inputs.begin(), args.inputs.end(), "-") > 1) throw_usage("stdin (-) can be read only once");
+  if (!args.report.empty() && args.report == args.output) throw_usage("--report and -o name the same file");
+  if (!args.output.empty()) check_mesh_output(args.output);
+  if (!args.report.empty()) check_replaceable(args.report);
+}
+
+void warn_about_options(const ReconstructArgs& args) {
+  if (args.colors) print_warning("--colors: colours are not carried to the mesh yet");
+  if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
+}
+
+/// Reads, merges and cleans the input; fills in the counts.
+Cloud read_input(const ReconstructArgs& args, Record& record) {
+  const Stopwatch watch;
+  Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
+  const std::int64_t not_finite = cloud.dropped;
+  const std::int64_t no_normal = drop_zero_normals(cloud);
+  if (not_finite > 0) print_warning(fmt::format("{} points were dropped: a coordinate is not finite", not_finite));
+  if (no_normal > 0) print_warning(fmt::format("{} points were dropped: their normal has zero length", no_normal));
+  record.dropped = cloud.dropped;
+  record.points = cloud.size() + cloud.dropped;
+  record.read_ms = watch.ms();
+  return cloud;
+}
+
+double cube_world(const Cloud& cloud, double scale) {
+  const Bounds box = bounds_of(cloud.positions);
+  return scale * std::max({double{box.upper.x} - box.lower.x, double{box.upper.y} - box.lower.y,
+                           double{box.upper.z} - box.lower.z});
+}
+
+std::int64_t host_bytes(const Cloud& cloud) {
+  std::int64_t bytes = cloud.size() * static_cast<std::int64_t>(2 * sizeof(Vec3f));
+  for (const Attribute& attribute : cloud.attributes) bytes += static_cast<std::int64_t>(attribute.values.size() * 4);
+  return bytes;
+}
+
+/// What a run takes where the limit counts: on the CPU the cloud shares the memory with the work.
+std::int64_t estimate_bytes(const Cloud& cloud, const Record& record) {
+  const std::int64_t work = estimate_device_bytes(cloud.size(), record.options);
+  return record.device.kind == DeviceKind::cpu ? work + host_bytes(cloud) : work;
+}
+
+void check_memory(std::int64_t estimate, std::int64_t limit) {
+  if (limit == 0 || estimate <= limit) return;
+  throw Error(
+      ErrorCode::over_limit,
+      fmt::format("the estimate of {} ({} bytes) is above --max-memory {}; use a smaller --depth or allow more",
+                  format_bytes(static_cast<double>(estimate)), estimate, format_bytes(static_cast<double>(limit))));
+}
+
+void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
+  const std::int64_t estimate = estimate_bytes(cloud, record);
+  const std::string text =
+      fmt::format("points {}, depth {}, device {}: estimate {} ({} bytes), available {}", cloud.size(),
+                  record.options.depth, record.device.name(), format_bytes(static_cast<double>(estimate)), estimate,
+                  format_bytes(static_cast<double>(record.device.available_bytes())));
+  if (args.output == "-") return print_note(text);  // stdout is kept for PLY.
+  write_stdout(text + "\n");
+}
+
+/// The options of the report that the library does not know.
+nlohmann::ordered_json other_options(const ReconstructArgs& args) {
+  nlohmann::ordered_json json = {{"device", args.device}, {"threads", args.threads}, {"shift", args.shift}};
+  json["repeat"] = args.repeat;
+  json["inputs"] = args.inputs;
+  json["output"] = args.output.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(args.output);
+  return json;
+}
+
+/// Runs the reconstruction, with progress, and the repeated runs, without.
+Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
+  Reconstructor reconstructor(record.device);
+  ProgressLine line(!args.quiet && stderr_is_terminal());
+  Options options = record.options;
+  options.progress = [&line](const Progress& progress) {
+    line.update(progress);
+    return !interrupted();
+  };
+  Mesh mesh = reconstructor.reconstruct(cloud, options);
+  line.clear();
+  record.run = reconstructor.report();
+  if (mesh.triangles.empty()) throw Error(ErrorCode::empty_result, "the surface has no triangles");
+  if (args.repeat > 0) {
+    options.residuals = false;  // They cost time and are not part of the job.
+    options.progress = [](const Progress&) { return !interrupted(); };
+    record.repeat_ms = reconstructor.repeat(cloud, options, args.repeat);
+  }
+  return mesh;
+}
+
+void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record) {
+  throw_if_interrupted();
+  if (args.output.empty()) return;
+  const Stopwatch watch;
+  write_mesh(args.output, mesh, args.threads);
+  record.write_ms = watch.ms();
+}
+
+/// Settles what depends on the points.
+void settle_options(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
+  Options& options = record.options;
+  if (args.width_given) options.depth = depth_for_width(cube_world(cloud, options.scale), args.width_world);
+  record.other_options = other_options(args);
+}
+
+int run(const ReconstructArgs& args) {
+  const Stopwatch watch;
+  Record record;
+  record.options = library_options(args);
+  parse_shift(args.shift);
+  check_files(args);
+  record.device = parse_device(args.device, args.threads);
+  warn_about_options(args);
+
+  Cloud cloud = read_input(args, record);
+  settle_options(args, cloud, record);
+  if (args.dry_run) print_estimate(args, cloud, record);
+  check_memory(estimate_bytes(cloud, record), record.options.max_memory_bytes);
+  if (args.dry_run) return 0;
+
+  on_interrupt(OnInterrupt::remember);
+  const Mesh mesh = compute(args, cloud, record);
+  cloud = Cloud();
+  write_output(args, mesh, record);
+  record.total_ms = watch.ms();
+  record.host_peak_bytes = host_peak_bytes();
+
+  record.mesh.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+  if (!args.report.empty()) {
+    record.mesh = measure(mesh, args.threads);
+    write_file_atomically(args.report, json_text(to_json(record)));
+  }
+  if (args.verbose) print_note(level_table(record));
+  if (!args.quiet) print_note(summary(record));
+  return 0;
+}
+
+}  // namespace
+
+void add_reconstruct(CLI::App& program, Job& job) {
+  CLI::App* command = add_command(program, "reconstruct", "Fit a watertight mesh to oriented points.");
+  auto args = std::make_shared<ReconstructArgs>();
+  define_reconstruct_options(*command, *args);
+  finish_command(*command, job, args, run);
+}
+
+}  // namespace pointskin::cli

@@ -1,0 +1,35 @@
+// The commands of the program, one file each.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace pointskin::cli {
+
+/// What the chosen command does once the whole command line has been understood. @returns the exit code
+using Job = std::function<int()>;
+
+void add_reconstruct(CLI::App& program, Job& job);
+void add_info(CLI::App& program, Job& job);
+void add_check(CLI::App& program, Job& job);
+void add_compare(CLI::App& program, Job& job);
+void add_convert(CLI::App& program, Job& job);
+void add_render(CLI::App& program, Job& job);
+
+/// Adds the command `name` to `program`.
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& description);
+
+/// Adds `--threads N` bound to `threads`, in the group `group`.
+void add_threads_option(CLI::App& command, int& threads, const std::string& group);
+
+/// Ends the definition of a command: what it does, and its --help (last in the list).
+template <class Args>
+void finish_command(CLI::App& command, Job& job, std::shared_ptr<Args> args, int (*run)(const Args&)) {
+  command.set_help_flag("-h,--help", "print this help")->group("Help");
+  command.callback([&job, args, run] { job = [args, run] { return run(*args); }; });
+}
+
+}  // namespace pointskin::cli

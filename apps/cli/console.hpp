@@ -1,0 +1,30 @@
+// What the program says: errors, warnings and notes on stderr, data on stdout.
+#pragma once
+
+#include <string>
+
+namespace pointskin::cli {
+
+/// True if people read stderr: it is a terminal.
+bool stderr_is_terminal();
+
+/// Prints "pointskin: `story`" as exactly one line on stderr. The name is red on a terminal unless NO_COLOR is set.
+void print_error(const std::string& story);
+
+/// Prints "pointskin: warning: `story`" as one line on stderr.
+void print_warning(const std::string& story);
+
+/// Prints `text` and a line break on stderr.
+void print_note(const std::string& text);
+
+/// Writes `text` to stdout and flushes it.
+/// @throws Error output_not_written, for example when the reader has closed its end of a pipe
+void write_stdout(const std::string& text);
+
+/// "640 bytes", "12.0 KiB", "3.4 GiB": powers of 1024.
+std::string format_bytes(double bytes);
+
+/// `text` with every run of line breaks (and spaces after them) replaced by "; ", other control characters by "?".
+std::string one_line(const std::string& text);
+
+}  // namespace pointskin::cli

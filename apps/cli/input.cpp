@@ -1,0 +1,123 @@
+#include "input.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <pointskin/error.hpp>
+
+#include "probe.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+/// Moves the origin to `origin`; world positions stay, to float.
+void rebase(Cloud& cloud, const Vec3d& origin) {
+  const Vec3d move = {cloud.origin[0] - origin[0], cloud.origin[1] - origin[1], cloud.origin[2] - origin[2]};
+  for (Vec3f& p : cloud.positions) {
+    p = {static_cast<float>(p.x + move[0]), static_cast<float>(p.y + move[1]), static_cast<float>(p.z + move[2])};
+  }
+  cloud.origin = origin;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+void append_attributes(std::vector<Attribute>& to, const std::vector<Attribute>& from) {
+  std::vector<Attribute> common;
+  for (Attribute& mine : to) {
+    const auto theirs =
+        std::find_if(from.begin(), from.end(), [&](const Attribute& other) { return other.name == mine.name; });
+    if (theirs == from.end()) continue;
+    if (theirs->type != mine.type) mine.type = AttributeType::float32;
+    append(mine.values, theirs->values);
+    common.push_back(std::move(mine));
+  }
+  to = std::move(common);
+}
+
+template <class T>
+void keep_where(std::vector<T>& values, const std::vector<bool>& keep) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (keep[i]) values[kept++] = values[i];
+  }
+  values.resize(kept);
+}
+
+void check_not_empty(const Cloud& cloud, const std::string& name) {
+  if (cloud.size() > 0) return;
+  if (cloud.dropped == 0) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no points", name));
+  throw Error(ErrorCode::invalid_input,
+              fmt::format("{}: none of its {} points has finite coordinates", name, cloud.dropped));
+}
+
+Cloud vertices_as_cloud(Mesh&& mesh) {
+  Cloud cloud;
+  cloud.origin = mesh.origin;
+  cloud.positions = std::move(mesh.vertices);
+  cloud.normals = std::move(mesh.normals);
+  cloud.attributes = std::move(mesh.attributes);
+  return cloud;
+}
+
+}  // namespace
+
+void append(Cloud& to, Cloud&& from) {
+  constexpr Vec3d kZero{0, 0, 0};
+  if (to.origin == kZero && from.origin != kZero) rebase(to, from.origin);
+  if (to.origin != from.origin) rebase(from, to.origin);
+  const bool normals = to.has_normals() && from.has_normals();
+  append(to.positions, from.positions);
+  append(to.normals, from.normals);
+  if (!normals) to.normals.clear();
+  append_attributes(to.attributes, from.attributes);
+  to.dropped += from.dropped;
+}
+
+Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options) {
+  Cloud merged;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    Cloud cloud = read_cloud(paths[i], options);
+    const std::string name = paths[i] == "-" ? "stdin" : paths[i];
+    check_not_empty(cloud, name);
+    if (!cloud.has_normals()) {
+      throw Error(ErrorCode::no_normals, fmt::format("{}: has no normals; it needs outward normals nx, ny, nz", name));
+    }
+    if (i == 0) {
+      merged = std::move(cloud);
+    } else {
+      append(merged, std::move(cloud));
+    }
+  }
+  return merged;
+}
+
+std::int64_t drop_zero_normals(Cloud& cloud) {
+  std::vector<bool> keep(cloud.normals.size());
+  std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(), [](const Vec3f& n) { return n != Vec3f{}; });
+  const std::int64_t zero = std::count(keep.begin(), keep.end(), false);
+  if (zero == cloud.size()) {
+    throw Error(ErrorCode::no_normals,
+                fmt::format("the normals of all {} points have zero length; outward normals are needed", zero));
+  }
+  if (zero == 0) return 0;
+  keep_where(cloud.positions, keep);
+  keep_where(cloud.normals, keep);
+  for (Attribute& attribute : cloud.attributes) keep_where(attribute.values, keep);
+  cloud.dropped += zero;
+  return zero;
+}
+
+std::variant<Cloud, Mesh> read_cloud_or_mesh(const std::string& path, const ReadOptions& options) {
+  if (path == "-") make_stdin_seekable();
+  if (!may_hold_faces(path)) return read_cloud(path, options);
+  Mesh mesh = read_mesh(path, options);
+  if (mesh.triangles.empty()) return vertices_as_cloud(std::move(mesh));
+  return mesh;
+}
+
+}  // namespace pointskin::cli

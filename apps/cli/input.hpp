@@ -1,0 +1,33 @@
+// Reading what the commands work on: merged clouds, and files that may hold a cloud or a mesh.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <pointskin/cloud.hpp>
+#include <pointskin/io.hpp>
+#include <pointskin/mesh.hpp>
+
+namespace pointskin::cli {
+
+/// Appends `from` to `to`. Both keep their world positions: the origin becomes the first that is not zero. Attributes
+/// that only one of them has are left out, normals too; dropped points add up.
+void append(Cloud& to, Cloud&& from);
+
+/// Reads and merges `paths`. O(points).
+/// @throws Error as read_cloud; empty_result if a merged cloud would have no points, invalid_input if all were dropped
+Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options);
+
+/// Removes points whose normal has zero length and counts them in Cloud::dropped.
+/// @returns how many
+/// @throws Error no_normals if the cloud has no normals, or none that is not zero
+std::int64_t drop_zero_normals(Cloud& cloud);
+
+/// Reads `path` as a mesh if it is a PLY with faces or another mesh format, else as a cloud. "-" is stdin.
+/// A mesh format without faces gives a cloud of its vertices.
+/// @throws Error as read_mesh and read_cloud
+std::variant<Cloud, Mesh> read_cloud_or_mesh(const std::string& path, const ReadOptions& options);
+
+}  // namespace pointskin::cli

@@ -1,0 +1,15 @@
+// JSON as the program writes it.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace pointskin::cli {
+
+/// `json` indented, with a line break at the end. Bytes of file names that are no UTF-8 are replaced.
+inline std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace pointskin::cli

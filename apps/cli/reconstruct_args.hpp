@@ -1,0 +1,40 @@
+// The command line of `pointskin reconstruct`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <pointskin/reconstruct.hpp>
+
+namespace pointskin::cli {
+
+struct ReconstructArgs {
+  std::vector<std::string> inputs;
+  std::string output;  ///< empty: none
+  std::string report;  ///< empty: none
+  std::string device = "auto";
+  std::string shift = "auto";
+  std::string max_memory;        ///< empty: no limit
+  std::string confidence = "0";  ///< PoissonRecon's exponent of the normals' length: 0 or 1 here
+  Options options;
+  double width_world = 0;  ///< > 0: chooses the depth
+  int threads = 0;
+  int repeat = 0;
+  bool depth_given = false, width_given = false, repeat_given = false;
+  bool no_normals = false, open = false, colors = false, dry_run = false, quiet = false, verbose = false;
+};
+
+/// Defines the options on `command`, bound to `args`.
+void define_reconstruct_options(CLI::App& command, ReconstructArgs& args);
+
+/// Options as the library wants them. The depth is not settled yet when a width is given.
+/// @throws Error usage if a value is out of range or two contradict each other
+Options library_options(const ReconstructArgs& args);
+
+/// Smallest depth whose cells are at most `width_world` wide in a cube of side `cube_world`.
+/// @throws Error usage if that depth is beyond 20
+int depth_for_width(double cube_world, double width_world);
+
+}  // namespace pointskin::cli

@@ -1,0 +1,130 @@
+#include "report.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json options_json(const Record& record) {
+  const Options& options = record.options;
+  Json json = {{"depth", options.depth},
+               {"screening", options.screening},
+               {"iterations", options.iterations},
+               {"scale", options.scale},
+               {"samples_per_node", options.samples_per_node},
+               {"confidence", options.confidence},
+               {"linear_fit", options.linear_fit},
+               {"density", options.density},
+               {"normals", options.normals},
+               {"open", options.domain_faces == DomainFaces::open},
+               {"max_memory_bytes", options.max_memory_bytes}};
+  json.update(record.other_options);
+  return json;
+}
+
+Json octree_json(const RunReport& run) {
+  Json levels = Json::array();
+  for (const LevelReport& level : run.levels) levels.push_back({{"depth", level.depth}, {"nodes", level.nodes}});
+  return {{"depth", run.depth}, {"nodes", run.nodes}, {"levels", levels}};
+}
+
+Json solve_json(const RunReport& run) {
+  Json levels = Json::array();
+  for (const LevelReport& level : run.levels) {
+    levels.push_back({{"depth", level.depth},
+                      {"unknowns", level.unknowns},
+                      {"iterations", level.iterations},
+                      {"residual_before", level.residual_before},
+                      {"residual_after", level.residual_after}});
+  }
+  return {{"levels", levels}};
+}
+
+Json mesh_json(const MeshReport& mesh) {
+  return {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
+          {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler}};
+}
+
+Json ms_json(const Record& record) {
+  const RunReport& run = record.run;
+  return {{"read", record.read_ms},      {"upload", run.upload_ms},  {"octree", run.octree_ms},
+          {"splat", run.splat_ms},       {"solve", run.solve_ms},    {"extract", run.extract_ms},
+          {"download", run.download_ms}, {"write", record.write_ms}, {"total", record.total_ms}};
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+Json repeat_json(const std::vector<double>& ms) {
+  const auto [least, most] = std::minmax_element(ms.begin(), ms.end());
+  return {{"min", *least}, {"median", median(ms)}, {"max", *most}};
+}
+
+}  // namespace
+
+Json to_json(const Record& record) {
+  Json json = {{"version", 1}, {"command", "reconstruct"}};
+  json["device"] = {{"kind", record.device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", record.device.name()}};
+  json["input"] = {{"points", record.points}, {"used", record.points - record.dropped}, {"dropped", record.dropped}};
+  json["options"] = options_json(record);
+  json["octree"] = octree_json(record.run);
+  json["solve"] = solve_json(record.run);
+  json["isovalue"] = record.run.isovalue;
+  json["mesh"] = mesh_json(record.mesh);
+  json["ms"] = ms_json(record);
+  if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
+  json["memory"] = {{"host_peak_bytes", record.host_peak_bytes}, {"device_peak_bytes", record.run.device_peak_bytes}};
+  return json;
+}
+
+std::string summary(const Record& record) {
+  const RunReport& run = record.run;
+  const double function_ms = run.splat_ms + run.solve_ms;
+  std::string line = fmt::format(
+      "points {}, depth {}, triangles {}; ms: octree {:.1f}, function {:.1f}, surface {:.1f}, total {:.1f}; "
+      "memory {} device, {} host",
+      record.points - record.dropped, run.depth, record.mesh.triangles, run.octree_ms, function_ms, run.extract_ms,
+      record.total_ms, format_bytes(static_cast<double>(run.device_peak_bytes)),
+      format_bytes(static_cast<double>(record.host_peak_bytes)));
+  if (!record.repeat_ms.empty()) {
+    const double ms = median(record.repeat_ms);
+    line +=
+        fmt::format("; {} runs: median {:.2f} ms, {:.1f} frames per second", record.repeat_ms.size(), ms, 1000 / ms);
+  }
+  return line;
+}
+
+std::string level_table(const Record& record) {
+  std::string table = fmt::format("device {}, isovalue {:.6f}\n", record.device.name(), record.run.isovalue);
+  table += "depth       nodes    unknowns  iterations  residual before   after";
+  for (const LevelReport& level : record.run.levels) {
+    table += fmt::format("\n{:5}{:12}{:12}{:12}{:17.3e}{:12.3e}", level.depth, level.nodes, level.unknowns,
+                         level.iterations, level.residual_before, level.residual_after);
+  }
+  return table;
+}
+
+std::int64_t host_peak_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::int64_t kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+  }
+  struct rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+}  // namespace pointskin::cli

@@ -1,0 +1,43 @@
+// What a reconstruction did, as JSON for programs and as lines for people. The JSON's schema is
+// docs/report.schema.json.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <pointskin/device.hpp>
+#include <pointskin/mesh.hpp>
+#include <pointskin/reconstruct.hpp>
+
+namespace pointskin::cli {
+
+/// Facts of one `pointskin reconstruct`.
+struct Record {
+  Device device;
+  std::int64_t points = 0;               ///< in the files
+  std::int64_t dropped = 0;              ///< of them, left out: not finite, or a normal of zero length
+  Options options;                       ///< after defaults
+  nlohmann::ordered_json other_options;  ///< what Options does not hold
+  RunReport run;
+  MeshReport mesh;
+  double read_ms = 0, write_ms = 0, total_ms = 0;
+  std::vector<double> repeat_ms;
+  std::int64_t host_peak_bytes = 0;
+};
+
+nlohmann::ordered_json to_json(const Record& record);
+
+/// One line: points, depth, triangles, the times of the paper's table (octree, function, surface, total) and memory;
+/// with repeated runs also their median and frames per second.
+std::string summary(const Record& record);
+
+/// A table of the solve's levels, with residuals.
+std::string level_table(const Record& record);
+
+/// Largest resident size of this process so far, in bytes.
+std::int64_t host_peak_bytes();
+
+}  // namespace pointskin::cli

@@ -1,0 +1,162 @@
+// The implicit functions. The gyroid shell is the accuracy benchmark of this project; the others probe topology:
+// genus 1 (torus), thin tubes passing close by (knot), two sheets a few cells apart (plate).
+// Rounded boxes and tubes as distance functions: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996.
+#include "shapes.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace pointskin::bench {
+namespace {
+
+double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
+Vec3d scaled(const Vec3d& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+Vec3d sum(const Vec3d& a, const Vec3d& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Vec3d difference(const Vec3d& a, const Vec3d& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+/// A direction even where `a` vanishes, so that gradients stay finite.
+Vec3d direction(const Vec3d& a) {
+  const double norm = length(a);
+  return norm > 0 ? scaled(a, 1 / norm) : Vec3d{0, 0, 1};
+}
+
+/// Smooth maximum: max(a, b) + k/4 (max(k - |a - b|, 0) / k)^2, once differentiable, exact where |a - b| >= k.
+Sample smooth_max(const Sample& a, const Sample& b, double k) {
+  const double gap = a.value - b.value;
+  const double h = std::max(k - std::abs(gap), 0.0) / k;
+  const double weight = gap >= 0 ? 1 - h / 2 : h / 2;  // d smooth_max / d a
+  return {std::max(a.value, b.value) + k / 4 * h * h, sum(scaled(a.gradient, weight), scaled(b.gradient, 1 - weight))};
+}
+
+class Gyroid final : public Shape {
+ public:
+  [[nodiscard]] Sample at(const Vec3d& q) const override {
+    return smooth_max(shell(q), {length(q) - 1, direction(q)}, 0.02);
+  }
+
+  [[nodiscard]] double variation(const Vec3d& centre, double radius) const override {
+    // smooth_max changes by no more than the larger change of its arguments. The ball's is the radius. The shell's
+    // second derivative is at most 2/9 (|grad g|^2 + |g| |D^2 g|) <= 2/9 (6 * 81 + 1.3 * 162) < 160, because
+    // |g| <= 0.4 on the surface, so |g| <= 0.4 + 22 * 0.04 < 1.3 here.
+    if (radius > 0.04) return std::numeric_limits<double>::infinity();
+    return std::max(radius, length(shell(centre).gradient) * radius + 80 * radius * radius);
+  }
+
+ private:
+  static Sample shell(const Vec3d& q) {
+    const Vec3d s = {std::sin(9 * q[0]), std::sin(9 * q[1]), std::sin(9 * q[2])};
+    const Vec3d c = {std::cos(9 * q[0]), std::cos(9 * q[1]), std::cos(9 * q[2])};
+    const double g = s[0] * c[1] + s[1] * c[2] + s[2] * c[0];
+    // grad ((g^2 - 0.16) / 9) = 2 g grad g / 9; the 9 of grad g cancels.
+    const Vec3d gradient = {c[0] * c[1] - s[2] * s[0], c[1] * c[2] - s[0] * s[1], c[2] * c[0] - s[1] * s[2]};
+    return {(g * g - 0.16) / 9, scaled(gradient, 2 * g)};
+  }
+};
+
+class Sphere final : public Shape {
+ public:
+  [[nodiscard]] Sample at(const Vec3d& q) const override { return {length(q) - 1, direction(q)}; }
+  [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
+};
+
+class Torus final : public Shape {
+ public:
+  [[nodiscard]] Sample at(const Vec3d& q) const override {
+    const double from_axis = std::hypot(q[0], q[1]);
+    const Vec3d out = from_axis > 0 ? Vec3d{q[0] / from_axis, q[1] / from_axis, 0} : Vec3d{1, 0, 0};
+    const Vec3d from_core = difference(q, scaled(out, 0.7));
+    return {length(from_core) - 0.25, direction(from_core)};
+  }
+  [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
+};
+
+/// Distance to a (2, 3) torus knot less a radius, less bumps that are a smooth function of space.
+class Knot final : public Shape {
+ public:
+  Knot() {
+    for (int i = 0; i < kPieces; ++i) nodes_[static_cast<std::size_t>(i)] = curve(i * kStep);
+  }
+
+  [[nodiscard]] Sample at(const Vec3d& q) const override {
+    const Vec3d from_curve = difference(q, curve(nearest(q)));
+    const Vec3d s = {std::sin(kWaves * q[0]), std::sin(kWaves * q[1]), std::sin(kWaves * q[2])};
+    const Vec3d c = {std::cos(kWaves * q[0]), std::cos(kWaves * q[1]), std::cos(kWaves * q[2])};
+    const Vec3d bump = {c[0] * s[1] * s[2], s[0] * c[1] * s[2], s[0] * s[1] * c[2]};
+    return {length(from_curve) - kRadius - kBump * s[0] * s[1] * s[2],
+            sum(direction(from_curve), scaled(bump, -kBump * kWaves))};
+  }
+
+  [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override {
+    return (1 + kBump * kWaves) * radius;  // the product of three sines changes by at most kWaves a unit
+  }
+
+ private:
+  static constexpr int kPieces = 192;
+  static constexpr double kStep = 2 * std::numbers::pi / kPieces;
+  static constexpr double kRadius = 0.11, kBump = 0.015, kWaves = 25;
+
+  static Vec3d curve(double t) {
+    const double reach = 0.62 + 0.25 * std::cos(3 * t);
+    return {reach * std::cos(2 * t), reach * std::sin(2 * t), 0.25 * std::sin(3 * t)};
+  }
+
+  /// The parameter of the nearest point of the curve: best of the nodes, then Newton steps on the squared distance.
+  [[nodiscard]] double nearest(const Vec3d& q) const {
+    std::array<double, kPieces> squared;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const Vec3d d = difference(nodes_[i], q);
+      squared[i] = dot(d, d);
+    }
+    double t = static_cast<double>(std::min_element(squared.begin(), squared.end()) - squared.begin()) * kStep;
+    for (int step = 0; step < 6; ++step) {
+      const double reach = 0.62 + 0.25 * std::cos(3 * t), slope = -0.75 * std::sin(3 * t);
+      const double c = std::cos(2 * t), s = std::sin(2 * t);
+      const Vec3d first = {slope * c - 2 * reach * s, slope * s + 2 * reach * c, 0.75 * std::cos(3 * t)};
+      const double bend = -2.25 * std::cos(3 * t);
+      const Vec3d second = {(bend - 4 * reach) * c - 4 * slope * s, (bend - 4 * reach) * s + 4 * slope * c,
+                            -2.25 * std::sin(3 * t)};
+      const Vec3d off = difference(curve(t), q);
+      const double curvature = dot(first, first) + dot(off, second);
+      if (curvature <= 0) break;  // far from the curve: no minimum to refine
+      const double move = std::clamp(dot(off, first) / curvature, -kStep, kStep);
+      t -= move;
+      if (std::abs(move) < 1e-13) break;
+    }
+    return t;
+  }
+
+  std::array<Vec3d, kPieces> nodes_{};
+};
+
+/// A rectangle thickened by balls.
+class Plate final : public Shape {
+ public:
+  [[nodiscard]] Sample at(const Vec3d& q) const override {
+    const Vec3d off = {q[0] - std::clamp(q[0], -0.88, 0.88), q[1] - std::clamp(q[1], -0.58, 0.58), q[2]};
+    return {length(off) - 0.02, direction(off)};
+  }
+  [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
+};
+
+}  // namespace
+
+std::unique_ptr<Shape> make_shape(const std::string& name) {
+  if (name == "gyroid") return std::make_unique<Gyroid>();
+  if (name == "sphere") return std::make_unique<Sphere>();
+  if (name == "torus") return std::make_unique<Torus>();
+  if (name == "knot") return std::make_unique<Knot>();
+  if (name == "plate") return std::make_unique<Plate>();
+  throw Error(ErrorCode::usage, "no shape is called '" + name + "'; there are gyroid, sphere, torus, knot and plate");
+}
+
+double signed_distance(const Shape& shape, const Vec3d& q) {
+  const Sample sample = shape.at(q);
+  return sample.value / length(sample.gradient);
+}
+
+}  // namespace pointskin::bench

@@ -1,0 +1,199 @@
+// The ground truth must be true: gradients, samples on the surface, and uniformity against an independent measure.
+#include "shapes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <pointskin/error.hpp>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "random.hpp"
+
+namespace pointskin::bench {
+namespace {
+
+Vec3d to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
+double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+class EveryShape : public testing::TestWithParam<const char*> {
+ protected:
+  std::unique_ptr<Shape> shape_ = make_shape(GetParam());
+  Cloud cloud_ = sample_surface(*shape_, {.points = 20'000, .seed = 7});
+};
+
+TEST_P(EveryShape, HasTheGradientOfItsCentralDifferences) {
+  for (std::size_t i = 0; i < 1000; ++i) {
+    const Vec3d q = to_double(cloud_.positions[i]);
+    const Vec3d gradient = shape_->at(q).gradient;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      constexpr double kStep = 1e-5;  // error of the differences: kStep^2 F''' / 6, F''' below 1e5
+      Vec3d below = q, above = q;
+      below[axis] -= kStep;
+      above[axis] += kStep;
+      EXPECT_NEAR(gradient[axis], (shape_->at(above).value - shape_->at(below).value) / (2 * kStep), 2e-4);
+    }
+  }
+}
+
+TEST_P(EveryShape, IsSampledOnItsSurfaceWithUnitOutwardNormals) {
+  for (std::size_t i = 0; i < cloud_.positions.size(); ++i) {
+    const Vec3d q = to_double(cloud_.positions[i]), normal = to_double(cloud_.normals[i]);
+    EXPECT_LT(std::abs(signed_distance(*shape_, q)), 2e-7);  // float's rounding of coordinates near 1
+    const Vec3d gradient = shape_->at(q).gradient;
+    EXPECT_NEAR(dot(normal, normal), 1, 1e-6);
+    EXPECT_NEAR(dot(normal, gradient), std::sqrt(dot(gradient, gradient)), 1e-5);
+  }
+}
+
+TEST_P(EveryShape, BoundsItsOwnVariation) {
+  Random random(11, 0);
+  for (std::size_t i = 0; i < 20'000; ++i) {
+    const double radius = 0.035 * random.uniform();
+    Vec3d step;
+    do step = {2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1};
+    while (dot(step, step) > 1);
+    const Vec3d surface = to_double(cloud_.positions[i]);
+    const Vec3d q = {surface[0] + radius * step[0], surface[1] + radius * step[1], surface[2] + radius * step[2]};
+    EXPECT_LE(std::abs(shape_->at(q).value), shape_->variation(q, radius) + 1e-6);  // 1e-6: `surface` is in float
+  }
+}
+
+TEST_P(EveryShape, GivesTheSamePointsForAnyNumberOfThreads) {
+  const SamplingOptions noisy{.points = 5'000, .seed = 3, .noise = 0.003, .normal_noise = 0.1, .threads = 1};
+  SamplingOptions on_three = noisy;
+  on_three.threads = 3;
+  const Cloud one = sample_surface(*shape_, noisy), three = sample_surface(*shape_, on_three);
+  EXPECT_EQ(one.positions, three.positions);
+  EXPECT_EQ(one.normals, three.normals);
+}
+
+/// Crossings of uniformly random lines with the surface are area-uniform, with A = 2 pi R^2 crossings per line for
+/// lines through a ball of radius R (Cauchy & Crofton). That shares nothing with the sampler but F.
+/// Regions of space get the share of crossings; the sampler's points must agree with it.
+class Regions {
+ public:
+  static constexpr std::size_t kCount = 27 * 3;
+  static std::size_t of(const Vec3d& q) {
+    std::size_t region = 0;
+    for (const double x : q) region = region * 3 + (x < -0.3 ? 0U : x < 0.3 ? 1U : 2U);
+    const double r = std::sqrt(dot(q, q));
+    return region * 3 + (r < 0.97 ? 0U : r < 0.9995 ? 1U : 2U);
+  }
+};
+
+struct Crossings {
+  double lines = 0, total = 0;
+  std::array<double, Regions::kCount> count{}, variance{};
+};
+
+/// Unit vector, uniform on the sphere (Archimedes).
+Vec3d random_direction(Random& random) {
+  const double z = 2 * random.uniform() - 1, angle = 2 * std::numbers::pi * random.uniform();
+  const double r = std::sqrt(1 - z * z);
+  return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+constexpr double kBallRadius = 1.1;  // holds every shape
+
+std::vector<Vec3d> crossings_of_line(const Shape& shape, Random& random, int steps) {
+  const Vec3d along = random_direction(random);
+  const Vec3d side = std::abs(along[2]) < 0.9 ? Vec3d{-along[1], along[0], 0} : Vec3d{0, -along[2], along[1]};
+  const double side_length = std::sqrt(dot(side, side));
+  const Vec3d u = {side[0] / side_length, side[1] / side_length, side[2] / side_length};
+  const Vec3d v = {along[1] * u[2] - along[2] * u[1], along[2] * u[0] - along[0] * u[2],
+                   along[0] * u[1] - along[1] * u[0]};
+  const double r = kBallRadius * std::sqrt(random.uniform()), angle = 2 * std::numbers::pi * random.uniform();
+  const double half = std::sqrt(kBallRadius * kBallRadius - r * r);
+  const auto point = [&](double t) {
+    Vec3d q;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      q[axis] = r * (std::cos(angle) * u[axis] + std::sin(angle) * v[axis]) + t * along[axis];
+    return q;
+  };
+  std::vector<Vec3d> found;
+  const double step = 2 * half / steps;
+  double before = shape.at(point(-half)).value;
+  for (int i = 1; i <= steps; ++i) {
+    const double after = shape.at(point(-half + i * step)).value;
+    if ((before < 0) != (after < 0)) found.push_back(point(-half + (i - after / (after - before)) * step));
+    before = after;
+  }
+  return found;
+}
+
+Crossings cross(const Shape& shape, int lines, int steps) {
+  Crossings crossings;
+  std::vector<std::array<std::uint16_t, Regions::kCount>> per_line(static_cast<std::size_t>(lines));
+  for (std::size_t line = 0; line < per_line.size(); ++line) {
+    Random random(99, line);
+    for (const Vec3d& q : crossings_of_line(shape, random, steps)) ++per_line[line][Regions::of(q)];
+    for (std::size_t k = 0; k < Regions::kCount; ++k) crossings.count[k] += per_line[line][k];
+  }
+  crossings.lines = lines;
+  for (const double count : crossings.count) crossings.total += count;
+  for (const auto& line : per_line) {  // variance of a ratio: crossings of one line are not independent
+    double all = 0;
+    for (const std::uint16_t count : line) all += count;
+    for (std::size_t k = 0; k < Regions::kCount; ++k) {
+      const double residual = line[k] - crossings.count[k] / crossings.total * all;
+      crossings.variance[k] += residual * residual / (crossings.total * crossings.total);
+    }
+  }
+  return crossings;
+}
+
+TEST_P(EveryShape, IsSampledWithTheSameDensityEverywhere) {
+  const bool costly = std::string(GetParam()) == "knot";
+  const Crossings crossings = cross(*shape_, costly ? 4'000 : 20'000, 700);
+  const Cloud cloud = sample_surface(*shape_, {.points = costly ? 50'000 : 200'000, .seed = 5});
+  std::array<double, Regions::kCount> count{};
+  for (const Vec3f& p : cloud.positions) ++count[Regions::of(to_double(p))];
+  const auto n = static_cast<double>(cloud.size());
+  for (std::size_t k = 0; k < Regions::kCount; ++k) {
+    const double expected = crossings.count[k] / crossings.total;
+    const double sigma = std::sqrt(crossings.variance[k] + expected * (1 - expected) / n);
+    EXPECT_NEAR(count[k] / n, expected, 5 * sigma + 2e-4) << "region " << k;  // 2e-4: roots found along the line
+  }
+  const double area = 2 * std::numbers::pi * kBallRadius * kBallRadius * crossings.total / crossings.lines;
+  EXPECT_NEAR(estimate_area(*shape_, 2'000'000, 1), area, 0.03 * area);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bench, EveryShape, testing::ValuesIn(kShapeNames),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(EstimateArea, KnowsTheSphereTheTorusAndThePlate) {
+  constexpr double kPi = std::numbers::pi;
+  EXPECT_NEAR(estimate_area(*make_shape("sphere"), 10'000'000, 1), 4 * kPi, 0.01 * 4 * kPi);
+  EXPECT_NEAR(estimate_area(*make_shape("torus"), 10'000'000, 1), 4 * kPi * kPi * 0.7 * 0.25, 0.07);
+  // Two faces of 1.76 by 1.16, half a cylinder of radius 0.02 along each side, one ball in the four corners.
+  const double plate = 2 * 1.76 * 1.16 + 2 * kPi * 0.02 * (1.76 + 1.16) + 4 * kPi * 0.02 * 0.02;
+  EXPECT_NEAR(estimate_area(*make_shape("plate"), 10'000'000, 1), plate, 0.01 * plate);
+}
+
+TEST(SampleSurface, AddsNoiseOfTheGivenSigma) {
+  const auto sphere = make_shape("sphere");
+  const Cloud cloud = sample_surface(*sphere, {.points = 100'000, .seed = 2, .noise = 0.003, .normal_noise = 0.1});
+  double squares = 0, tilt = 0;
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    const Vec3d q = to_double(cloud.positions[i]), n = to_double(cloud.normals[i]);
+    squares += std::pow(std::sqrt(dot(q, q)) - 1, 2);
+    tilt += 1 - std::pow(dot(q, n), 2) / dot(q, q);
+    EXPECT_NEAR(dot(n, n), 1, 1e-6);
+  }
+  const auto count = static_cast<double>(cloud.size());
+  EXPECT_NEAR(std::sqrt(squares / count), 0.003, 0.00003);
+  EXPECT_NEAR(std::sqrt(tilt / count), 0.1 * std::sqrt(2.0), 0.003);  // two tangential components, renormalised
+}
+
+TEST(SampleSurface, RefusesOptionsOutOfRange) {
+  const auto sphere = make_shape("sphere");
+  EXPECT_THROW(sample_surface(*sphere, {.points = 0}), Error);
+  EXPECT_THROW(sample_surface(*sphere, {.noise = -1}), Error);
+  EXPECT_THROW(make_shape("klein bottle"), Error);
+}
+
+}  // namespace
+}  // namespace pointskin::bench

@@ -1,0 +1,81 @@
+#include <pointskin/device.hpp>
+#include <pointskin/error.hpp>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+
+#include "exec/cpu.hpp"
+
+#ifdef POINTSKIN_HAS_CUDA
+#include "exec/cuda.hpp"
+#endif
+
+namespace pointskin {
+namespace {
+
+#ifdef POINTSKIN_HAS_CUDA
+int gpu_count() { return exec::cuda_device_count(); }
+std::string gpu_name(int index) { return exec::cuda_device_name(index); }
+std::int64_t gpu_free_bytes(int index) { return exec::cuda_free_bytes(index); }
+#else
+int gpu_count() { return 0; }
+std::string gpu_name(int /*index*/) { return "GPU"; }
+std::int64_t gpu_free_bytes(int /*index*/) { return 0; }
+#endif
+
+}  // namespace
+
+bool built_with_cuda() noexcept {
+#ifdef POINTSKIN_HAS_CUDA
+  return true;
+#else
+  return false;
+#endif
+}
+
+Device Device::cpu(int threads) {
+  if (threads < 0) throw Error(ErrorCode::usage, "the number of threads must not be negative");
+  return {DeviceKind::cpu, 0, threads};
+}
+
+Device Device::cuda(int index) {
+  if (!built_with_cuda())
+    throw Error(ErrorCode::device_unavailable,
+                "this build has no GPU support; configure with -DPOINTSKIN_CUDA=ON or choose the CPU");
+  if (index < 0 || index >= gpu_count())
+    throw Error(ErrorCode::device_unavailable, fmt::format("no GPU number {} answers; choose the CPU instead", index));
+  return {DeviceKind::cuda, index, 0};
+}
+
+Device Device::automatic(int threads) {
+  if (built_with_cuda() && gpu_count() > 0) return {DeviceKind::cuda, 0, threads};
+  return {DeviceKind::cpu, 0, threads > 0 ? threads : 0};
+}
+
+Device Device::parse(const std::string& text, int threads) {
+  if (text == "auto") return automatic(threads);
+  if (text == "cpu") return cpu(threads);
+  if (text == "cuda") return cuda(0);
+  if (text.starts_with("cuda:")) {
+    int index = -1;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data() + 5, end, index);
+    if (error == std::errc() && stop == end && index >= 0) return cuda(index);
+  }
+  throw Error(ErrorCode::usage, fmt::format("unknown device \"{}\"; choose auto, cpu, cuda or cuda:N", text));
+}
+
+std::string Device::name() const {
+  if (kind == DeviceKind::cuda) return gpu_name(index);
+  const int count = threads > 0 ? threads : exec::Cpu().threads();
+  return fmt::format("CPU, {} thread{}", count, count == 1 ? "" : "s");
+}
+
+std::int64_t Device::available_bytes() const {
+  if (kind == DeviceKind::cuda) return gpu_free_bytes(index);
+  return static_cast<std::int64_t>(sysconf(_SC_AVPHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+}
+
+}  // namespace pointskin

@@ -1,0 +1,126 @@
+// Data-parallel algorithms written once over the primitives of a space. Include after the primitives of the spaces used.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "core/array_view.hpp"
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+
+namespace pointskin::exec {
+
+namespace detail {
+
+template <class T>
+struct Fill {
+  ArrayView<T> out;
+  T value;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = value; }
+};
+
+template <class T>
+struct Gather {
+  ArrayView<const T> in;
+  ArrayView<const std::int32_t> index;
+  ArrayView<T> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = in[index[i]]; }
+};
+
+struct Iota {
+  ArrayView<std::int32_t> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<std::int32_t>(i); }
+};
+
+struct StartsRun {
+  ArrayView<const std::uint64_t> keys;
+  PSK_HD bool operator()(std::int64_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
+};
+
+/// Lane l combines f(l), f(l + lanes), f(l + 2 lanes), ...: neighbouring lanes touch neighbouring memory.
+template <class T, class F, class Combine>
+struct ReduceLane {
+  F f;
+  Combine combine;
+  std::int64_t n, lanes;
+  ArrayView<T> out;
+  PSK_HD void operator()(std::int64_t lane) const {
+    T sum = f(lane);
+    for (std::int64_t i = lane + lanes; i < n; i += lanes) sum = combine(sum, f(i));
+    out[lane] = sum;
+  }
+};
+
+template <class T>
+struct Load {
+  ArrayView<const T> in;
+  PSK_HD T operator()(std::int64_t i) const { return in[i]; }
+};
+
+}  // namespace detail
+
+/// out[i] = value. n writes.
+template <class T, Space Exec>
+void fill(Exec& ex, ArrayView<T> out, T value) {
+  for_each(ex, "fill", out.size, detail::Fill<T>{out, value});
+}
+
+/// out[i] = in[index[i]].
+template <class T, Space Exec>
+void gather(Exec& ex, ArrayView<const T> in, ArrayView<const std::int32_t> index, ArrayView<T> out) {
+  for_each(ex, "gather", out.size, detail::Gather<T>{in, index, out});
+}
+
+/// One element of device memory, on the host. Waits for the work before it.
+template <class T, Space Exec>
+T read_element(Exec& ex, ArrayView<const T> from, std::int64_t i) {
+  T value;
+  copy_to_host(ex, from.part(i, 1), &value);
+  return value;
+}
+
+/// combine over f(0), ..., f(n-1) for n > 0. The tree of combinations depends on n alone, so floating-point sums have
+/// the same bits in every space and for every number of threads. About n calls of f; O(log n) launches; waits.
+template <class T, Space Exec, class F, class Combine>
+T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
+  constexpr std::int64_t kPerLane = 64;
+  std::int64_t lanes = std::max<std::int64_t>(1, n / kPerLane);
+  Buffer<T> sums = make_buffer<T>(ex, lanes);
+  for_each(ex, label, lanes, detail::ReduceLane<T, F, Combine>{f, combine, n, lanes, sums.view()});
+  while (lanes > 1) {
+    const std::int64_t fewer = std::max<std::int64_t>(1, lanes / kPerLane);
+    Buffer<T> next = make_buffer<T>(ex, fewer);
+    for_each(ex, label, fewer,
+             detail::ReduceLane<T, detail::Load<T>, Combine>{{sums.cview()}, combine, lanes, fewer, next.view()});
+    sums = std::move(next);
+    lanes = fewer;
+  }
+  return read_element(ex, sums.cview(), 0);
+}
+
+/// 0, 1, ..., n-1.
+template <Space Exec>
+Buffer<std::int32_t> iota(Exec& ex, std::int64_t n) {
+  Buffer<std::int32_t> out = make_buffer<std::int32_t>(ex, n);
+  for_each(ex, "iota", n, detail::Iota{out.view()});
+  return out;
+}
+
+/// Positions where a run of equal keys starts in sorted `keys`, ascending.
+template <Space Exec>
+Buffer<std::int32_t> run_starts(Exec& ex, const char* label, ArrayView<const std::uint64_t> keys) {
+  return select(ex, label, keys.size, detail::StartsRun{keys});
+}
+
+/// Sorts `keys` by their lowest `bits` bits and removes repetitions.
+template <Space Exec>
+Buffer<std::uint64_t> sort_unique(Exec& ex, const char* label, Buffer<std::uint64_t> keys, int bits) {
+  sort_keys(ex, label, keys, bits);
+  const Buffer<std::int32_t> starts = run_starts(ex, label, keys.cview());
+  Buffer<std::uint64_t> unique = make_buffer<std::uint64_t>(ex, starts.size());
+  gather<std::uint64_t>(ex, keys.cview(), starts.cview(), unique.view());
+  return unique;
+}
+
+}  // namespace pointskin::exec

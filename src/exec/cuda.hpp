@@ -1,0 +1,50 @@
+// The CUDA space: one stream of one GPU and a stream-ordered memory pool. This header needs no CUDA.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "exec/memory.hpp"
+
+namespace pointskin::exec {
+
+/// Runs work on one stream of one GPU. Everything is enqueued in order on that stream; nothing synchronises the whole
+/// device. Memory comes from a pool of this object that keeps what is freed.
+class Cuda {
+ public:
+  /// @throws Error device_unavailable if there is no GPU of this index or it does not answer
+  explicit Cuda(int index);
+  ~Cuda();
+  Cuda(const Cuda&) = delete;
+  Cuda& operator=(const Cuda&) = delete;
+
+  [[nodiscard]] int index() const noexcept { return index_; }
+  /// The stream as a cudaStream_t.
+  [[nodiscard]] void* stream() const noexcept { return stream_; }
+  [[nodiscard]] const std::shared_ptr<MemoryPool>& pool() const noexcept { return pool_; }
+
+  /// Waits until the stream's work is done. @throws Error device_unavailable if some of it failed
+  void synchronize();
+
+  /// Page-locked host memory for small read-backs, `kStagingBytes` long.
+  [[nodiscard]] void* staging() const noexcept { return staging_; }
+  static constexpr std::int64_t kStagingBytes = 4096;
+
+ private:
+  int index_;
+  void* stream_ = nullptr;
+  void* staging_ = nullptr;
+  std::shared_ptr<MemoryPool> pool_;
+};
+
+/// Number of GPUs that answer; 0 without a driver.
+int cuda_device_count() noexcept;
+
+/// Marketing name of a GPU, such as "NVIDIA H100 80GB HBM3".
+std::string cuda_device_name(int index);
+
+/// Free memory of a GPU in bytes.
+std::int64_t cuda_free_bytes(int index);
+
+}  // namespace pointskin::exec

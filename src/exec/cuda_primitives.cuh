@@ -1,0 +1,158 @@
+// The data-parallel primitives on the GPU, on CUB. See exec/space.hpp for the contract.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+#include <cub/device/device_select.cuh>
+
+#include "core/array_view.hpp"
+#include "exec/cuda.hpp"
+#include "exec/cuda_check.cuh"
+#include "exec/memory.hpp"
+
+namespace pointskin::exec {
+
+inline constexpr int kThreadsPerBlock = 128;
+
+inline cudaStream_t stream_of(const Cuda& ex) { return static_cast<cudaStream_t>(ex.stream()); }
+
+template <class F>
+__global__ void __launch_bounds__(kThreadsPerBlock) for_each_kernel(std::int64_t n, const F f) {
+  const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * kThreadsPerBlock + threadIdx.x;
+  if (i < n) f(i);
+}
+
+/// Calls f(i) for every i in [0, n), one thread each. Asynchronous.
+template <class F>
+void for_each(Cuda& ex, const char* label, std::int64_t n, const F& f) {
+  if (n <= 0) return;
+  const std::int64_t blocks = (n + kThreadsPerBlock - 1) / kThreadsPerBlock;
+  for_each_kernel<<<static_cast<unsigned>(blocks), kThreadsPerBlock, 0, stream_of(ex)>>>(n, f);
+  cuda_check(cudaGetLastError(), label);
+}
+
+/// Runs a CUB algorithm: once to learn its scratch size, once for real.
+template <class Algorithm>
+void run_cub(Cuda& ex, const char* label, const Algorithm& algorithm) {
+  std::size_t bytes = 0;
+  cuda_check(algorithm(nullptr, bytes), label);
+  Buffer<std::byte> scratch(ex.pool(), static_cast<std::int64_t>(bytes));
+  cuda_check(algorithm(scratch.data(), bytes), label);
+}
+
+template <class T>
+void copy(Cuda& ex, ArrayView<const T> from, ArrayView<T> to) {
+  if (from.size == 0) return;
+  cuda_check(cudaMemcpyAsync(to.data, from.data, static_cast<std::size_t>(from.size) * sizeof(T),
+                             cudaMemcpyDeviceToDevice, stream_of(ex)),
+             "copying on the GPU");
+}
+
+/// Waits until the data is there. Small reads go through page-locked memory.
+template <class T>
+void copy_to_host(Cuda& ex, ArrayView<const T> from, T* to) {
+  if (from.size == 0) return;
+  const std::size_t bytes = static_cast<std::size_t>(from.size) * sizeof(T);
+  const bool staged = bytes <= static_cast<std::size_t>(Cuda::kStagingBytes);
+  void* target = staged ? ex.staging() : static_cast<void*>(to);
+  cuda_check(cudaMemcpyAsync(target, from.data, bytes, cudaMemcpyDeviceToHost, stream_of(ex)), "copying to the host");
+  ex.synchronize();
+  if (staged) std::memcpy(to, target, bytes);
+}
+
+/// Returns when `from` may be reused.
+template <class T>
+void copy_to_device(Cuda& ex, const T* from, ArrayView<T> to) {
+  if (to.size == 0) return;
+  cuda_check(cudaMemcpyAsync(to.data, from, static_cast<std::size_t>(to.size) * sizeof(T), cudaMemcpyHostToDevice,
+                             stream_of(ex)),
+             "copying to the GPU");
+  ex.synchronize();
+}
+
+/// 0, 1, 2, ... as an iterator.
+struct CountingIterator {
+  using value_type = std::int32_t;
+  using reference = std::int32_t;
+  using pointer = const std::int32_t*;
+  using difference_type = std::int64_t;
+  using iterator_category = std::random_access_iterator_tag;
+
+  std::int64_t at = 0;
+  PSK_HD std::int32_t operator*() const { return static_cast<std::int32_t>(at); }
+  PSK_HD std::int32_t operator[](std::int64_t i) const { return static_cast<std::int32_t>(at + i); }
+  PSK_HD CountingIterator operator+(std::int64_t i) const { return {at + i}; }
+  PSK_HD CountingIterator& operator+=(std::int64_t i) {
+    at += i;
+    return *this;
+  }
+};
+
+/// The indices i in [0, n) with keep(i), ascending. Waits for the count.
+template <class Keep>
+Buffer<std::int32_t> select(Cuda& ex, const char* label, std::int64_t n, const Keep& keep) {
+  if (n == 0) return {};
+  Buffer<std::int32_t> found(ex.pool(), n);
+  Buffer<std::int32_t> count(ex.pool(), 1);
+  run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
+    return cub::DeviceSelect::If(scratch, bytes, CountingIterator{}, found.data(), count.data(), n, keep, stream_of(ex));
+  });
+  std::int32_t kept_count = 0;
+  copy_to_host(ex, count.cview(), &kept_count);
+  Buffer<std::int32_t> kept(ex.pool(), kept_count);
+  copy(ex, found.cview().part(0, kept_count), kept.view());
+  return kept;
+}
+
+/// out[i] = in[0] + ... + in[i-1]; out.size is in.size (in place allowed) or in.size + 1 (the last is the total).
+template <class T>
+void exclusive_scan(Cuda& ex, const char* label, ArrayView<const T> in, ArrayView<T> out) {
+  if (out.size > in.size) {
+    // The scan of n + 1 elements never adds the last one, but it reads it: scan inclusively, one place further.
+    cuda_check(cudaMemsetAsync(out.data, 0, sizeof(T), stream_of(ex)), label);
+    if (in.size == 0) return;
+    run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceScan::InclusiveSum(scratch, bytes, in.data, out.data + 1, in.size, stream_of(ex));
+    });
+    return;
+  }
+  if (in.size == 0) return;
+  run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, in.data, out.data, in.size, stream_of(ex));
+  });
+}
+
+/// Stable ascending radix sort of (key, value) pairs by the lowest `bits` bits of the keys.
+template <class Value>
+void sort_pairs(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, Buffer<Value>& values, int bits) {
+  if (keys.empty()) return;
+  Buffer<std::uint64_t> other_keys(ex.pool(), keys.size());
+  Buffer<Value> other_values(ex.pool(), values.size());
+  cub::DoubleBuffer<std::uint64_t> key_buffers(keys.data(), other_keys.data());
+  cub::DoubleBuffer<Value> value_buffers(values.data(), other_values.data());
+  run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
+    return cub::DeviceRadixSort::SortPairs(scratch, bytes, key_buffers, value_buffers, keys.size(), 0, bits,
+                                           stream_of(ex));
+  });
+  if (key_buffers.Current() != keys.data()) keys.swap(other_keys);
+  if (value_buffers.Current() != values.data()) values.swap(other_values);
+}
+
+/// Sorts keys alone.
+inline void sort_keys(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, int bits) {
+  if (keys.empty()) return;
+  Buffer<std::uint64_t> other(ex.pool(), keys.size());
+  cub::DoubleBuffer<std::uint64_t> buffers(keys.data(), other.data());
+  run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
+    return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffers, keys.size(), 0, bits, stream_of(ex));
+  });
+  if (buffers.Current() != keys.data()) keys.swap(other);
+}
+
+}  // namespace pointskin::exec

@@ -1,0 +1,48 @@
+// An implicit function on the octree, as kernels see it.
+#pragma once
+
+#include <cstdint>
+
+#include <pointskin/vector.hpp>
+
+#include "octree/access.hpp"
+#include "octree/view.hpp"
+
+namespace pointskin::field {
+
+/// Corner values on all levels. Inside is where the value is at least the isovalue.
+struct FieldView {
+  octree::OctreeView tree;
+  const float* values = nullptr;  ///< over the nodes of all levels, level-major
+  float isovalue = 0;
+  bool closed = true;  ///< corners on the faces of the cube count as outside
+
+  [[nodiscard]] PSK_HD float value(int level, std::int32_t node) const {
+    return values[tree.levels[level].first_node + node];
+  }
+
+  /// True if the corner at these coordinates may be inside at all.
+  [[nodiscard]] PSK_HD bool may_be_inside(const octree::Coordinates& c, int level) const {
+    const std::int32_t last = 1 << level;
+    return !closed || (c.x > 0 && c.y > 0 && c.z > 0 && c.x < last && c.y < last && c.z < last);
+  }
+};
+
+/// Gradient at a corner by central differences of its level, per cell; one-sided where a neighbour is missing.
+PSK_HD inline Vec3f gradient_at(const FieldView& f, int level, std::int32_t node) {
+  const octree::LevelView& l = f.tree.levels[level];
+  const float* u = f.values + l.first_node;
+  float slope[3];
+  for (int a = 0; a < 3; ++a) {
+    const int dx = a == 0 ? 1 : 0;
+    const int dy = a == 1 ? 1 : 0;
+    const int dz = a == 2 ? 1 : 0;
+    const std::int32_t lower = l.neighbour(node, -dx, -dy, -dz);
+    const std::int32_t upper = l.neighbour(node, dx, dy, dz);
+    const float half = lower >= 0 && upper >= 0 ? 0.5F : 1.0F;
+    slope[a] = half * (u[upper >= 0 ? upper : node] - u[lower >= 0 ? lower : node]);
+  }
+  return {slope[0], slope[1], slope[2]};
+}
+
+}  // namespace pointskin::field

@@ -1,0 +1,184 @@
+#include "io/output.hpp"
+
+#include <pointskin/error.hpp>
+#include <pointskin/io.hpp>
+
+#include <fcntl.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <climits>
+#include <optional>
+#include <system_error>
+
+#include "io/file_descriptor.hpp"
+#include "io/source.hpp"
+
+namespace pointskin::io {
+namespace {
+
+const char* advice_for(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space or write elsewhere";
+    case ENOENT:
+    case ENOTDIR:
+      return "create the folder first";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "check the permissions or write elsewhere";
+    case EISDIR:
+      return "name a file in it";
+    default:
+      return "check the path and the disk";
+  }
+}
+
+[[noreturn]] void fail_to_write(const std::string& path, int error) {
+  throw Error(ErrorCode::output_not_written,
+              fmt::format("{}: cannot be written, {}; {}", path == "-" ? "stdout" : printable(path),
+                          std::generic_category().message(error), advice_for(error)));
+}
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "" : path.substr(0, slash + 1);
+}
+
+/// Follows symbolic links, also one whose target does not exist yet: the file is to appear where the link points.
+std::string follow_links(const std::string& path) {
+  constexpr int kMostLinks = 40;
+  std::string target = path;
+  for (int i = 0; i < kMostLinks; ++i) {
+    std::array<char, PATH_MAX> buffer;
+    const ssize_t length = ::readlink(target.c_str(), buffer.data(), buffer.size());
+    if (length < 0) return target;  // no link, or nothing there
+    const std::string link(buffer.data(), static_cast<std::size_t>(length));
+    target = link.starts_with('/') ? link : folder_of(target) + link;
+  }
+  fail_to_write(path, ELOOP);
+}
+
+std::optional<struct stat> status_of(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return status;
+}
+
+void write_all(int fd, const std::vector<std::string>& parts, const std::string& path) {
+  constexpr std::size_t kLargestWrite = std::size_t{1} << 30;  // Linux writes at most 2 GiB at once
+  for (const std::string& part : parts) {
+    std::size_t done = 0;
+    while (done < part.size()) {
+      const ssize_t wrote = ::write(fd, part.data() + done, std::min(kLargestWrite, part.size() - done));
+      if (wrote < 0 && errno == EINTR) continue;
+      if (wrote < 0) fail_to_write(path, errno);
+      done += static_cast<std::size_t>(wrote);
+    }
+  }
+}
+
+/// A number that another run is unlikely to choose; O_EXCL settles the rest.
+std::uint64_t random_number() {
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof(number), GRND_NONBLOCK) != static_cast<ssize_t>(sizeof(number)))
+    number = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+  return number;
+}
+
+/// A new file next to `target` that vanishes unless it is renamed.
+class TemporaryFile {
+ public:
+  TemporaryFile(const std::string& path, const std::string& target) : path_(path), fd_(create(target)) {}
+  ~TemporaryFile() {
+    if (!name_.empty()) ::unlink(name_.c_str());
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  [[nodiscard]] int fd() const { return fd_.get(); }
+
+  /// Takes over owner and permissions. Changing the owner may be forbidden and is then left out.
+  void inherit(const struct stat& old) const {
+    const bool same_owner = old.st_uid == ::geteuid() && old.st_gid == ::getegid();
+    if (!same_owner && ::fchown(fd(), old.st_uid, old.st_gid) != 0) errno = 0;
+    if (::fchmod(fd(), old.st_mode & 0777) != 0) fail_to_write(path_, errno);
+  }
+
+  /// Brings the bytes to the disk before the name: a crash in between must not leave an empty file.
+  void rename_to(const std::string& target) {
+    if (::fsync(fd()) != 0 && errno != EINVAL) fail_to_write(path_, errno);  // EINVAL: nothing to synchronise
+    if (fd_.close() != 0 && errno != EINTR) fail_to_write(path_, errno);
+    if (::rename(name_.c_str(), target.c_str()) != 0) fail_to_write(path_, errno);
+    name_.clear();
+  }
+
+ private:
+  int create(const std::string& target) {
+    constexpr int kTries = 100;
+    constexpr std::size_t kLongestBase = 180;  // leaves room for the rest within the 255 bytes of a file name
+    const std::string folder = folder_of(target);
+    const std::string base = target.substr(folder.size(), kLongestBase);
+    for (int i = 0; i < kTries; ++i) {
+      std::string name = fmt::format("{}.{}.{}-{:016x}.tmp", folder, base, ::getpid(), random_number());
+      const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (fd >= 0) {
+        name_ = std::move(name);
+        return fd;
+      }
+      if (errno != EEXIST && errno != EINTR) fail_to_write(path_, errno);
+    }
+    fail_to_write(path_, EEXIST);
+  }
+
+  const std::string& path_;
+  std::string name_;
+  FileDescriptor fd_;
+};
+
+void write_stream(const std::string& path, const std::vector<std::string>& parts) {
+  if (path == "-") return write_all(STDOUT_FILENO, parts, path);
+  FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!file.valid()) fail_to_write(path, errno);
+  write_all(file.get(), parts, path);
+  if (file.close() != 0 && errno != EINTR) fail_to_write(path, errno);
+}
+
+}  // namespace
+
+bool is_stream(const std::string& path) {
+  if (path == "-") return true;
+  const auto status = status_of(path);
+  return status && !S_ISREG(status->st_mode) && !S_ISDIR(status->st_mode);
+}
+
+void write_parts(const std::string& path, const std::vector<std::string>& parts) {
+  if (is_stream(path)) return write_stream(path, parts);
+  if (path.empty()) fail_to_write(path, ENOENT);
+  const std::string target = follow_links(path);
+  const auto old = status_of(target);
+  if ((old && S_ISDIR(old->st_mode)) || target.ends_with('/')) fail_to_write(path, EISDIR);
+  // A rename would replace a write-protected file without asking.
+  if (old && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail_to_write(path, errno);
+  TemporaryFile file(path, target);
+  write_all(file.fd(), parts, path);
+  if (old) file.inherit(*old);
+  file.rename_to(target);
+}
+
+}  // namespace pointskin::io
+
+namespace pointskin {
+
+void write_file_atomically(const std::string& path, const std::string& bytes) { io::write_parts(path, {bytes}); }
+
+}  // namespace pointskin

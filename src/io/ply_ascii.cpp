@@ -1,0 +1,112 @@
+// Text bodies: one row a line, blank lines and comments between them skipped.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "io/lines.hpp"
+#include "io/ply_body.hpp"
+#include "io/polygon.hpp"
+
+namespace pointskin::io {
+namespace {
+
+/// Lines of an element: one a row, none if its rows hold nothing.
+std::int64_t lines_of(const PlyElement& element) { return element.properties.empty() ? 0 : element.count; }
+
+/// Where an element lies.
+struct RowRange {
+  std::int64_t first, last;
+};
+
+double scalar(Values& values, const PlyProperty& property) {
+  if (property.type != Scalar::uint8) return values.number();
+  Values before = values;
+  const double value = values.number();
+  if (!(value >= 0 && value <= 255) || value != std::floor(value)) {
+    before.at_end();
+    before.fail_garbled("does not fit into a uchar, which holds whole numbers in 0..255");
+  }
+  return value;
+}
+
+std::int64_t list_length(Values& values) {
+  Values before = values;
+  const std::int64_t length = values.whole();
+  if (length < 0) {
+    before.at_end();
+    before.fail_garbled("is a negative list length");
+  }
+  return length;
+}
+
+void read_vertices(exec::Cpu& ex, const PlyInput& input, const PlyElement& vertex, const LineIndex& index,
+                   const RowRange& range, PlyBody& body) {
+  add_scalars(vertex, body.parsed);
+  for_each_row(ex, index, range.first, range.last, [&](const Line& line, std::size_t) {
+    Values values(input.source, line);
+    std::size_t column = 0;
+    for (const PlyProperty& property : vertex.properties) {
+      if (property.is_list)
+        for (std::int64_t i = list_length(values); i > 0; --i) values.number();
+      else
+        body.parsed.set(column++, line.row - range.first, scalar(values, property));
+    }
+    values.expect_end();
+  });
+  body.vertices = body.parsed.table();
+}
+
+std::int32_t corner_of(Values& values, std::int64_t vertices) {
+  Values before = values;
+  const std::int64_t index = values.whole();
+  if (index < 0 || index >= vertices) {
+    before.at_end();
+    before.fail_garbled(fmt::format("is no vertex, there are {}", vertices).c_str());
+  }
+  return static_cast<std::int32_t>(index);
+}
+
+void read_faces(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, const LineIndex& index,
+                const RowRange& range, PlyBody& body) {
+  const std::size_t list = find_corner_list(input.source, face);
+  const std::int64_t vertices = vertex_count(input.header);
+  std::vector<std::vector<Triangle>> parts(index.blocks.size());
+  for_each_row(ex, index, range.first, range.last, [&](const Line& line, std::size_t block) {
+    Values values(input.source, line);
+    std::vector<std::int32_t> corners;
+    for (std::size_t p = 0; p < face.properties.size(); ++p) {
+      const std::int64_t count = face.properties[p].is_list ? list_length(values) : 1;
+      for (std::int64_t i = 0; i < count; ++i) {
+        if (p == list)
+          corners.push_back(corner_of(values, vertices));
+        else
+          values.number();
+      }
+    }
+    values.expect_end();
+    append_fan(corners, parts[block]);
+  });
+  body.triangles = concatenate(std::move(parts));
+}
+
+}  // namespace
+
+void read_ascii_body(exec::Cpu& ex, const PlyInput& input, PlyBody& body) {
+  const LineIndex index = index_lines(ex, input.source.bytes.substr(input.header.body), input.header.body_line);
+  RowRange range{0, 0};
+  for (const PlyElement& element : input.header.elements) {
+    range.last = range.first + lines_of(element);
+    if (index.rows < range.last)
+      fail_at_byte(input.source,
+                   fmt::format("is truncated, element {} promises {} rows but {} are left", quoted(element.name),
+                               element.count, index.rows - range.first),
+                   input.source.bytes.size(), "copy or export the file again");
+    if (element.name == "vertex" && !element.properties.empty())
+      read_vertices(ex, input, element, index, range, body);
+    else if (element.name == "face" && input.want_faces && element.count > 0)
+      read_faces(ex, input, element, index, range, body);
+    range.first = range.last;
+  }
+}
+
+}  // namespace pointskin::io

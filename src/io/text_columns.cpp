@@ -1,0 +1,218 @@
+#include "io/text_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+
+#include "io/lines.hpp"
+
+namespace pointskin::io {
+namespace {
+
+constexpr const char* kNameAdvice = "name the columns in the first line, such as x,y,z,nx,ny,nz";
+
+std::string_view trimmed(std::string_view word) {
+  const auto is_frame = [](char c) { return is_blank(c) || c == '"' || c == '\''; };
+  while (!word.empty() && is_frame(word.front())) word.remove_prefix(1);
+  while (!word.empty() && is_frame(word.back())) word.remove_suffix(1);
+  return word;
+}
+
+std::string lower(std::string_view word) {
+  std::string text(word);
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Splits a line of names. Names may hold blanks where another separator is used.
+std::vector<std::string> split_names(std::string_view line) {
+  const char* separators = line.find_first_of(",;") != std::string_view::npos ? ",;"
+                           : line.find('\t') != std::string_view::npos        ? "\t"
+                                                                              : " ";
+  std::vector<std::string> names;
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.find_first_of(separators), line.size());
+    if (const auto name = trimmed(line.substr(0, end)); !name.empty()) names.emplace_back(name);
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return names;
+}
+
+bool has_name(const std::vector<std::string>& names, const char* name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Names that mean something are written as PLY writes them.
+std::vector<std::string> canonical(std::vector<std::string> names) {
+  std::vector<std::string> lowered;
+  lowered.reserve(names.size());
+  for (const std::string& name : names) lowered.push_back(lower(name));
+  const bool short_colours = has_name(lowered, "r") && has_name(lowered, "g") && has_name(lowered, "b");
+  constexpr std::array kKnown{"x",        "y",        "z",   "nx",    "ny",   "nz",   "normal_x",
+                              "normal_y", "normal_z", "red", "green", "blue", "alpha"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(kKnown.begin(), kKnown.end(), lowered[i]) != kKnown.end()) names[i] = lowered[i];
+    if (!short_colours) continue;
+    if (lowered[i] == "r") names[i] = "red";
+    if (lowered[i] == "g") names[i] = "green";
+    if (lowered[i] == "b") names[i] = "blue";
+    if (lowered[i] == "a") names[i] = "alpha";
+  }
+  return names;
+}
+
+/// "1,5 2,5" and "1,5;2,5" would silently become four values.
+void check_separators(const Source& source, const Line& line) {
+  const std::string_view text = line.text.substr(0, line.text.find('#'));
+  std::optional<bool> with_comma;
+  bool mixed = text.find(',') != std::string_view::npos && text.find(';') != std::string_view::npos;
+  const auto first = std::find_if_not(text.begin(), text.end(), is_separator);
+  for (auto at = first; at != text.end();) {
+    const auto gap = std::find_if(at, text.end(), is_separator);
+    at = std::find_if_not(gap, text.end(), is_separator);
+    if (at == text.end()) break;
+    const bool comma = std::find(gap, at, ',') != at;
+    if (with_comma && *with_comma != comma) mixed = true;
+    with_comma = comma;
+  }
+  if (mixed)
+    fail_at_line(source, "commas separate some values but not all", line.number,
+                 "write decimal points and one kind of separator");
+}
+
+std::vector<std::string> names_in_comment(std::string_view comment) {
+  while (!comment.empty() && (comment.front() == '#' || comment.front() == '/' || is_blank(comment.front())))
+    comment.remove_prefix(1);
+  std::vector<std::string> names = canonical(split_names(comment));
+  const bool names_points = has_name(names, "x") && has_name(names, "y") && has_name(names, "z");
+  return names_points ? names : std::vector<std::string>{};
+}
+
+/// True if the line starts with a number: then it is a point, garbled or not, and no line of names.
+bool starts_with_number(const Source& source, const Line& line) {
+  const std::string_view word = Values(source, line).word();
+  double value = 0;
+  return parse_number(word.data(), word.data() + word.size(), value) == word.data() + word.size();
+}
+
+/// Takes one row of the file's beginning. @returns true if it is the first point
+bool take_row(const Source& source, const Line& line, TextLayout& layout) {
+  if (layout.names.empty() && !starts_with_number(source, line)) {
+    layout.names = canonical(split_names(line.text));
+    ++layout.header_rows;
+    return false;
+  }
+  Values values(source, line);
+  const double first = values.number();
+  for (layout.columns = 1; !values.at_end(); ++layout.columns) values.number();
+  if (layout.columns == 1 && layout.header_rows == 0) {
+    if (!(first >= 0 && first <= 9e15) || first != std::floor(first))
+      fail_at_line(source, "a single value is neither a point nor a number of points", line.number, kNameAdvice);
+    layout.promised = static_cast<std::int64_t>(first);
+    ++layout.header_rows;
+    return false;
+  }
+  check_separators(source, line);
+  layout.first_line = line.number;
+  return true;
+}
+
+}  // namespace
+
+TextLayout find_layout(const Source& source) {
+  TextLayout layout;
+  std::vector<std::string> comment_names;
+  Line line;
+  bool found = false;
+  for_each_line(without_byte_order_mark(source.bytes), [&](std::string_view text) {
+    ++line.number;
+    line.text = text;
+    if (is_row(text))
+      found = take_row(source, line, layout);
+    else if (text.find_first_of("#/") != std::string_view::npos)
+      comment_names = names_in_comment(text);
+    return !found;
+  });
+  if (!found) fail_at_line(source, "holds no points", line.number, "check the program that wrote it");
+  if (layout.names.empty() && comment_names.size() == layout.columns) layout.names = comment_names;
+  if (!layout.names.empty() && layout.names.size() != layout.columns)
+    fail_at_line(source, fmt::format("{} values under {} names", layout.columns, layout.names.size()),
+                 layout.first_line, "give every column one name");
+  return layout;
+}
+
+void add_columns(const Source& source, const TextLayout& layout, ParsedColumns& parsed) {
+  std::vector<std::string> names = layout.names;
+  if (names.empty()) {
+    constexpr std::array<std::size_t, 5> kAgreed{3, 4, 6, 7, 9};
+    if (std::find(kAgreed.begin(), kAgreed.end(), layout.columns) == kAgreed.end())
+      fail_at_line(source, fmt::format("lines of {} values have no agreed meaning", layout.columns), layout.first_line,
+                   kNameAdvice);
+    names = {"x", "y", "z"};
+    while (names.size() < layout.columns) names.push_back(std::to_string(names.size()));
+  }
+  std::vector<std::string> sorted = names;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end()) fail(source, "has two columns named " + quoted(*twice), "give every column its own name");
+  for (const char* axis : {"x", "y", "z"})
+    if (!has_name(names, axis)) fail(source, fmt::format("has no column named {}", axis), kNameAdvice);
+  for (const std::string& name : names) parsed.add(name, is_coordinate(name) ? Scalar::float64 : Scalar::float32);
+}
+
+namespace {
+
+bool are_bytes(const ParsedColumns& parsed, std::size_t first) {
+  return parsed.holds_bytes(first) && parsed.holds_bytes(first + 1) && parsed.holds_bytes(first + 2);
+}
+
+/// Whole numbers up to one could as well be normals along the axes.
+bool are_surely_colours(const ParsedColumns& parsed, std::size_t first) {
+  return are_bytes(parsed, first) &&
+         (parsed.exceeds(first, 1) || parsed.exceeds(first + 1, 1) || parsed.exceeds(first + 2, 1));
+}
+
+void name_colours(ParsedColumns& parsed, std::size_t first) {
+  parsed.redeclare(first, "red", Scalar::uint8);
+  parsed.redeclare(first + 1, "green", Scalar::uint8);
+  parsed.redeclare(first + 2, "blue", Scalar::uint8);
+}
+
+void name_normals(ParsedColumns& parsed, std::size_t first) {
+  parsed.redeclare(first, "nx", Scalar::float32);
+  parsed.redeclare(first + 1, "ny", Scalar::float32);
+  parsed.redeclare(first + 2, "nz", Scalar::float32);
+}
+
+}  // namespace
+
+void name_columns(const Source& source, const TextLayout& layout, ParsedColumns& parsed) {
+  for (std::size_t c = 0; c < layout.names.size(); ++c) {
+    const std::string& name = layout.names[c];
+    if ((name == "red" || name == "green" || name == "blue" || name == "alpha") && parsed.holds_bytes(c))
+      parsed.redeclare(c, name, Scalar::uint8);
+  }
+  if (!layout.names.empty()) return;
+  const std::size_t columns = layout.columns;
+  if (columns == 4 || columns == 7) parsed.redeclare(3, "scalar", Scalar::float32);
+  if (columns == 6 && are_surely_colours(parsed, 3))
+    name_colours(parsed, 3);
+  else if (columns == 6)
+    name_normals(parsed, 3);
+  if (columns == 7) {
+    if (!are_bytes(parsed, 4)) fail(source, "the columns 5 to 7 are no colours in 0..255", kNameAdvice);
+    name_colours(parsed, 4);
+  }
+  if (columns == 9) {
+    const bool colours_last = !are_bytes(parsed, 3) && are_bytes(parsed, 6);
+    if (!colours_last && !are_bytes(parsed, 3))
+      fail(source, "neither the columns 4 to 6 nor 7 to 9 are colours in 0..255", kNameAdvice);
+    name_colours(parsed, colours_last ? 6 : 3);
+    name_normals(parsed, colours_last ? 3 : 6);
+  }
+}
+
+}  // namespace pointskin::io

@@ -1,0 +1,65 @@
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+#include "io/blocks.hpp"
+#include "io/scalar.hpp"
+#include "io/writers.hpp"
+
+namespace pointskin::io {
+namespace {
+
+constexpr std::size_t kBlockRows = 1 << 14;
+constexpr std::size_t kHeaderBytes = 84;
+constexpr std::size_t kTriangleBytes = 50;
+constexpr std::string_view kTitle = "binary STL of pointskin";  // must not start with "solid", which marks text
+
+/// Unit normal of the triangle, from coordinates relative to the origin; zero for a triangle without area.
+Vec3f normal_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  const auto difference = [](const Vec3f& to, const Vec3f& from) {
+    return Vec3d{double{to.x} - from.x, double{to.y} - from.y, double{to.z} - from.z};
+  };
+  const Vec3d u = difference(b, a);
+  const Vec3d v = difference(c, a);
+  const Vec3d n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  if (!(length > 0)) return {};
+  return {to_float(n[0] / length), to_float(n[1] / length), to_float(n[2] / length)};
+}
+
+void store_triangle(const Mesh& mesh, const Triangle& triangle, char* out) {
+  const auto at = [&](std::size_t corner) { return mesh.vertices[static_cast<std::size_t>(triangle[corner])]; };
+  std::array<Vec3f, 4> values{normal_of(at(0), at(1), at(2))};
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const Vec3d w = world(mesh.origin, at(corner));
+    values[corner + 1] = {to_float(w[0]), to_float(w[1]), to_float(w[2])};
+  }
+  std::memcpy(out, values.data(), sizeof(values));
+}
+
+}  // namespace
+
+std::vector<std::string> format_stl(exec::Cpu& ex, const Mesh& mesh) {
+  const std::size_t count = mesh.triangles.size();
+  if (count > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ErrorCode::over_limit, "STL holds at most 4294967295 triangles; write PLY instead");
+  std::string bytes(kHeaderBytes + count * kTriangleBytes, '\0');
+  std::copy(kTitle.begin(), kTitle.end(), bytes.begin());
+  const auto stored_count = static_cast<std::uint32_t>(count);
+  std::memcpy(bytes.data() + kHeaderBytes - sizeof(stored_count), &stored_count, sizeof(stored_count));
+  run_in_order(ex, static_cast<std::int64_t>((count + kBlockRows - 1) / kBlockRows), [&](std::int64_t b) {
+    const std::size_t first = static_cast<std::size_t>(b) * kBlockRows;
+    for (std::size_t t = first; t < std::min(count, first + kBlockRows); ++t)
+      store_triangle(mesh, mesh.triangles[t], bytes.data() + kHeaderBytes + t * kTriangleBytes);
+  });
+  std::vector<std::string> parts;
+  parts.push_back(std::move(bytes));
+  return parts;
+}
+
+}  // namespace pointskin::io

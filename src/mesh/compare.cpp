@@ -1,0 +1,170 @@
+// Distances between two meshes, sampled on each and measured to the other, and the scores derived from them.
+// Source of the scores: Knapitsch et al., "Tanks and Temples", ACM TOG 36, 2017 (precision, recall, F-score);
+// Mescheder et al., "Occupancy Networks", CVPR 2019 (normal consistency).
+#include <pointskin/error.hpp>
+#include <pointskin/mesh.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "exec/cpu_primitives.hpp"
+#include "mesh/mesh_checks.hpp"
+#include "mesh/surface_samples.hpp"
+#include "mesh/triangle_tree.hpp"
+
+namespace pointskin {
+namespace {
+
+using exec::Cpu;
+using mesh_detail::dot;
+using mesh_detail::SurfaceSample;
+using mesh_detail::SurfaceSampler;
+using mesh_detail::TriangleTree;
+
+/// Samples per block: neighbours in a block start their search at each other's nearest triangle.
+constexpr std::int64_t kSampleBlock = 1024;
+
+/// One mesh prepared for both directions.
+struct Side {
+  SurfaceSampler sampler;
+  TriangleTree tree;
+
+  Side(Cpu& ex, const Mesh& mesh, const Vec3d& offset) : sampler(ex, mesh, offset), tree(ex, mesh, offset) {}
+};
+
+struct Sums {
+  double distance = 0, squared = 0, largest = 0, cosine = 0;
+  std::int64_t near = 0;     ///< samples within the threshold
+  std::int64_t cosines = 0;  ///< pairs of faces that both have a normal
+};
+
+/// Result of one direction.
+struct Direction {
+  DistanceStatistics distances;
+  double normal_consistency = 0;
+  double share_near = 0;
+};
+
+/// Measures samples on one mesh to the nearest points of another.
+class OneWay {
+ public:
+  OneWay(const SurfaceSampler& from, const TriangleTree& to, std::int64_t samples, double threshold)
+      : from_(from), to_(to), samples_(samples), threshold_(threshold) {}
+
+  [[nodiscard]] Direction measure(Cpu& ex) const {
+    exec::Buffer<double> distances(ex.pool(), samples_);
+    std::vector<Sums> parts(static_cast<std::size_t>(exec::block_count(samples_, kSampleBlock)));
+    ex.run_blocks(static_cast<std::int64_t>(parts.size()), [&](std::int64_t b) {
+      const std::int64_t end = std::min(samples_, (b + 1) * kSampleBlock);
+      parts[static_cast<std::size_t>(b)] = measure_block(b * kSampleBlock, end, distances.view());
+    });
+    Sums all;
+    for (const Sums& part : parts) add(part, all);
+    return conclude(all, distances.view());
+  }
+
+ private:
+  [[nodiscard]] Sums measure_block(std::int64_t begin, std::int64_t end, ArrayView<double> distances) const {
+    Sums sums;
+    std::int32_t hint = -1;
+    for (std::int64_t i = begin; i < end; ++i) {
+      const SurfaceSample sample = from_.sample(i, samples_);
+      const mesh_detail::Nearest nearest = to_.nearest(sample.point, hint);
+      hint = nearest.slot;
+      const double distance = std::sqrt(nearest.squared_distance);
+      distances[i] = distance;
+      sums.distance += distance;
+      sums.squared += nearest.squared_distance;
+      sums.largest = std::max(sums.largest, distance);
+      sums.near += distance <= threshold_ ? 1 : 0;
+      const Vec3d normal = mesh_detail::normalized(to_.triangle(nearest.slot).area_vector());
+      if (sample.normal == Vec3d{0, 0, 0} || normal == Vec3d{0, 0, 0}) continue;
+      sums.cosine += std::min(1.0, std::abs(dot(sample.normal, normal)));
+      ++sums.cosines;
+    }
+    return sums;
+  }
+
+  static void add(const Sums& part, Sums& all) {
+    all.distance += part.distance;
+    all.squared += part.squared;
+    all.largest = std::max(all.largest, part.largest);
+    all.cosine += part.cosine;
+    all.near += part.near;
+    all.cosines += part.cosines;
+  }
+
+  /// Reorders `distances`.
+  [[nodiscard]] Direction conclude(const Sums& all, ArrayView<double> distances) const {
+    const auto n = static_cast<double>(samples_);
+    // The smallest distance that at least 95 % of the samples do not exceed: rank ceil(0.95 n), counted from one.
+    double* const p95 = distances.begin() + (samples_ - samples_ / 20 - 1);
+    std::nth_element(distances.begin(), p95, distances.end());
+    Direction result;
+    result.distances = {all.distance / n, std::sqrt(all.squared / n), *p95, all.largest};
+    result.normal_consistency = all.cosines > 0 ? all.cosine / static_cast<double>(all.cosines) : 0;
+    result.share_near = static_cast<double>(all.near) / n;
+    return result;
+  }
+
+  const SurfaceSampler& from_;
+  const TriangleTree& to_;
+  std::int64_t samples_;
+  double threshold_;
+};
+
+void check_options(const CompareOptions& options) {
+  if (options.samples <= 0) throw Error(ErrorCode::usage, "the number of samples must be positive");
+  if (!(options.tau > 0) || !std::isfinite(options.tau))
+    throw Error(ErrorCode::usage, "tau must be a positive fraction of the reference's diagonal");
+}
+
+/// @returns the box of `mesh`, whose role in the comparison is `role`
+mesh_detail::CornerBounds check_mesh(Cpu& ex, const Mesh& mesh, const std::string& role) {
+  if (mesh.triangles.empty()) throw Error(ErrorCode::invalid_input, role + " has no triangle");
+  try {
+    mesh_detail::check_indices(ex, mesh);
+  } catch (const Error& error) {
+    throw error.while_doing("checking " + role);
+  }
+  const mesh_detail::CornerBounds box = mesh_detail::corner_bounds(ex, mesh);
+  if (!box.finite) throw Error(ErrorCode::invalid_input, role + " has a vertex that is not finite");
+  return box;
+}
+
+DistanceStatistics both_ways(const DistanceStatistics& a, const DistanceStatistics& b) {
+  return {(a.mean + b.mean) / 2, std::sqrt((a.rms * a.rms + b.rms * b.rms) / 2), std::max(a.p95, b.p95),
+          std::max(a.max, b.max)};
+}
+
+}  // namespace
+
+MeshComparison compare(const Mesh& mesh, const Mesh& reference, const CompareOptions& options) {
+  check_options(options);
+  Cpu ex(options.threads);
+  check_mesh(ex, mesh, "the mesh");
+  MeshComparison result;
+  result.reference_diagonal = check_mesh(ex, reference, "the reference").diagonal();
+  const double threshold = options.tau * result.reference_diagonal;
+
+  // Both live in the reference's coordinates; only a difference of origins, taken in double, enters them.
+  const Side ours(ex, mesh, mesh_detail::minus(mesh.origin, reference.origin));
+  const Side theirs(ex, reference, Vec3d{0, 0, 0});
+  const Direction there = OneWay(ours.sampler, theirs.tree, options.samples, threshold).measure(ex);
+  const Direction back = OneWay(theirs.sampler, ours.tree, options.samples, threshold).measure(ex);
+
+  result.to_reference = there.distances;
+  result.from_reference = back.distances;
+  result.two_sided = both_ways(there.distances, back.distances);
+  result.normal_consistency = (there.normal_consistency + back.normal_consistency) / 2;
+  result.precision = there.share_near;
+  result.recall = back.share_near;
+  const double sum = result.precision + result.recall;
+  result.f_score = sum > 0 ? 2 * result.precision * result.recall / sum : 0;
+  return result;
+}
+
+}  // namespace pointskin

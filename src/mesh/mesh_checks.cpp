@@ -1,0 +1,96 @@
+#include "mesh/mesh_checks.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "exec/cpu_primitives.hpp"
+#include "mesh/vec3d.hpp"
+
+namespace pointskin::mesh_detail {
+namespace {
+
+constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+
+std::int64_t triangle_count(const Mesh& mesh) { return static_cast<std::int64_t>(mesh.triangles.size()); }
+
+std::int64_t first_bad_triangle(const Mesh& mesh, std::int64_t begin, std::int64_t end) {
+  const auto vertices = static_cast<std::int64_t>(mesh.vertices.size());
+  for (std::int64_t t = begin; t < end; ++t)
+    for (const std::int32_t id : mesh.triangles[static_cast<std::size_t>(t)])
+      if (id < 0 || id >= vertices) return t;
+  return kNone;
+}
+
+void include(const Vec3f& vertex, CornerBounds& box) {
+  const Vec3d p = to_double(vertex);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(p[axis])) {
+      box.finite = false;
+      continue;
+    }
+    box.lower[axis] = std::min(box.lower[axis], p[axis]);
+    box.upper[axis] = std::max(box.upper[axis], p[axis]);
+  }
+}
+
+CornerBounds nothing() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, true};
+}
+
+}  // namespace
+
+void check_indices(exec::Cpu& ex, const Mesh& mesh) {
+  const std::int64_t n = triangle_count(mesh);
+  if (n > std::numeric_limits<std::int32_t>::max())
+    throw Error(ErrorCode::over_limit,
+                "the mesh has " + std::to_string(n) + " triangles, more than 32-bit ids can name");
+  std::vector<std::int64_t> bad(static_cast<std::size_t>(exec::block_count(n, exec::kCpuBlock)), kNone);
+  ex.run_blocks(static_cast<std::int64_t>(bad.size()), [&](std::int64_t b) {
+    bad[static_cast<std::size_t>(b)] =
+        first_bad_triangle(mesh, b * exec::kCpuBlock, std::min(n, (b + 1) * exec::kCpuBlock));
+  });
+  const auto hit = std::find_if(bad.begin(), bad.end(), [](std::int64_t t) { return t != kNone; });
+  if (hit == bad.end()) return;
+  const Triangle& ids = mesh.triangles[static_cast<std::size_t>(*hit)];
+  throw Error(ErrorCode::invalid_input, "triangle " + std::to_string(*hit) + " names the vertices " +
+                                            std::to_string(ids[0]) + ", " + std::to_string(ids[1]) + ", " +
+                                            std::to_string(ids[2]) + ", but the mesh has " +
+                                            std::to_string(mesh.vertices.size()) + " vertices");
+}
+
+CornerBounds corner_bounds(exec::Cpu& ex, const Mesh& mesh) {
+  const std::int64_t n = triangle_count(mesh);
+  std::vector<CornerBounds> part(static_cast<std::size_t>(exec::block_count(n, exec::kCpuBlock)), nothing());
+  ex.run_blocks(static_cast<std::int64_t>(part.size()), [&](std::int64_t b) {
+    CornerBounds box = nothing();
+    for (std::int64_t t = b * exec::kCpuBlock; t < std::min(n, (b + 1) * exec::kCpuBlock); ++t)
+      for (const std::int32_t id : mesh.triangles[static_cast<std::size_t>(t)])
+        include(mesh.vertices[static_cast<std::size_t>(id)], box);
+    part[static_cast<std::size_t>(b)] = box;
+  });
+  CornerBounds all = nothing();
+  for (const CornerBounds& box : part) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      all.lower[axis] = std::min(all.lower[axis], box.lower[axis]);
+      all.upper[axis] = std::max(all.upper[axis], box.upper[axis]);
+    }
+    all.finite = all.finite && box.finite;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (all.lower[axis] > all.upper[axis]) all.lower[axis] = all.upper[axis] = 0;
+  return all;
+}
+
+Vec3d CornerBounds::centre() const { return times(0.5, plus(lower, upper)); }
+
+double CornerBounds::diagonal() const { return length(minus(upper, lower)); }
+
+}  // namespace pointskin::mesh_detail

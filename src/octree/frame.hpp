@@ -1,0 +1,35 @@
+// The working cube: where the unit cube of the octree lies in the cloud's coordinates.
+#pragma once
+
+#include <pointskin/vector.hpp>
+
+#include "core/array_view.hpp"
+#include "exec/space.hpp"
+
+namespace pointskin::octree {
+
+/// Unit cube coordinates of a point p are (p - lower) / size.
+struct Frame {
+  Vec3d lower{0, 0, 0};  ///< lower corner, relative to the cloud's origin, world units
+  double size = 1;       ///< side, world units
+
+  PSK_HD Vec3f to_unit(const Vec3f& p) const {
+    const double inverse = 1 / size;
+    return {static_cast<float>((static_cast<double>(p.x) - lower[0]) * inverse),
+            static_cast<float>((static_cast<double>(p.y) - lower[1]) * inverse),
+            static_cast<float>((static_cast<double>(p.z) - lower[2]) * inverse)};
+  }
+  PSK_HD Vec3f to_world(const Vec3f& unit) const {
+    return {static_cast<float>(lower[0] + static_cast<double>(unit.x) * size),
+            static_cast<float>(lower[1] + static_cast<double>(unit.y) * size),
+            static_cast<float>(lower[2] + static_cast<double>(unit.z) * size)};
+  }
+};
+
+/// Cube around the bounding box of `positions`, `scale` times as wide as its longest side, with the same centre.
+/// @throws Error empty_result if there are no points or all are at one place
+/// O(n); exact but for the rounding of the cube itself, the same on every device.
+template <exec::Space Exec>
+Frame fit_frame(Exec& ex, ArrayView<const Vec3f> positions, double scale);
+
+}  // namespace pointskin::octree

@@ -1,0 +1,64 @@
+// The octree's arrays and how they are built.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/array_view.hpp"
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+#include "octree/view.hpp"
+
+#include <pointskin/vector.hpp>
+
+namespace pointskin::octree {
+
+/// Arrays of one level; shapes as in LevelView.
+struct LevelData {
+  std::int32_t cell_bricks = 0;
+  std::int32_t bricks = 0;
+  exec::Buffer<std::uint64_t> brick_key;
+  exec::Buffer<std::int32_t> parent;
+  exec::Buffer<std::int32_t> neighbours;
+  exec::Buffer<std::int32_t> child_brick;
+  exec::Buffer<std::uint8_t> unknowns;
+  exec::Buffer<std::int32_t> point_begin;
+};
+
+/// Owns the octree in the space it was built in.
+struct OctreeData {
+  int depth = 0;
+  std::vector<LevelData> levels;  ///< depth + 1 of them
+
+  [[nodiscard]] OctreeView view() const;
+  [[nodiscard]] std::int64_t nodes() const;
+  [[nodiscard]] std::int64_t cells() const;
+};
+
+/// Points of the unit cube in the order of their keys.
+struct SortedPoints {
+  exec::Buffer<std::uint64_t> keys;   ///< (n) point_key, ascending
+  exec::Buffer<std::int32_t> order;   ///< (n) index in the caller's order
+};
+
+/// Sorts points by key; points with equal keys by a hash of `tie_break` (any function of all their data), so that the
+/// result does not depend on the caller's order unless two points are the same in every bit.
+/// @param positions  shape (n), in the unit cube
+/// @param tie_break  shape (n); equal only for points that may be exchanged
+/// O(n), 24 n bytes of scratch.
+template <exec::Space Exec>
+SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break);
+
+/// Builds the padded, graded octree of `point_keys` (P1, P2, P3).
+///
+/// Level D holds all bricks touched by the 27-neighbourhoods of occupied cells; level d < D those touched by the
+/// 27-neighbourhoods of cells that have children; levels 0..kCompleteDepth are complete. Adjacent leaves therefore differ by
+/// one level at most, and every corner of every cell has its owner.
+/// @param point_keys  shape (n), ascending, n >= 0
+/// @param depth       D in [1, kMaxDepth]
+/// @throws Error over_limit if a level would need more than 2^31 / 8 bricks, or memory runs out
+/// O(n + nodes log nodes); two host round trips a level. Integers only: the same on every device.
+template <exec::Space Exec>
+OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth);
+
+}  // namespace pointskin::octree

@@ -1,0 +1,34 @@
+// Between the host's clouds and meshes and the device's arrays.
+#pragma once
+
+#include <pointskin/cloud.hpp>
+#include <pointskin/mesh.hpp>
+
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+#include "octree/frame.hpp"
+#include "poisson/samples.hpp"
+#include "surface/extract.hpp"
+
+namespace pointskin::detail {
+
+/// A cloud in a space, in the caller's order and coordinates.
+struct DevicePoints {
+  exec::Buffer<Vec3f> positions, normals;
+};
+
+/// Copies a cloud to the space.
+/// @throws Error no_normals if there are none or all have zero length
+template <exec::Space Exec>
+DevicePoints upload(Exec& ex, const Cloud& cloud);
+
+/// Samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys.
+template <exec::Space Exec>
+poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
+                                exec::Buffer<std::uint64_t>& keys);
+
+/// Copies a surface to the host, into world coordinates relative to `origin`.
+template <exec::Space Exec>
+Mesh download(Exec& ex, const surface::Surface& surface, const octree::Frame& frame, const Vec3d& origin);
+
+}  // namespace pointskin::detail

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <pointskin/error.hpp>
+
+#include <cstring>
+
+#include "exec/algorithms.hpp"
+#include "octree/octree_data.hpp"
+#include "points.hpp"
+
+namespace pointskin::detail {
+namespace points {
+
+struct ToUnit {
+  octree::Frame frame;
+  ArrayView<const Vec3f> in;
+  ArrayView<Vec3f> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_unit(in[i]); }
+};
+
+struct ToWorld {
+  octree::Frame frame;
+  ArrayView<const Vec3f> in;
+  ArrayView<Vec3f> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_world(in[i]); }
+};
+
+/// Mixes the bits of a point; equal points have equal hashes. Source: the finaliser of MurmurHash3.
+struct HashPoint {
+  ArrayView<const Vec3f> positions, normals;
+  ArrayView<std::uint64_t> hashes;
+
+  PSK_HD static std::uint64_t mix(std::uint64_t hash, float value) {
+    std::uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    hash = (hash ^ bits) * 0xff51afd7ed558ccdULL;
+    return hash ^ hash >> 33;
+  }
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f p = positions[i];
+    const Vec3f n = normals[i];
+    hashes[i] = mix(mix(mix(mix(mix(mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z), n.x), n.y), n.z);
+  }
+};
+
+struct SquaredLength {
+  ArrayView<const Vec3f> normals;
+  PSK_HD float operator()(std::int64_t i) const {
+    const Vec3f n = normals[i];
+    return n.x * n.x + n.y * n.y + n.z * n.z;
+  }
+};
+struct LargerLength {
+  PSK_HD float operator()(float a, float b) const { return a > b ? a : b; }
+};
+
+}  // namespace points
+
+template <exec::Space Exec>
+DevicePoints upload(Exec& ex, const Cloud& cloud) {
+  if (cloud.positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
+  if (!cloud.has_normals())
+    throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
+  DevicePoints points{exec::make_buffer<Vec3f>(ex, cloud.size()), exec::make_buffer<Vec3f>(ex, cloud.size())};
+  copy_to_device(ex, cloud.positions.data(), points.positions.view());
+  copy_to_device(ex, cloud.normals.data(), points.normals.view());
+  const auto longest = exec::reduce<float>(ex, "upload.normals", cloud.size(),
+                                           points::SquaredLength{points.normals.cview()}, points::LargerLength{});
+  if (!(longest > 0)) throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
+  return points;
+}
+
+template <exec::Space Exec>
+poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
+                                exec::Buffer<std::uint64_t>& keys) {
+  const std::int64_t n = points.positions.size();
+  auto unit = exec::make_buffer<Vec3f>(ex, n);
+  auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
+  for_each(ex, "octree.unit", n, points::ToUnit{frame, points.positions.cview(), unit.view()});
+  for_each(ex, "octree.hash", n,
+           points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
+  octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
+  poisson::Samples samples;
+  samples.positions = exec::make_buffer<Vec3f>(ex, n);
+  samples.normals = exec::make_buffer<Vec3f>(ex, n);
+  exec::gather(ex, unit.cview(), sorted.order.cview(), samples.positions.view());
+  exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
+  keys = std::move(sorted.keys);
+  return samples;
+}
+
+template <exec::Space Exec>
+Mesh download(Exec& ex, const surface::Surface& surface, const octree::Frame& frame, const Vec3d& origin) {
+  const std::int64_t n = surface.positions.size();
+  auto world = exec::make_buffer<Vec3f>(ex, n);
+  for_each(ex, "download.world", n, points::ToWorld{frame, surface.positions.cview(), world.view()});
+  Mesh mesh;
+  mesh.origin = origin;
+  mesh.vertices.resize(static_cast<std::size_t>(n));
+  mesh.normals.resize(static_cast<std::size_t>(surface.normals.size()));
+  mesh.triangles.resize(static_cast<std::size_t>(surface.triangles.size()));
+  copy_to_host(ex, world.cview(), mesh.vertices.data());
+  copy_to_host(ex, surface.normals.cview(), mesh.normals.data());
+  copy_to_host(ex, surface.triangles.cview(), mesh.triangles.data());
+  return mesh;
+}
+
+}  // namespace pointskin::detail

@@ -1,0 +1,72 @@
+// Sampling density: how much surface each sample stands for, and which depth can carry its normal.
+// Source: Kazhdan, Bolitho & Hoppe, "Poisson surface reconstruction", SGP 2006, section 4.5 (estimating local density);
+// PoissonRecon's samples per node.
+#pragma once
+
+#include "exec/space.hpp"
+#include "octree/access.hpp"
+#include "octree/octree_data.hpp"
+#include "poisson/samples.hpp"
+
+namespace pointskin::poisson {
+
+/// Samples around a cell below which an estimate of the density is taken from a coarser level.
+inline constexpr float kReliableSamples = 8;
+
+/// Mean over a cell's width of the sum of squared hats across a plane: turns splatted counts into samples per cell face.
+inline constexpr float kPlaneFactor = 2.0F / 3;
+
+/// Cell faces that the splat kernel averages over in the plane of the surface: 1 / (integral B^2)^2 with integral B^2 = 11/20
+/// for the quadratic B-spline. Samples per node are counted over this area.
+inline constexpr float kKernelFaces = 400.0F / 121;
+
+/// Normals are not splatted at depths coarser than this.
+inline constexpr int kCoarsestSplatDepth = 2;
+
+/// Splatted sample counts of the coarser levels.
+struct Density {
+  int depth = 0;               ///< finest level with counts
+  exec::Buffer<float> counts;  ///< over the nodes of levels 0..depth, level-major: sum of the samples' hats
+};
+
+/// Density as kernels read it.
+struct DensityView {
+  int depth = 0;
+  const float* counts = nullptr;
+
+  /// Samples per finest cell face (cells^-2) at a point of the unit cube, > 0 at samples: from the finest counted level
+  /// whose cells hold kReliableSamples there.
+  PSK_HD float samples_per_cell(const octree::OctreeView& tree, const Vec3f& p) const {
+    int level = depth;
+    float samples = 0;
+    for (; level >= 0; --level) {
+      samples = octree::value_at(tree, counts, p, level) * (1 / kPlaneFactor);
+      if (samples >= kReliableSamples) break;
+    }
+    const int used = level < 0 ? 0 : level;
+    return samples / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - used));
+  }
+};
+
+struct WeighOptions {
+  double samples_per_node = 1.5;  ///< samples the splat kernel must average over, >= 0
+  bool confidence = false;        ///< weight a sample by the length of its normal
+};
+
+/// Splats every sample's hat at the finest level and restricts the counts to levels depth - 2 .. 0.
+/// O(8 n + 8 nodes), no atomics, deterministic.
+template <exec::Space Exec>
+Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const Vec3f> positions);
+
+/// Fills `samples.areas` and `samples.splat_depths` and normalises `samples.normals` in place; with confidence, their
+/// former lengths scale the areas. O(n depth).
+template <exec::Space Exec>
+void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& density, const WeighOptions& options,
+                   Samples& samples);
+
+/// out[i] = samples per finest cell face (cells^-2) at points of the unit cube. O(n depth).
+template <exec::Space Exec>
+void evaluate_density(Exec& ex, const octree::OctreeData& tree, const Density& density, ArrayView<const Vec3f> points,
+                      ArrayView<float> out);
+
+}  // namespace pointskin::poisson

@@ -1,0 +1,8 @@
+#include "exec/cuda_primitives.cuh"
+#include "poisson/divergence_impl.hpp"
+
+namespace pointskin::poisson {
+
+template exec::Buffer<float> splat_divergence(exec::Cuda&, const octree::OctreeData&, const SamplesView&);
+
+}  // namespace pointskin::poisson

@@ -1,0 +1,46 @@
+// Screening: the samples of a cell, collapsed into one, pull the field towards 1/2.
+// Source: Kazhdan & Hoppe, "Screened Poisson surface reconstruction", TOG 2013, section 4.
+// Differs: one collapsed sample a cell (weighted mean position, total weight), so nothing is stored per matrix entry.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+#include "octree/octree_data.hpp"
+#include "poisson/samples.hpp"
+
+namespace pointskin::poisson {
+
+/// All samples of a cell as one. Weight 0: the cell is empty.
+struct CollapsedSample {
+  float x = 0, y = 0, z = 0;  ///< mean position in the cell, in [0, 1]
+  float weight = 0;           ///< sum of areas, in finest cells^2
+};
+
+/// Collapsed samples of one level, kept for bricks that hold samples.
+struct ScreeningView {
+  const std::int32_t* brick_index = nullptr;  ///< (bricks) place among the bricks that hold samples, or -1
+  const CollapsedSample* samples = nullptr;   ///< (8 occupied bricks)
+};
+
+/// Owns the collapsed samples of all levels.
+struct Screening {
+  struct Level {
+    exec::Buffer<std::int32_t> brick_index;
+    exec::Buffer<CollapsedSample> samples;
+  };
+  std::vector<Level> levels;
+
+  [[nodiscard]] ScreeningView view(int depth) const {
+    const Level& level = levels[static_cast<std::size_t>(depth)];
+    return {level.brick_index.data(), level.samples.data()};
+  }
+};
+
+/// Collapses the samples of every cell of every level, finest first; coarser cells collapse their children. O(n + bricks).
+template <exec::Space Exec>
+Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples);
+
+}  // namespace pointskin::poisson

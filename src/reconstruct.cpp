@@ -1,0 +1,98 @@
+#include <pointskin/error.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruct_engine.hpp"
+
+namespace pointskin {
+namespace {
+
+void require(bool holds, const char* name, const char* range) {
+  if (!holds) throw Error(ErrorCode::usage, fmt::format("option {} must be {}", name, range));
+}
+
+std::unique_ptr<detail::Engine> make_engine(const Device& device) {
+  return device.kind == DeviceKind::cuda ? detail::make_cuda_engine(device.index)
+                                         : detail::make_cpu_engine(device.threads);
+}
+
+}  // namespace
+
+class Reconstructor::Impl {
+ public:
+  explicit Impl(Device device) : device_(device), engine_(make_engine(device)) {}
+
+  std::shared_ptr<detail::FieldImpl> solve(const Cloud& cloud, const Options& options) {
+    validate(options);
+    check_memory(cloud.size(), options);
+    report_ = {};
+    return engine_->solve(cloud, options, report_);
+  }
+
+  static void check_memory(std::int64_t points, const Options& options) {
+    const std::int64_t needed = estimate_device_bytes(points, options);
+    if (options.max_memory_bytes > 0 && needed > options.max_memory_bytes)
+      throw Error(ErrorCode::over_limit,
+                  fmt::format("the run would need about {} MB of the {} MB allowed; choose a smaller depth or allow more",
+                              needed / 1'000'000, options.max_memory_bytes / 1'000'000));
+  }
+
+  Device device_;
+  std::unique_ptr<detail::Engine> engine_;
+  RunReport report_;
+};
+
+Reconstructor::Reconstructor(Device device) : impl_(std::make_unique<Impl>(device)) {}
+Reconstructor::~Reconstructor() = default;
+Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
+Reconstructor& Reconstructor::operator=(Reconstructor&&) noexcept = default;
+
+Field Reconstructor::solve(const Cloud& cloud, const Options& options) { return Field(impl_->solve(cloud, options)); }
+
+Mesh Reconstructor::reconstruct(const Cloud& cloud, const Options& options) {
+  return impl_->solve(cloud, options)->extract(&impl_->report_);
+}
+
+std::vector<double> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
+  validate(options);
+  require(times > 0, "repeat", "at least 1");
+  Impl::check_memory(cloud.size(), options);
+  return impl_->engine_->repeat(cloud, options, times);
+}
+
+const RunReport& Reconstructor::report() const { return impl_->report_; }
+const Device& Reconstructor::device() const { return impl_->device_; }
+
+Field::Field(std::shared_ptr<detail::FieldImpl> impl) : impl_(std::move(impl)) {}
+double Field::isovalue() const { return impl_->isovalue(); }
+double Field::cube_size_world() const { return impl_->cube_size_world(); }
+Vec3d Field::cube_lower_world() const { return impl_->cube_lower_world(); }
+std::vector<float> Field::values(const std::vector<Vec3d>& points_world) const { return impl_->values(points_world); }
+Mesh Field::extract() const { return impl_->extract(nullptr); }
+
+void validate(const Options& options) {
+  require(options.depth >= 1 && options.depth <= 20, "depth", "in 1..20");
+  require(options.screening >= 0 && std::isfinite(options.screening), "screening", "at least 0");
+  require(options.iterations >= 1 && options.iterations <= 1000, "iterations", "in 1..1000");
+  require(options.scale >= 1 && options.scale <= 100, "scale", "in 1..100");
+  require(options.samples_per_node >= 0 && options.samples_per_node <= 100, "samples-per-node", "in 0..100");
+  require(options.max_memory_bytes >= 0, "max-memory", "at least 0");
+}
+
+std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) {
+  // A surface crosses about 2.5 cells per face of the finest grid, at most one per point; padding multiplies that by 7,
+  // more where points lie apart; coarser levels add a third.
+  const double faces = std::pow(4.0, options.depth);
+  const double occupied = std::min(2.5 * faces, static_cast<double>(points));
+  const double spread = 7 + 40 * std::max(0.0, 1 - static_cast<double>(points) / (1.5 * faces));
+  const double nodes = 1.34 * std::min(occupied * spread, std::pow(8.0, options.depth)) + 8000;
+  constexpr double kBytesPerNode = 64;
+  constexpr double kBytesPerPoint = 100;
+  return static_cast<std::int64_t>(kBytesPerNode * nodes + kBytesPerPoint * static_cast<double>(points));
+}
+
+}  // namespace pointskin

@@ -1,0 +1,11 @@
+#include "exec/cuda_primitives.cuh"
+#include "points_impl.hpp"
+#include "reconstruct_impl.hpp"
+
+namespace pointskin::detail {
+
+std::unique_ptr<Engine> make_cuda_engine(int index) {
+  return std::make_unique<EngineOn<exec::Cuda>>(std::make_shared<exec::Cuda>(index));
+}
+
+}  // namespace pointskin::detail

@@ -1,0 +1,216 @@
+// The pipeline, once for every space. Reads as the paper's table of contents: octree, implicit function, isosurface.
+#pragma once
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exec/algorithms.hpp"
+#include "field/evaluate.hpp"
+#include "octree/frame.hpp"
+#include "octree/octree_data.hpp"
+#include "points.hpp"
+#include "poisson/density.hpp"
+#include "poisson/divergence.hpp"
+#include "poisson/screening.hpp"
+#include "poisson/solve.hpp"
+#include "reconstruct_engine.hpp"
+#include "surface/extract.hpp"
+
+namespace pointskin::detail {
+
+/// Measures phases; the space is synchronised at their borders.
+template <exec::Space Exec>
+class PhaseClock {
+ public:
+  explicit PhaseClock(Exec& ex) : ex_(ex), start_(Clock::now()) {}
+
+  /// Milliseconds since the last call, and since construction for the first.
+  double lap() {
+    ex_.synchronize();
+    const auto now = Clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Exec& ex_;
+  Clock::time_point start_;
+};
+
+/// Tells the caller where the run is. @throws Error interrupted if it wants to stop
+inline void announce(const Options& options, const char* phase, double fraction) {
+  if (options.progress && !options.progress({phase, fraction}))
+    throw Error(ErrorCode::interrupted, std::string("cancelled before the phase \"") + phase + "\"");
+}
+
+/// Everything that is known of a field after the solve.
+struct FieldData {
+  octree::Frame frame;
+  octree::OctreeData tree;
+  exec::Buffer<float> values;
+  poisson::Density density;
+  double isovalue = 0;
+
+  [[nodiscard]] field::FieldView view(DomainFaces faces) const {
+    return {tree.view(), values.data(), static_cast<float>(isovalue), faces == DomainFaces::closed};
+  }
+};
+
+inline void report_levels(const octree::OctreeData& tree, const std::vector<poisson::LevelSolve>& levels,
+                          RunReport& report) {
+  const octree::OctreeView view = tree.view();
+  report.depth = tree.depth;
+  report.nodes = tree.cells();
+  report.levels.clear();
+  for (const poisson::LevelSolve& level : levels)
+    report.levels.push_back({level.depth, view.levels[level.depth].cells(), level.unknowns, level.iterations,
+                             level.residual_before, level.residual_after});
+}
+
+/// Points to implicit function.
+template <exec::Space Exec>
+FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options, RunReport& report) {
+  PhaseClock clock(ex);
+  FieldData field;
+
+  announce(options, "octree", 0.05);
+  field.frame = octree::fit_frame(ex, points.positions.cview(), options.scale);
+  exec::Buffer<std::uint64_t> keys;
+  poisson::Samples samples = sort_into_cube(ex, points, field.frame, keys);
+  field.tree = octree::build_octree(ex, keys.cview(), options.depth);
+  keys.reset();
+  report.octree_ms = clock.lap();
+
+  announce(options, "splat", 0.25);
+  field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
+  poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
+  if (!options.density) field.density.counts.reset();
+  const exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view());
+  poisson::Screening screening;
+  if (options.screening > 0) screening = poisson::collapse_samples(ex, field.tree, samples.view());
+  report.splat_ms = clock.lap();
+
+  announce(options, "solve", 0.45);
+  poisson::Solution solution = poisson::solve_poisson(ex, field.tree, divergence.cview(), screening,
+                                                      {options.screening, options.iterations, options.residuals});
+  field.isovalue = poisson::mean_at_samples(ex, field.tree, solution.u.cview(), samples.view());
+  field.values = std::move(solution.u);
+  report.solve_ms = clock.lap();
+
+  report.points = points.positions.size();
+  report.isovalue = field.isovalue;
+  report_levels(field.tree, solution.levels, report);
+  return field;
+}
+
+/// Implicit function to mesh, on the device.
+template <exec::Space Exec>
+surface::Surface extract(Exec& ex, const FieldData& field, const Options& options) {
+  announce(options, "extract", 0.8);
+  return surface::extract_surface(ex, field.view(options.domain_faces), {options.linear_fit, options.normals});
+}
+
+template <exec::Space Exec>
+class FieldOn final : public FieldImpl {
+ public:
+  FieldOn(std::shared_ptr<Exec> ex, FieldData data, Options options, const Vec3d& origin)
+      : ex_(std::move(ex)), data_(std::move(data)), options_(std::move(options)), origin_(origin) {}
+
+  [[nodiscard]] double isovalue() const override { return data_.isovalue; }
+  [[nodiscard]] double cube_size_world() const override { return data_.frame.size; }
+  [[nodiscard]] Vec3d cube_lower_world() const override {
+    return {origin_[0] + data_.frame.lower[0], origin_[1] + data_.frame.lower[1], origin_[2] + data_.frame.lower[2]};
+  }
+
+  [[nodiscard]] std::vector<float> values(const std::vector<Vec3d>& points_world) const override {
+    const Vec3d lower = cube_lower_world();
+    std::vector<Vec3f> unit(points_world.size());
+    const auto to_unit = [&](const Vec3d& p, std::size_t a) {
+      return static_cast<float>(std::clamp((p[a] - lower[a]) / data_.frame.size, 0.0, 1.0));
+    };
+    std::transform(points_world.begin(), points_world.end(), unit.begin(),
+                   [&](const Vec3d& p) { return Vec3f{to_unit(p, 0), to_unit(p, 1), to_unit(p, 2)}; });
+    const auto n = static_cast<std::int64_t>(unit.size());
+    auto points = exec::make_buffer<Vec3f>(*ex_, n);
+    auto out = exec::make_buffer<float>(*ex_, n);
+    copy_to_device(*ex_, unit.data(), points.view());
+    field::evaluate(*ex_, data_.view(options_.domain_faces), points.cview(), out.view());
+    std::vector<float> result(unit.size());
+    copy_to_host(*ex_, out.cview(), result.data());
+    return result;
+  }
+
+  [[nodiscard]] Mesh extract(RunReport* report) const override {
+    PhaseClock clock(*ex_);
+    const surface::Surface surface = detail::extract(*ex_, data_, options_);
+    const double extract_ms = clock.lap();
+    if (surface.triangles.empty())
+      throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
+    Mesh mesh = download(*ex_, surface, data_.frame, origin_);
+    if (options_.density) mesh.attributes.push_back(density_at(surface));
+    if (report != nullptr) {
+      report->extract_ms = extract_ms;
+      report->download_ms = clock.lap();
+      report->device_peak_bytes = ex_->pool()->peak_bytes();
+    }
+    return mesh;
+  }
+
+ private:
+  /// Samples per unit of area at the vertices.
+  [[nodiscard]] Attribute density_at(const surface::Surface& surface) const {
+    const std::int64_t n = surface.positions.size();
+    auto out = exec::make_buffer<float>(*ex_, n);
+    poisson::evaluate_density(*ex_, data_.tree, data_.density, surface.positions.cview(), out.view());
+    Attribute density{"density", AttributeType::float32, std::vector<float>(static_cast<std::size_t>(n))};
+    copy_to_host(*ex_, out.cview(), density.values.data());
+    const double cell = data_.frame.size / static_cast<double>(std::int64_t{1} << data_.tree.depth);
+    for (float& value : density.values) value = static_cast<float>(value / (cell * cell));
+    return density;
+  }
+
+  std::shared_ptr<Exec> ex_;
+  FieldData data_;
+  Options options_;
+  Vec3d origin_;
+};
+
+template <exec::Space Exec>
+class EngineOn final : public Engine {
+ public:
+  explicit EngineOn(std::shared_ptr<Exec> ex) : ex_(std::move(ex)) {}
+
+  std::shared_ptr<FieldImpl> solve(const Cloud& cloud, const Options& options, RunReport& report) override {
+    ex_->pool()->reset_peak();
+    PhaseClock clock(*ex_);
+    const DevicePoints points = upload(*ex_, cloud);
+    report.upload_ms = clock.lap();
+    FieldData data = fit_field(*ex_, points, options, report);
+    report.device_peak_bytes = ex_->pool()->peak_bytes();
+    return std::make_shared<FieldOn<Exec>>(ex_, std::move(data), options, cloud.origin);
+  }
+
+  std::vector<double> repeat(const Cloud& cloud, const Options& options, int times) override {
+    const DevicePoints points = upload(*ex_, cloud);
+    std::vector<double> milliseconds;
+    RunReport ignored;
+    for (int i = 0; i < times; ++i) {
+      PhaseClock clock(*ex_);
+      const FieldData data = fit_field(*ex_, points, options, ignored);
+      const surface::Surface surface = detail::extract(*ex_, data, options);
+      milliseconds.push_back(clock.lap());
+    }
+    return milliseconds;
+  }
+
+ private:
+  std::shared_ptr<Exec> ex_;
+};
+
+}  // namespace pointskin::detail

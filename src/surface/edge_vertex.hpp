@@ -1,0 +1,72 @@
+// Where the surface crosses an edge of the octree, and its normal there.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <pointskin/vector.hpp>
+
+#include "field/field_view.hpp"
+#include "surface/leaf_cell.hpp"
+
+namespace pointskin::surface {
+
+/// Crossings keep this distance (in edge lengths) from the edge's ends, so that no two vertices coincide.
+inline constexpr float kCrossingMargin = 1e-3F;
+
+/// An edge that the surface crosses: its end corners and, where they exist, one more corner on either side.
+struct CrossedEdge {
+  int level;
+  std::int32_t before, start, end, after;
+};
+
+PSK_HD inline CrossedEdge crossed_edge(const octree::OctreeView& tree, const EdgeOwner& owner) {
+  const octree::LevelView& l = tree.levels[owner.level];
+  const int x = owner.axis == 0 ? 1 : 0;
+  const int y = owner.axis == 1 ? 1 : 0;
+  const int z = owner.axis == 2 ? 1 : 0;
+  return {owner.level, l.neighbour(owner.node, -x, -y, -z), owner.node, l.neighbour(owner.node, x, y, z),
+          l.neighbour(owner.node, 2 * x, 2 * y, 2 * z)};
+}
+
+/// Root in [0, 1] of u0 + s0 t + (d - s0) t^2, whose values at 0 and 1 have different signs.
+PSK_HD inline float quadratic_root(float u0, float s0, float d) {
+  const float a = d - s0;
+  const float discriminant = s0 * s0 - 4 * a * u0;
+  const float root = std::sqrt(discriminant > 0 ? discriminant : 0);
+  // The well-conditioned form; the other root is outside because the ends' signs differ.
+  const float q = -0.5F * (s0 + (d >= 0 ? root : -root));
+  const float linear = -u0 / d;
+  // For increasing values the wanted root has positive slope: t = u0 / q.
+  const float t = q != 0 ? u0 / q : linear;
+  return t >= 0 && t <= 1 ? t : linear;
+}
+
+/// Parameter in (0, 1) of the crossing. With neighbours on both sides, slopes from central differences, rescaled so that
+/// their mean is the difference of the ends, give a quadratic; else linear interpolation.
+PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedEdge& e, bool linear_fit) {
+  const float u0 = f.value(e.level, e.start) - f.isovalue;
+  const float u1 = f.value(e.level, e.end) - f.isovalue;
+  // Closed at the cube's faces: a corner there counts as outside whatever its value, and the cap lies next to it.
+  if ((u0 < 0) == (u1 < 0)) {
+    const octree::Coordinates c = octree::decode(f.tree.levels[e.level].node_key(e.start));
+    return f.may_be_inside(c, e.level) ? 1 - kCrossingMargin : kCrossingMargin;
+  }
+  const float d = u1 - u0;
+  float t = -u0 / d;
+  if (!linear_fit && e.before >= 0 && e.after >= 0) {
+    const float s0 = 0.5F * (u1 - (f.value(e.level, e.before) - f.isovalue));
+    const float s1 = 0.5F * ((f.value(e.level, e.after) - f.isovalue) - u0);
+    const float mean = 0.5F * (s0 + s1);
+    if (mean != 0) t = quadratic_root(u0, s0 * (d / mean), d);
+  }
+  return t < kCrossingMargin ? kCrossingMargin : t > 1 - kCrossingMargin ? 1 - kCrossingMargin : t;
+}
+
+/// -v / |v|, or zero: values fall towards the outside.
+PSK_HD inline Vec3f outward(const Vec3f& v) {
+  const float length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+  return length > 0 ? Vec3f{-v.x / length, -v.y / length, -v.z / length} : Vec3f{};
+}
+
+}  // namespace pointskin::surface

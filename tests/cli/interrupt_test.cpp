@@ -1,0 +1,141 @@
+// Signals, closed pipes, kills and terminals.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cli/files.hpp"
+#include "cli/program.hpp"
+
+namespace pointskin::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(Interrupt, WhileReadingStdinEndsWith130) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const TemporaryFolder folder;
+    Start start;
+    start.args = {"reconstruct", "-", "-o", folder / "out.ply"};
+    start.keep_stdin_open = true;
+    start.signal = signal;
+    start.signal_after = milliseconds(300);
+    const Result result = run_program(start);
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
+    EXPECT_EQ(folder.names(), std::vector<std::string>{});
+  }
+}
+
+/// Wherever the signal falls: 130 and no file, or done and a whole file.
+TEST(Interrupt, WhileWorkingLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  write_file(folder / "in.ply", ply_bytes(sphere(100000)));
+  Start start;
+  start.args = {"reconstruct", folder / "in.ply", "-o", folder / "out.ply", "--depth", "9", "-q"};
+  const Result whole = run_program(start);
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  const std::string expected = read_file(folder / "out.ply");
+  int interrupted = 0;
+  for (int step = 1; step <= 8; ++step) {
+    std::filesystem::remove(folder / "out.ply");
+    start.signal = SIGINT;
+    start.signal_after = milliseconds(static_cast<int>(whole.seconds * 1000 * step / 9));
+    const Result result = run_program(start);
+    interrupted += result.exit_code == 130 ? 1 : 0;
+    ASSERT_TRUE(result.exit_code == 130 || result.exit_code == 0) << result.exit_code << " " << result.signal;
+    const std::vector<std::string> left =
+        result.exit_code == 0 ? std::vector<std::string>{"in.ply", "out.ply"} : std::vector<std::string>{"in.ply"};
+    EXPECT_EQ(folder.names(), left);
+    if (result.exit_code == 0) {
+      EXPECT_EQ(read_file(folder / "out.ply"), expected);
+    }
+  }
+  EXPECT_GT(interrupted, 0);
+}
+
+TEST(ClosedPipe, IsOutputNotWritten) {
+  const TemporaryFolder folder;
+  write_file(folder / "in.ply", ply_bytes(sphere(3000)));
+  for (const std::vector<std::string>& args : std::vector<std::vector<std::string>>{
+           {"reconstruct", folder / "in.ply", "-o", "-", "--depth", "4"}, {"info", folder / "in.ply"}, {"--help"}}) {
+    Start start;
+    start.args = args;
+    start.close_stdout = true;
+    const Result result = run_program(start);
+    EXPECT_EQ(result.exit_code, 8) << result.signal << result.err;
+    EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
+  }
+}
+
+TEST(FullDisk, IsOutputNotWritten) {
+  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  const TemporaryFolder folder;
+  write_file(folder / "in.ply", ply_bytes(sphere(3000)));
+  const Result result = pointskin_run({"reconstruct", folder / "in.ply", "-o", "/dev/full", "--depth", "4"});
+  EXPECT_EQ(result.exit_code, 8) << result.err;
+}
+
+/// The kill falls anywhere between start and end: the file is the old one or the new one, never half of it.
+TEST(KillNine, LeavesTheOldFileOrTheNewOne) {
+  const TemporaryFolder folder;
+  write_file(folder / "mesh.ply", cube_mesh_ply(150));
+  Start start;
+  start.args = {"convert", folder / "mesh.ply", folder / "out.obj", "-q"};
+  ASSERT_EQ(run_program(start).exit_code, 0);
+  const std::string fresh = read_file(folder / "out.obj");
+  const double seconds = run_program(start).seconds;
+  ASSERT_GT(fresh.size(), 1000000U);
+  int killed = 0;
+  for (int step = 1; step <= 25; ++step) {
+    write_file(folder / "out.obj", "the old file");
+    start.signal = SIGKILL;
+    start.signal_after = milliseconds(static_cast<int>(seconds * 1000 * step / 25));
+    killed += run_program(start).signal == SIGKILL ? 1 : 0;
+    const std::string now = read_file(folder / "out.obj");
+    ASSERT_TRUE(now == "the old file" || now == fresh) << now.size() << " bytes after step " << step;
+  }
+  EXPECT_GT(killed, 0);
+}
+
+TEST(Terminal, ColoursTheNameInErrorsUnlessNoColorIsSet) {
+  Start start;
+  start.args = {"info", "missing.ply"};
+  start.terminal = true;
+  start.environment = {"TERM=xterm", "NO_COLOR="};
+  EXPECT_NE(run_program(start).err.find("\x1b[1;31m"), std::string::npos);
+  start.environment = {"TERM=xterm", "NO_COLOR=1"};
+  EXPECT_EQ(run_program(start).err.find('\x1b'), std::string::npos);
+  start.terminal = false;
+  start.environment = {"TERM=xterm"};
+  EXPECT_EQ(run_program(start).err.find('\x1b'), std::string::npos);
+}
+
+TEST(Terminal, ShowsProgressForLongWorkOnlyAndNeverElsewhere) {
+  const TemporaryFolder folder;
+  write_file(folder / "in.ply", ply_bytes(sphere(400000)));
+  Start start;
+  start.args = {"reconstruct", folder / "in.ply", "-o", folder / "out.ply", "--depth", "9"};
+  const Result plain = run_program(start);
+  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  EXPECT_EQ(plain.err.find('%'), std::string::npos) << plain.err;
+  EXPECT_EQ(plain.err.find('\r'), std::string::npos) << plain.err;
+  start.terminal = true;
+  start.environment = {"TERM=xterm", "NO_COLOR=1"};
+  const Result shown = run_program(start);
+  if (plain.seconds > 3) {
+    EXPECT_NE(shown.err.find(" %"), std::string::npos) << shown.err;
+  }
+  if (shown.seconds < 1) {
+    EXPECT_EQ(shown.err.find(" %"), std::string::npos) << shown.err;
+  }
+  start.args.push_back("-q");
+  EXPECT_EQ(run_program(start).err, "");
+}
+
+}  // namespace
+}  // namespace pointskin::test

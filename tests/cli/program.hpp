@@ -1,0 +1,41 @@
+// Runs the program pointskin and looks at what it says.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pointskin::test {
+
+struct Result {
+  int exit_code = -1;      ///< -1 if a signal ended it
+  int signal = 0;          ///< 0 unless a signal ended it
+  bool timed_out = false;  ///< it was killed because it ran too long
+  std::string out, err;    ///< what it wrote
+  double seconds = 0;
+};
+
+/// How to start the program; what a test does not set is quiet: empty stdin, no terminal.
+struct Start {
+  std::vector<std::string> args;
+  std::string input;                          ///< bytes on stdin
+  bool keep_stdin_open = false;               ///< stdin never ends, as from a person who types nothing
+  bool close_stdout = false;                  ///< the reader of stdout is gone
+  bool terminal = false;                      ///< stderr is a terminal
+  std::vector<std::string> environment;       ///< "NAME=value", added
+  std::string folder;                         ///< working folder; empty: the test's own
+  int signal = 0;                             ///< signal to send...
+  std::chrono::milliseconds signal_after{0};  ///< ...after this time
+  std::chrono::seconds limit{60};
+};
+
+Result run_program(const Start& start);
+
+/// run_program with arguments alone.
+Result pointskin_run(const std::vector<std::string>& args);
+
+/// True if `text` is exactly one line that starts with "pointskin: ".
+bool is_one_error_line(const std::string& text);
+
+}  // namespace pointskin::test

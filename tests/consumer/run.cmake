@@ -1,0 +1,25 @@
+# Installs the build into a folder of its own, then configures, builds and runs a project that knows only that folder.
+#   cmake -DBUILD=... -DSCRATCH=... -DGENERATOR=... -DCXX=... -DFLAGS=... -DTYPE=... -P run.cmake
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE ${SCRATCH})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/installed)
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${SCRATCH}/build -G ${GENERATOR}
+  -DCMAKE_PREFIX_PATH=${SCRATCH}/installed -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_BUILD_TYPE=${TYPE})
+run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
+run(${SCRATCH}/build/consumer)
+
+# The package must not lean on the tree that it was built from.
+file(GLOB_RECURSE package_files ${SCRATCH}/installed/*.cmake)
+foreach(package_file IN LISTS package_files)
+  file(STRINGS ${package_file} lines)
+  foreach(line IN LISTS lines)
+    string(FIND "${line}" "${BUILD}" at)
+    if(NOT at EQUAL -1)
+      message(FATAL_ERROR "${package_file} names the build folder: ${line}")
+    endif()
+  endforeach()
+endforeach()

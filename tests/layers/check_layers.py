@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""Checks who includes whom: data flows io -> cloud -> octree -> poisson -> field -> surface, and no arrow runs back.
+
+    check_layers.py [ROOT]      checks the sources under ROOT (default: this repository); exit 1 and a line per violation
+    check_layers.py --self-test plants every kind of violation in a temporary tree and expects it to be found
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+# What the files of src/<folder> may include with quotes. All may include <pointskin/...>; src/*.cpp may include all.
+LAYERS = {
+    "core": {"core"},
+    "exec": {"core", "exec"},
+    "octree": {"core", "exec", "octree"},
+    "poisson": {"core", "exec", "octree", "poisson"},
+    "field": {"core", "exec", "octree", "field"},
+    "surface": {"core", "exec", "octree", "field", "surface"},
+    "cloud": {"core", "exec", "octree", "field", "cloud"},
+    "mesh": {"core", "exec", "mesh"},
+    "io": {"core", "exec", "io"},
+    "render": {"core", "exec", "mesh", "render"},
+}
+SOURCES = {".hpp", ".cpp", ".cuh", ".cu", ".h"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+COMPILER = re.compile(r"__CUDACC__|__CUDA_ARCH__")
+# Headers of the backends, which only exec/ names; .cu and .cuh files are CUDA by nature.
+BACKEND = re.compile(r"^(cuda|cub/|thrust/|curand|nvtx3/|cooperative_groups|tbb/|oneapi/)")
+
+
+def violations_in(path, where, allowed, may_name_backend, may_ask_compiler):
+    """Yields one line per violation in the file `path`; `allowed` is None where every folder may be included."""
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        place = f"{where}:{number}"
+        if COMPILER.search(line) and not may_ask_compiler:
+            yield f"{place}: asks for the CUDA compiler; only src/core and src/exec may"
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        quote, target = match.groups()
+        folder = target.split("/")[0]
+        if BACKEND.match(target) and not may_name_backend:
+            yield f"{place}: includes {target}; only src/exec names a backend"
+        elif quote == "<" or allowed is None:
+            continue
+        elif folder == "pointskin":
+            yield f'{place}: includes "{target}"; public headers are included as <{target}>'
+        elif "/" not in target:
+            yield f'{place}: includes "{target}"; headers are included by their path from src/'
+        elif folder not in allowed:
+            yield f"{place}: includes {target}; it may include only {', '.join(sorted(allowed))}"
+
+
+def find_violations(root):
+    found = []
+    for path in sorted((root / "src").rglob("*")):
+        if path.suffix not in SOURCES:
+            continue
+        parts = path.relative_to(root / "src").parts
+        where = path.relative_to(root)
+        folder = parts[0] if len(parts) > 1 else None
+        if folder is not None and folder not in LAYERS:
+            found.append(f"{where}: src/{folder} has no layer; say in tests/layers/check_layers.py what it may include")
+            continue
+        is_cuda = path.suffix in {".cu", ".cuh"}
+        found += violations_in(path, where, LAYERS.get(folder), folder == "exec" or is_cuda, folder in {"core", "exec"})
+    for path in sorted((root / "include").rglob("*.h*")):
+        where = path.relative_to(root)
+        found += violations_in(path, where, set(), False, False)
+    return found
+
+
+CLEAN = {
+    "src/core/view.hpp": "#ifdef __CUDACC__\n#endif\n",
+    "src/exec/cpu.cpp": '#include <oneapi/tbb/parallel_for.h>\n#include "core/view.hpp"\n#include <pointskin/a.hpp>\n',
+    "src/surface/mesh.cu": '#include <cub/cub.cuh>\n#include "field/field.hpp"\n',
+    "src/reconstruct.cpp": '#include "surface/mesh.hpp"\n#include "io/ply.hpp"\n',
+    "include/pointskin/a.hpp": "#include <vector>\n#include <pointskin/b.hpp>\n",
+}
+PLANTED = {
+    "src/core/a.hpp": '#include "exec/cpu.hpp"\n',
+    "src/exec/a.hpp": '#include "octree/octree.hpp"\n',
+    "src/octree/a.hpp": '#include "poisson/solve.hpp"\n',
+    "src/poisson/a.hpp": '#include "surface/extract.hpp"\n',
+    "src/io/a.cpp": '#include "octree/octree.hpp"\n',
+    "src/mesh/a.cpp": "#include <oneapi/tbb/parallel_for.h>\n",
+    "src/field/a.hpp": "#ifdef __CUDA_ARCH__\n#endif\n",
+    "src/surface/a.cpp": '#include "surface.hpp"\n',
+    "src/io/b.cpp": '#include "pointskin/io.hpp"\n',
+    "src/reconstruct.cpp": "#include <cuda_runtime.h>\n",
+    "src/unheard_of/a.cpp": "\n",
+    "include/pointskin/a.hpp": "#include <cuda_runtime.h>\n",
+    "include/pointskin/b.hpp": '#include "core/view.hpp"\n',
+}
+
+
+def found_in_tree(files):
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text in files.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text, encoding="utf-8")
+        return find_violations(root)
+
+
+def self_test():
+    failures = [f"clean tree: {line}" for line in found_in_tree(CLEAN)]
+    for name, text in PLANTED.items():
+        found = found_in_tree({name: text})
+        if len(found) != 1 or not found[0].startswith(name):
+            failures.append(f"{name} with {text!r}: expected one violation, found {found}")
+    return failures
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        found = self_test()
+    else:
+        here = pathlib.Path(__file__).resolve()
+        found = find_violations(pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here.parents[2])
+    print("\n".join(found) if found else "layers: no violation")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

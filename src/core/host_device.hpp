@@ -2,11 +2,15 @@
 #pragma once
 
 /// PSK_HD marks functions that run on the host and, when compiled by nvcc, on the device too.
-/// PSK_UNROLL unrolls the loop after it, so that small arrays indexed by its counter stay in registers.
 #ifdef __CUDACC__
 #define PSK_HD __host__ __device__
-#define PSK_UNROLL _Pragma("unroll")
 #else
 #define PSK_HD
+#endif
+
+/// PSK_UNROLL unrolls the loop after it, so that small arrays indexed by its counter stay in registers.
+#ifdef __CUDA_ARCH__
+#define PSK_UNROLL _Pragma("unroll")
+#else
 #define PSK_UNROLL _Pragma("GCC unroll 64")
 #endif

@@ -64,6 +64,13 @@ struct Weigh {
   }
 };
 
+struct DepthOf {
+  ArrayView<const std::uint8_t> depths;
+  PSK_HD std::int32_t operator()(std::int64_t i) const { return depths[i]; }
+};
+struct Smaller {
+  PSK_HD std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a < b ? a : b; }
+};
 struct EvaluateDensity {
   octree::OctreeView tree;
   DensityView density;
@@ -114,6 +121,8 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
                           samples.normals.view(),
                           samples.areas.view(),
                           samples.splat_depths.view()});
+  samples.coarsest_splat_depth = exec::reduce<std::int32_t>(
+      ex, "density.coarsest", n, density::DepthOf{samples.splat_depths.cview()}, density::Smaller{});
 }
 
 template <exec::Space Exec>

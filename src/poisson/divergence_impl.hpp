@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
 #include "octree/neighbourhood.hpp"
@@ -16,12 +18,24 @@ struct Subset {
   ArrayView<const std::int32_t> chosen;  // sample of each rank; empty as above
 };
 
-/// V at the corners of a level times h^3, one array an axis.
+/// V at the corners of a level in units of 1 / h, one array an axis.
 struct VectorField {
   ArrayView<float> axis[3];
 };
 
-/// V at the corners of a brick.
+/// V of the level above, on this level's finer hats. In units of 1 / h it halves.
+struct ProlongField {
+  octree::LevelView level, above;
+  VectorField above_field, field;
+  PSK_HD void operator()(std::int64_t n) const {
+    const std::int32_t parent = level.parent[n >> 3];
+    const int slot = static_cast<int>(n & 7);
+    for (int a = 0; a < 3; ++a)
+      field.axis[a][n] = 0.5F * octree::prolonged(above, above_field.axis[a].data, parent, slot);
+  }
+};
+
+/// Adds the samples of one splat depth to V at the corners of a brick.
 struct SplatNormals {
   octree::LevelView level;
   SamplesView samples;
@@ -40,7 +54,7 @@ struct SplatNormals {
       for (std::int32_t i = begin; i < end; ++i) add(all ? i : subset.chosen[i], origin, scale, sum);
     });
     for (int a = 0; a < 3; ++a)
-      for (int s = 0; s < 8; ++s) field.axis[a][8 * brick + s] = sum[a][s];
+      for (int s = 0; s < 8; ++s) field.axis[a][8 * brick + s] += sum[a][s];
   }
 
   PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
@@ -80,24 +94,40 @@ constexpr Coefficients make_coefficients() {
   return c;
 }
 
-/// b of a level's brick from V at that level.
+/// Divergence of V over the leaf cells of a level, tested with the hats at a brick's corners.
 struct Divergence {
   octree::LevelView level;
+  std::int32_t finer_cell_bricks;  // of the level below; 0 at the finest level, where all cells are leaves
   VectorField field;
   Coefficients coefficients;
   ArrayView<float> b;
 
   PSK_HD void operator()(std::int64_t brick) const {
-    const int unknowns = level.unknowns[brick];
+    // Corners inside the finest level see 8 leaves, so their cells' matrices are summed beforehand.
+    const int inside_corners = finer_cell_bricks == 0 ? level.unknowns[brick] & ~face_corners(brick) : 0;
     float sum[8] = {};
     for (int axis = 0; axis < 3; ++axis) {
       const octree::Neighbourhood v = octree::load_neighbourhood(level, brick, field.axis[axis].data);
       PSK_UNROLL for (int s = 0; s < 8; ++s) {
-        sum[s] += (unknowns >> s & 1) != 0 ? inside(v, s, coefficients.inside[axis])
-                                           : at_border(brick, v, s, coefficients.element[axis]);
+        sum[s] += (inside_corners >> s & 1) != 0 ? inside(v, s, coefficients.inside[axis])
+                                                 : by_cells(brick, v, s, coefficients.element[axis]);
       }
     }
     for (int s = 0; s < 8; ++s) b[8 * brick + s] = sum[s];
+  }
+
+  /// Corners of the brick that lie on a face of the cube: unknowns with fewer than 8 cells.
+  PSK_HD int face_corners(std::int64_t brick) const {
+    const octree::Coordinates c = octree::decode(level.brick_key[brick]);
+    const std::int32_t last = 1 << level.depth;
+    int mask = 0;
+    for (int s = 0; s < 8; ++s) {
+      const std::int32_t x = 2 * c.x + octree::slot_x(s);
+      const std::int32_t y = 2 * c.y + octree::slot_y(s);
+      const std::int32_t z = 2 * c.z + octree::slot_z(s);
+      if (x == 0 || y == 0 || z == 0 || x == last || y == last || z == last) mask |= 1 << s;
+    }
+    return mask;
   }
 
   PSK_HD static float inside(const octree::Neighbourhood& v, int s, const float* coefficient) {
@@ -110,19 +140,25 @@ struct Divergence {
     return sum;
   }
 
-  /// Sum over the existing cells around corner `s` of their element matrices' rows.
-  PSK_HD float at_border(std::int64_t brick, const octree::Neighbourhood& v, int s, const float (&element)[8][8]) const {
+  /// Sum over the leaf cells around corner `s` of their element matrices' rows.
+  PSK_HD float by_cells(std::int64_t brick, const octree::Neighbourhood& v, int s, const float (&element)[8][8]) const {
     float sum = 0;
     for (int t = 0; t < 8; ++t) {
       const int x = octree::slot_x(s) + octree::slot_x(t) - 1;
       const int y = octree::slot_y(s) + octree::slot_y(t) - 1;
       const int z = octree::slot_z(s) + octree::slot_z(t) - 1;
-      const std::int32_t cell = level.neighbour(static_cast<std::int32_t>(8 * brick), x, y, z);
-      if (!level.is_cell(cell)) continue;
+      if (!is_leaf(level.neighbour(static_cast<std::int32_t>(8 * brick), x, y, z))) continue;
       for (int j = 0; j < 8; ++j)  // the corner is number 7 - t of that cell
         sum += element[7 - t][j] * v.at(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
     }
     return sum;
+  }
+
+  PSK_HD bool is_leaf(std::int32_t node) const {
+    if (!level.is_cell(node)) return false;
+    if (finer_cell_bricks == 0) return true;
+    const std::int32_t brick = level.child_brick[node];
+    return brick < 0 || brick >= finer_cell_bricks;
   }
 };
 
@@ -138,13 +174,6 @@ struct AddRestriction {
   }
 };
 
-struct DepthOf {
-  ArrayView<const std::uint8_t> depths;
-  PSK_HD std::int32_t operator()(std::int64_t i) const { return depths[i]; }
-};
-struct Smaller {
-  PSK_HD std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a < b ? a : b; }
-};
 struct IsAtDepth {
   ArrayView<const std::uint8_t> depths;
   int depth;
@@ -175,21 +204,37 @@ ChosenSamples choose_samples(Exec& ex, const SamplesView& samples, int depth) {
   return result;
 }
 
-/// Writes the divergence of what is splatted at `level` to `b`. @returns false, nothing written, if nothing is.
+/// V of one level.
+struct FieldLevel {
+  exec::Buffer<float> values;
+  [[nodiscard]] VectorField view() const {
+    const std::int64_t n = values.size() / 3;
+    return {{values.view().part(0, n), values.view().part(n, n), values.view().part(2 * n, n)}};
+  }
+};
+
+/// V on the levels from `coarsest` to the finest: what is splatted at a depth and, since hats are nested, all that was
+/// splatted at coarser ones.
 template <exec::Space Exec>
-bool splat_level(Exec& ex, const octree::LevelView& level, int tree_depth, const SamplesView& samples,
-                 ArrayView<float> b, bool all_samples) {
-  ChosenSamples subset;
-  if (!all_samples) subset = choose_samples(ex, samples, level.depth);
-  if (subset.none) return false;
-  const std::int64_t n = level.nodes();
-  auto values = exec::make_buffer<float>(ex, 3 * n);
-  const VectorField field{{values.view().part(0, n), values.view().part(n, n), values.view().part(2 * n, n)}};
-  const float area_scale = 1.0F / static_cast<float>(std::int64_t{1} << 2 * (tree_depth - level.depth));
-  for_each(ex, "splat.normals", level.bricks,
-           SplatNormals{level, samples, {subset.rank.cview(), subset.chosen.cview()}, area_scale, field});
-  for_each(ex, "splat.divergence", level.bricks, Divergence{level, field, make_coefficients(), b});
-  return true;
+std::vector<FieldLevel> splat_field(Exec& ex, const octree::OctreeView& tree, const SamplesView& samples, int coarsest) {
+  std::vector<FieldLevel> field(static_cast<std::size_t>(tree.depth) + 1);
+  for (int d = coarsest; d <= tree.depth; ++d) {
+    const octree::LevelView& level = tree.levels[d];
+    FieldLevel& own = field[static_cast<std::size_t>(d)];
+    own.values = exec::make_buffer<float>(ex, 3 * level.nodes());
+    if (d == coarsest)
+      exec::fill(ex, own.values.view(), 0.0F);
+    else
+      for_each(ex, "splat.prolong", level.nodes(),
+               ProlongField{level, tree.levels[d - 1], field[static_cast<std::size_t>(d) - 1].view(), own.view()});
+    ChosenSamples subset;
+    if (coarsest < tree.depth) subset = choose_samples(ex, samples, d);
+    if (subset.none) continue;
+    const float area_scale = 1.0F / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - d));
+    for_each(ex, "splat.normals", level.bricks,
+             SplatNormals{level, samples, {subset.rank.cview(), subset.chosen.cview()}, area_scale, own.view()});
+  }
+  return field;
 }
 
 }  // namespace divergence
@@ -198,18 +243,23 @@ template <exec::Space Exec>
 exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples) {
   using namespace divergence;
   const octree::OctreeView view = tree.view();
+  const int coarsest = samples.coarsest_splat_depth;
+  std::vector<FieldLevel> field = splat_field(ex, view, samples, coarsest);
   auto b = exec::make_buffer<float>(ex, view.nodes);
-  exec::fill(ex, b.view().part(view.finest().first_node, view.finest().nodes()), 0.0F);
-  const int coarsest = exec::reduce<std::int32_t>(ex, "splat.coarsest", samples.positions.size,
-                                                  DepthOf{samples.splat_depths}, Smaller{});
   for (int d = view.depth; d >= 0; --d) {
     const octree::LevelView& level = view.levels[d];
     const ArrayView<float> own = b.view().part(level.first_node, level.nodes());
-    const bool splatted = d >= coarsest && splat_level(ex, level, view.depth, samples, own, coarsest == view.depth);
-    if (d == view.depth) continue;
+    const bool finest = d == view.depth;
+    const bool has_field = d >= coarsest;
+    if (has_field)
+      for_each(ex, "splat.divergence", level.bricks,
+               Divergence{level, finest ? 0 : view.levels[d + 1].cell_bricks, field[static_cast<std::size_t>(d)].view(),
+                          make_coefficients(), own});
+    field[static_cast<std::size_t>(d)] = {};
+    if (finest) continue;
     const octree::LevelView& below = view.levels[d + 1];
     for_each(ex, "splat.restrict", level.nodes(),
-             AddRestriction{level, below, b.data() + below.first_node, splatted, own});
+             AddRestriction{level, below, b.data() + below.first_node, has_field, own});
   }
   return b;
 }

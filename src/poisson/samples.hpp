@@ -16,6 +16,7 @@ struct SamplesView {
   ArrayView<const Vec3f> normals;    ///< unit length, or zero for a sample without a normal
   ArrayView<const float> areas;      ///< area of the surface that the sample stands for, in finest cells^2, > 0
   ArrayView<const std::uint8_t> splat_depths;  ///< depth whose cells hold enough samples to carry the normal
+  int coarsest_splat_depth = 0;                ///< smallest of splat_depths
 };
 
 /// Owns what SamplesView shows.
@@ -24,9 +25,10 @@ struct Samples {
   exec::Buffer<Vec3f> normals;
   exec::Buffer<float> areas;
   exec::Buffer<std::uint8_t> splat_depths;
+  int coarsest_splat_depth = 0;
 
   [[nodiscard]] SamplesView view() const {
-    return {positions.cview(), normals.cview(), areas.cview(), splat_depths.cview()};
+    return {positions.cview(), normals.cview(), areas.cview(), splat_depths.cview(), coarsest_splat_depth};
   }
 };
 

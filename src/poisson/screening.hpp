@@ -16,7 +16,7 @@ namespace pointskin::poisson {
 /// All samples of a cell as one. Weight 0: the cell is empty.
 struct CollapsedSample {
   float x = 0, y = 0, z = 0;  ///< mean position in the cell, in [0, 1]
-  float weight = 0;           ///< sum of areas, in finest cells^2
+  float weight = 0;           ///< sum of areas, in finest cells^2, of sparse samples no more than at their splat depth
 };
 
 /// Collapsed samples of one level, kept for bricks that hold samples.
@@ -39,7 +39,8 @@ struct Screening {
   }
 };
 
-/// Collapses the samples of every cell of every level, finest first; coarser cells collapse their children. O(n + bricks).
+/// Collapses the samples of every cell of every level, finest first: from the samples themselves down to the coarsest splat
+/// depth, then from the collapsed samples of the children. O(n (D - coarsest splat depth + 1) + bricks).
 template <exec::Space Exec>
 Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples);
 

@@ -36,7 +36,8 @@ struct Collapse {
   }
 };
 
-/// The finest cells of an occupied brick.
+/// The cells of an occupied brick, from their samples. A sample sparser than the cells weighs what it weighed at its splat
+/// depth: its share of the surface there, not more, or isolated noisy samples would pull bubbles out of the surface.
 struct CollapsePoints {
   octree::LevelView level;
   SamplesView samples;
@@ -50,9 +51,14 @@ struct CollapsePoints {
                                      origin.z + octree::slot_z(s)};
       Collapse collapse;
       for (std::int32_t p = level.point_begin[8 * brick + s]; p < level.point_begin[8 * brick + s + 1]; ++p)
-        collapse.add(octree::local_in_cell(samples.positions[p], cell, level.depth), samples.areas[p]);
+        collapse.add(octree::local_in_cell(samples.positions[p], cell, level.depth), weight(p));
       out[8 * i + s] = collapse.mean();
     }
+  }
+
+  PSK_HD float weight(std::int32_t p) const {
+    const int sparser = level.depth - samples.splat_depths[p];
+    return samples.areas[p] / static_cast<float>(sparser > 0 ? std::int64_t{1} << 2 * sparser : 1);
   }
 };
 
@@ -99,7 +105,7 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
     exec::fill(ex, own.brick_index.view(), std::int32_t{-1});
     for_each(ex, "screening.index", occupied.size(), IndexBricks{occupied.cview(), own.brick_index.view()});
     own.samples = exec::make_buffer<CollapsedSample>(ex, 8 * occupied.size());
-    if (d == view.depth)
+    if (d >= samples.coarsest_splat_depth)
       for_each(ex, "screening.collapse", occupied.size(),
                CollapsePoints{level, samples, occupied.cview(), own.samples.view()});
     else

@@ -1,0 +1,128 @@
+// The primitives on the CPU: the bodies that all spaces share, and what only threads can get wrong.
+#include "unit/exec/primitives_tests.hpp"
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+
+namespace pointskin::test {
+
+INSTANTIATE_TYPED_TEST_SUITE_P(OnCpu, Primitives, CpuSpaces);
+
+namespace {
+
+constexpr int kThreads[] = {1, 2, 5, 16};
+
+/// One result of every primitive over n elements.
+struct Results {
+  std::vector<std::uint64_t> mapped, scanned, sorted_keys, unique;
+  std::vector<std::int32_t> selected, order;
+  float sum = 0;
+  friend bool operator==(const Results&, const Results&) = default;
+};
+
+Results run_all(int threads, std::int64_t n) {
+  exec::Cpu ex(threads);
+  EXPECT_EQ(ex.threads(), threads);
+  Results results;
+  auto values = upload(ex, random_keys(n, 47, 20));
+  for_each(ex, "test", n, AddHash{values.view()});
+  results.mapped = to_host(ex, values);
+  results.selected = to_host(ex, select(ex, "test", n, KeepSome{3}));
+  auto scanned = exec::make_buffer<std::uint64_t>(ex, n + 1);
+  exclusive_scan(ex, "test", values.cview(), scanned.view());
+  results.scanned = to_host(ex, scanned);
+  auto order = exec::iota(ex, n);
+  auto keys = upload(ex, random_keys(n, 53, 16));
+  sort_pairs(ex, "test", keys, order, 16);
+  results.order = to_host(ex, order);
+  sort_keys(ex, "test", values, 64);
+  results.sorted_keys = to_host(ex, values);
+  results.unique = to_host(ex, exec::sort_unique(ex, "test", std::move(keys), 16));
+  results.sum = exec::reduce<float>(ex, "test", n, RandomFloat{}, AddFloats{});
+  return results;
+}
+
+TEST(PrimitivesOnThreads, GiveTheSameBitsForAnyNumberOfThreads) {
+  for (const std::int64_t n : {1, 63, 2049, 65537, 1'000'000}) {
+    const Results expected = run_all(1, n);
+    for (const int threads : kThreads) EXPECT_TRUE(run_all(threads, n) == expected) << threads << " threads, n = " << n;
+  }
+}
+
+TEST(PrimitivesOnThreads, RunEveryBlockOnce) {
+  for (const int threads : kThreads) {
+    exec::Cpu ex(threads);
+    for (const std::int64_t blocks : {0, 1, 2, 1000}) {
+      std::vector<std::atomic<int>> calls(index(blocks));
+      ex.run_blocks(blocks, [&](std::int64_t b) { ++calls[index(b)]; });
+      for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
+    }
+  }
+}
+
+struct ThrowAt {
+  std::int64_t from, end;
+  void operator()(std::int64_t i) const {
+    if (i >= from && i < end) throw std::runtime_error("index " + std::to_string(i));
+  }
+};
+
+TEST(PrimitivesOnThreads, BringExceptionsToTheCaller) {
+  constexpr std::int64_t kCount = 100'000;
+  for (const int threads : kThreads) {
+    exec::Cpu ex(threads);
+    for (const ThrowAt& thrower : {ThrowAt{77'777, 77'778}, ThrowAt{0, kCount}}) {
+      try {
+        for_each(ex, "test", kCount, thrower);
+        ADD_FAILURE() << "no exception with " << threads << " threads";
+      } catch (const std::runtime_error& error) {
+        const bool one_throws = thrower.end == thrower.from + 1;
+        const std::string expected = one_throws ? "index 77777" : "index ";
+        EXPECT_EQ(std::string(error.what()).substr(0, expected.size()), expected);
+      }
+    }
+    EXPECT_THROW(for_each(ex, "test", 1, ThrowAt{0, 1}), std::runtime_error);
+    EXPECT_EQ(to_host(ex, exec::iota(ex, kCount)), counted(kCount)) << "the space must still work";
+  }
+}
+
+TEST(CpuSpace, RefusesANegativeNumberOfThreads) {
+  try {
+    exec::Cpu ex(-1);
+    ADD_FAILURE() << "no exception";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+  }
+}
+
+TEST(CpuSpace, TakesAllThreadsForZero) { EXPECT_GE(exec::Cpu(0).threads(), 1); }
+
+TEST(CpuPool, ReusesFreedBlocksForRequestsOfAboutTheirSize) {
+  exec::Cpu ex(1);
+  auto block = exec::make_buffer<char>(ex, 1'000'000);
+  const char* data = block.data();
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(data) % 256, 0U);
+  block.reset();
+  block = exec::make_buffer<char>(ex, 1'000'000);
+  EXPECT_EQ(block.data(), data);
+  block.reset();
+  // Four size classes per octave: (917504, 1048576] is one of them.
+  block = exec::make_buffer<char>(ex, 950'000);
+  EXPECT_EQ(block.data(), data);
+  const auto other = exec::make_buffer<char>(ex, 1'000'000);
+  EXPECT_NE(other.data(), data) << "in use";
+}
+
+TEST(CpuPool, AlignsEveryBlock) {
+  exec::Cpu ex(1);
+  std::vector<exec::Buffer<char>> blocks;
+  for (std::int64_t size = 1; size < 200'000; size = size * 3 / 2 + 1) {
+    blocks.push_back(exec::make_buffer<char>(ex, size));
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(blocks.back().data()) % 256, 0U) << size;
+    blocks.back().data()[size - 1] = 1;  // for the address sanitizer
+  }
+}
+
+}  // namespace
+}  // namespace pointskin::test

@@ -11,13 +11,6 @@
 namespace pointskin::detail {
 namespace points {
 
-struct ToUnit {
-  octree::Frame frame;
-  ArrayView<const Vec3f> in;
-  ArrayView<Vec3f> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_unit(in[i]); }
-};
-
 struct ToWorld {
   octree::Frame frame;
   ArrayView<const Vec3f> in;
@@ -76,7 +69,7 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
   const std::int64_t n = points.positions.size();
   auto unit = exec::make_buffer<Vec3f>(ex, n);
   auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
-  for_each(ex, "octree.unit", n, points::ToUnit{frame, points.positions.cview(), unit.view()});
+  for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view()});
   for_each(ex, "octree.hash", n,
            points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());

@@ -9,4 +9,5 @@
 #include <pointskin/mesh.hpp>
 #include <pointskin/octree.hpp>
 #include <pointskin/reconstruct.hpp>
+#include <pointskin/render.hpp>
 #include <pointskin/vector.hpp>

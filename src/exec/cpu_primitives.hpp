@@ -82,19 +82,27 @@ inline constexpr int kDigitBits = 8;
 inline constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
 using Histogram = std::array<std::int64_t, kDigits>;
 
-inline std::size_t digit_of(std::uint64_t key, int shift) { return (key >> shift) & (kDigits - 1); }
+/// The bits of the key that one pass sorts by.
+struct Digit {
+  int shift;
+  std::size_t mask;
+  /// @param bits  of the whole key: the last digit may be narrower
+  Digit(int first_bit, int bits)
+      : shift(first_bit), mask((std::size_t{1} << std::min(kDigitBits, bits - first_bit)) - 1) {}
+  std::size_t operator()(std::uint64_t key) const { return key >> shift & mask; }
+};
 
-/// One stable counting pass over the digit at `shift`: calls move(from, to) for every element.
+/// One stable counting pass over a digit: calls move(from, to) for every element.
 /// @returns false, nothing moved, if all keys share that digit
 template <class Move>
-bool sort_pass(Cpu& ex, int shift, ArrayView<const std::uint64_t> keys, std::vector<Histogram>& offsets,
+bool sort_pass(Cpu& ex, const Digit& digit_of, ArrayView<const std::uint64_t> keys, std::vector<Histogram>& offsets,
                const Move& move) {
   const std::int64_t n = keys.size;
   const auto blocks = static_cast<std::int64_t>(offsets.size());
   ex.run_blocks(blocks, [&](std::int64_t b) {
     Histogram& count = offsets[static_cast<std::size_t>(b)];
     count.fill(0);
-    for (std::int64_t i = b * kCpuSortBlock; i < std::min(n, (b + 1) * kCpuSortBlock); ++i) ++count[digit_of(keys[i], shift)];
+    for (std::int64_t i = b * kCpuSortBlock; i < std::min(n, (b + 1) * kCpuSortBlock); ++i) ++count[digit_of(keys[i])];
   });
   std::int64_t next = 0;
   for (std::size_t digit = 0; digit < kDigits; ++digit) {
@@ -105,7 +113,7 @@ bool sort_pass(Cpu& ex, int shift, ArrayView<const std::uint64_t> keys, std::vec
   ex.run_blocks(blocks, [&](std::int64_t b) {
     Histogram& offset = offsets[static_cast<std::size_t>(b)];
     for (std::int64_t i = b * kCpuSortBlock; i < std::min(n, (b + 1) * kCpuSortBlock); ++i) {
-      move(i, offset[digit_of(keys[i], shift)]++);
+      move(i, offset[digit_of(keys[i])]++);
     }
   });
   return true;
@@ -126,7 +134,7 @@ void sort_pairs(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, Buf
       other_keys.data()[to] = keys.data()[from];
       other_values.data()[to] = values.data()[from];
     };
-    if (detail::sort_pass(ex, shift, keys.cview(), offsets, move)) {
+    if (detail::sort_pass(ex, detail::Digit(shift, bits), keys.cview(), offsets, move)) {
       keys.swap(other_keys);
       values.swap(other_values);
     }
@@ -139,7 +147,7 @@ inline void sort_keys(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& key
   std::vector<detail::Histogram> offsets(static_cast<std::size_t>(block_count(keys.size(), kCpuSortBlock)));
   for (int shift = 0; shift < bits; shift += detail::kDigitBits) {
     const auto move = [&](std::int64_t from, std::int64_t to) { other.data()[to] = keys.data()[from]; };
-    if (detail::sort_pass(ex, shift, keys.cview(), offsets, move)) keys.swap(other);
+    if (detail::sort_pass(ex, detail::Digit(shift, bits), keys.cview(), offsets, move)) keys.swap(other);
   }
 }
 

@@ -72,7 +72,12 @@ class Buffer {
   }
 
  private:
-  [[nodiscard]] std::size_t bytes() const noexcept { return static_cast<std::size_t>(size_) * sizeof(T); }
+  /// Never wraps around: a size beyond all memory stays one, and the pool refuses it.
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    constexpr std::size_t kBeyondAllMemory = std::size_t{1} << 62;
+    const auto count = static_cast<std::size_t>(size_);
+    return count > kBeyondAllMemory / sizeof(T) ? kBeyondAllMemory : count * sizeof(T);
+  }
 
   std::shared_ptr<MemoryPool> pool_;
   T* data_ = nullptr;

@@ -6,9 +6,11 @@
 //   select(ex, "label", n, keep)               Buffer<int32> of the i in [0, n) with keep(i), ascending
 //   exclusive_scan(ex, "label", in, out)       out[i] = in[0] + ... + in[i-1]; out may have one element more: the total
 //   sort_pairs(ex, "label", keys, values, bits)  stable ascending radix sort by the lowest `bits` bits of uint64 keys
+//   sort_keys(ex, "label", keys, bits)           the same for keys alone
 //   copy_to_host / copy_to_device / copy       checked copies on the space's stream
 //
-// and, written once over for_each, in exec/algorithms.hpp: fill, gather, reduce, sort_keys, unique, run_length_encode.
+// and, written once over for_each, in exec/algorithms.hpp: fill, gather, iota, reduce, read_element,
+// run_starts (run-length encoding: a run's length is the distance to the next start) and sort_unique.
 #pragma once
 
 #include <concepts>

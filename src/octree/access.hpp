@@ -20,7 +20,7 @@ PSK_HD inline float prolonged(const LevelView& level_above, const float* above, 
     if ((s & ~slot) != 0) continue;
     ++count;
     const std::int32_t corner = level_above.neighbour(parent, slot_x(s), slot_y(s), slot_z(s));
-    if (corner >= 0) sum += above[corner];  // only missing for nodes outside of the cube, which nobody reads
+    if (corner >= 0) sum += above[corner];  // corners of cells have all; other nodes are never read
   }
   return sum * (1.0F / static_cast<float>(count));
 }

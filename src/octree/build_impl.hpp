@@ -214,10 +214,12 @@ inline void check_limit(std::int64_t bricks, int depth) {
 /// Keys of the cell bricks of level `depth`, given the sorted keys of the cells that they must surround.
 template <exec::Space Exec>
 exec::Buffer<std::uint64_t> cell_bricks_around(Exec& ex, ArrayView<const std::uint64_t> cells, int depth) {
-  check_limit(8 * cells.size, depth);
+  check_limit(cells.size, depth);  // eight candidates a cell are counted with 32 bits
   auto touched = exec::make_buffer<std::uint64_t>(ex, 8 * cells.size);
   for_each(ex, "octree.touch", cells.size, TouchedBricks{cells, 1 << (depth - 1), touched.view()});
-  return exec::sort_unique(ex, "octree.bricks", std::move(touched), 3 * (depth - 1));
+  exec::Buffer<std::uint64_t> bricks = exec::sort_unique(ex, "octree.bricks", std::move(touched), 3 * (depth - 1));
+  check_limit(bricks.size(), depth);
+  return bricks;
 }
 
 /// Keys of all bricks of a complete level.

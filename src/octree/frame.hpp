@@ -1,6 +1,8 @@
 // The working cube: where the unit cube of the octree lies in the cloud's coordinates.
 #pragma once
 
+#include <cstdint>
+
 #include <pointskin/vector.hpp>
 
 #include "core/array_view.hpp"
@@ -24,6 +26,14 @@ struct Frame {
             static_cast<float>(lower[1] + static_cast<double>(unit.y) * size),
             static_cast<float>(lower[2] + static_cast<double>(unit.z) * size)};
   }
+};
+
+/// Moves points into the unit cube.
+struct ToUnit {
+  Frame frame;
+  ArrayView<const Vec3f> in;
+  ArrayView<Vec3f> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_unit(in[i]); }
 };
 
 /// Cube around the bounding box of `positions`, `scale` times as wide as its longest side, with the same centre.

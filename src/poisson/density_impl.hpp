@@ -21,8 +21,11 @@ struct SplatCounts {
     float sum[8] = {};
     for_points_around(level, brick, [&](std::int32_t first, std::int32_t last) {
       for (std::int32_t i = first; i < last; ++i) {
-        const BrickWeights weights = brick_weights<HatKernel>(positions[i], origin, scale);
-        for (int s = 0; s < 8; ++s) sum[s] += weights.at(s);
+        const BrickSample sample(positions[i], origin, scale);
+        if (!sample.reaches<HatKernel>()) continue;
+        float w[8];
+        sample.weights<HatKernel>(w);
+        for (int s = 0; s < 8; ++s) sum[s] += w[s];
       }
     });
     for (int s = 0; s < 8; ++s) counts[8 * brick + s] = sum[s];

@@ -58,14 +58,15 @@ struct SplatNormals {
   }
 
   PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
-    const BrickWeights weights = brick_weights<QuadraticKernel>(samples.positions[sample], origin, scale);
+    const BrickSample at(samples.positions[sample], origin, scale);
+    if (!at.reaches<QuadraticKernel>()) return;
+    float w[8];
+    at.weights<QuadraticKernel>(w);
     const Vec3f n = samples.normals[sample];
     const float area = samples.areas[sample] * area_scale;
     const float v[3] = {-area * n.x, -area * n.y, -area * n.z};
-    for (int s = 0; s < 8; ++s) {
-      const float w = weights.at(s);
-      for (int a = 0; a < 3; ++a) sum[a][s] += w * v[a];
-    }
+    for (int a = 0; a < 3; ++a)
+      for (int s = 0; s < 8; ++s) sum[a][s] += w[s] * v[a];
   }
 };
 

@@ -12,16 +12,18 @@
 
 namespace pointskin::poisson {
 
-/// Linear B-spline, the basis itself; reach 1 cell.
+/// Linear B-spline, the basis itself.
 struct HatKernel {
+  static constexpr float kReach = 1;
   PSK_HD float operator()(float x) const {
     const float a = x < 0 ? -x : x;
     return a < 1 ? 1 - a : 0;
   }
 };
 
-/// Quadratic B-spline; reach 1.5 cells.
+/// Quadratic B-spline.
 struct QuadraticKernel {
+  static constexpr float kReach = 1.5F;
   PSK_HD float operator()(float x) const {
     const float a = x < 0 ? -x : x;
     if (a < 0.5F) return 0.75F - a * a;
@@ -30,28 +32,37 @@ struct QuadraticKernel {
   }
 };
 
-/// Weights of one sample on the two corners that a brick has along each axis.
-struct BrickWeights {
-  float axis[3][2];
-  [[nodiscard]] PSK_HD float at(int slot) const {
-    return axis[0][octree::slot_x(slot)] * axis[1][octree::slot_y(slot)] * axis[2][octree::slot_z(slot)];
+/// A sample relative to a brick's first corner, in cells.
+struct BrickSample {
+  float rel[3];
+
+  /// @param origin  coordinates of the brick's first node
+  /// @param scale   2^depth
+  PSK_HD BrickSample(const Vec3f& p, const octree::Coordinates& origin, float scale)
+      : rel{p.x * scale - static_cast<float>(origin.x), p.y * scale - static_cast<float>(origin.y),
+            p.z * scale - static_cast<float>(origin.z)} {}
+
+  /// True if the kernel gives some corner of the brick a weight.
+  template <class Kernel>
+  [[nodiscard]] PSK_HD bool reaches() const {
+    constexpr float kLower = -Kernel::kReach;
+    constexpr float kUpper = 1 + Kernel::kReach;
+    return rel[0] > kLower && rel[0] < kUpper && rel[1] > kLower && rel[1] < kUpper && rel[2] > kLower && rel[2] < kUpper;
+  }
+
+  /// Weights on the brick's 8 corners.
+  template <class Kernel>
+  PSK_HD void weights(float (&w)[8]) const {
+    const Kernel kernel;
+    float axis[3][2];
+    for (int a = 0; a < 3; ++a) {
+      axis[a][0] = kernel(rel[a]);
+      axis[a][1] = kernel(rel[a] - 1);
+    }
+    for (int s = 0; s < 8; ++s)
+      w[s] = axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
   }
 };
-
-/// @param origin  coordinates of the brick's first node
-/// @param scale   2^depth
-template <class Kernel>
-PSK_HD BrickWeights brick_weights(const Vec3f& p, const octree::Coordinates& origin, float scale) {
-  const Kernel kernel;
-  const float rel[3] = {p.x * scale - static_cast<float>(origin.x), p.y * scale - static_cast<float>(origin.y),
-                        p.z * scale - static_cast<float>(origin.z)};
-  BrickWeights weights{};
-  for (int a = 0; a < 3; ++a) {
-    weights.axis[a][0] = kernel(rel[a]);
-    weights.axis[a][1] = kernel(rel[a] - 1);
-  }
-  return weights;
-}
 
 /// Coordinates of a brick's first node.
 PSK_HD inline octree::Coordinates brick_origin(const octree::LevelView& level, std::int64_t brick) {

@@ -363,8 +363,11 @@ TYPED_TEST_P(OctreeOn, SortsPointsByKeyAndTieBreakFromAnyOrder) {
       }
       const octree::SortedPoints sorted = sort_cloud(ex, positions, ties);
       const std::vector<std::uint64_t> keys = to_host(ex, sorted.keys);
+      std::vector<std::int32_t> order = to_host(ex, sorted.order);
       std::vector<Point> found;
-      for (const std::int32_t i : to_host(ex, sorted.order)) found.push_back(shuffled.at(static_cast<std::size_t>(i)));
+      for (const std::int32_t i : order) found.push_back(shuffled.at(static_cast<std::size_t>(i)));
+      std::sort(order.begin(), order.end());
+      ASSERT_EQ(std::unique(order.begin(), order.end()) - order.begin(), std::ssize(points)) << "every point once";
       ASSERT_EQ(found.size(), keys.size());
       for (std::size_t i = 0; i < keys.size(); ++i) {
         ASSERT_EQ(keys[i], morton(cell_of(found[i].first, octree::kPointBits)));

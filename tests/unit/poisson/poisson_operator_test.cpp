@@ -30,13 +30,6 @@ struct Assembled {
   }
 };
 
-struct Case {
-  std::string name;
-  SmallTree tree;
-  int level;
-  double screening;  // w
-};
-
 /// The matrix's column of node n: minus the change of the residual, in the bricks around n.
 void add_column(const poisson::LevelSystem& system, std::int64_t n, std::vector<float>& u,
                 const std::vector<Eigen::Index>& row_of, Assembled& out) {
@@ -149,8 +142,10 @@ TEST(Operator, LeavesTheConstantOneHalfWithoutResidual) {  // the screening's ta
     const double tolerance = 1e-6 * (1 + a.diagonal.maxCoeff());
     for (std::int32_t brick = 0; brick < system.level.bricks; ++brick) {
       const auto r = poisson::brick_residual(system, brick, octree::load_neighbourhood(system.level, brick, half.data()));
-      for (int s = 0; s < 8; ++s)
-        if (test::is_unknown(system.level, 8 * std::int64_t{brick} + s)) ASSERT_NEAR(r.residual[s], 0, tolerance);
+      for (int s = 0; s < 8; ++s) {
+        if (!test::is_unknown(system.level, 8 * std::int64_t{brick} + s)) continue;
+        ASSERT_NEAR(r.residual[s], 0, tolerance);
+      }
     }
   });
 }

@@ -1,6 +1,7 @@
 // The 27-point stencils against element matrices integrated here by Gauss quadrature, and what every such operator must do.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -114,7 +115,7 @@ TEST(Stencil, DivergenceOfAConstantFieldIsZero) {
 }
 
 // integral grad x . grad phi = boundary integral of phi times the normal's x: nothing inside, and minus or plus the hat's
-// integral over the lower or upper face, a quarter of it for each of the other axes that is at a face... half an axis.
+// integral over the face at the lower or upper face, halved for each of the other axes that is at a face as well.
 TEST(Stencil, LaplacianOfALinearFunctionIsItsFluxThroughTheFace) {
   const std::array<double, 3> outward{0, -1, 1};
   const std::array<double, 3> integral{1, 0.5, 0.5};

@@ -45,6 +45,18 @@ struct SmallTree {
       samples.areas.data()[i] = area;
       samples.splat_depths.data()[i] = static_cast<std::uint8_t>(splat_depth);
     }
+    samples.coarsest_splat_depth = splat_depth;
+  }
+
+  /// Gives samples areas between 0.5 and 1.5 and splat depths between `coarsest` and the tree's depth; at least one has the
+  /// coarsest.
+  void weigh_randomly(Random& random, int coarsest) {
+    weigh(1, coarsest);
+    for (std::int64_t i = 0; i < samples.areas.size(); ++i) {
+      samples.areas.data()[i] = static_cast<float>(random.in(0.5, 1.5));
+      if (i > 0)
+        samples.splat_depths.data()[i] = static_cast<std::uint8_t>(coarsest + random.below(view.depth - coarsest + 1));
+    }
   }
 
   exec::Cpu ex{2};

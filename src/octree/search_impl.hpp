@@ -1,0 +1,219 @@
+#pragma once
+
+#include <pointskin/error.hpp>
+
+#include <limits>
+
+#include "exec/algorithms.hpp"
+#include "octree/access.hpp"
+#include "octree/search.hpp"
+
+namespace pointskin::octree {
+namespace search {
+
+/// A cell is scanned point by point when it holds no more than this.
+inline constexpr std::int32_t kScanPoints = 16;
+
+PSK_HD inline float squared_distance(const Vec3f& a, const Vec3f& b) {
+  const float x = a.x - b.x;
+  const float y = a.y - b.y;
+  const float z = a.z - b.z;
+  return x * x + y * y + z * z;
+}
+
+/// Squared distance to a cell, a little less than exact so that rounding prunes nothing.
+PSK_HD inline float squared_distance_to_cell(const Vec3f& q, const Coordinates& c, int depth) {
+  const float width = 1.0F / static_cast<float>(1 << depth);
+  const auto gap = [&](float v, std::int32_t lower) {
+    const float below = static_cast<float>(lower) * width - v;
+    const float above = v - static_cast<float>(lower + 1) * width;
+    return below > 0 ? below : above > 0 ? above : 0.0F;
+  };
+  const float x = gap(q.x, c.x);
+  const float y = gap(q.y, c.y);
+  const float z = gap(q.z, c.z);
+  return (x * x + y * y + z * z) * (1 - 1e-5F);
+}
+
+/// Calls scan(first, last) for the points of every cell that `prune(squared distance)` lets pass, nearest children first.
+template <class Prune, class Scan>
+PSK_HD void walk(const SearchView& points, const Vec3f& q, const Prune& prune, const Scan& scan) {
+  struct Entry {
+    std::int32_t cell;
+    std::int32_t depth;
+  };
+  Entry stack[7 * kMaxDepth + 8];
+  int top = 0;
+  stack[top++] = {0, 0};
+  while (top > 0) {
+    const Entry entry = stack[--top];
+    const LevelView& level = points.tree.levels[entry.depth];
+    const std::int32_t first = level.point_begin[entry.cell];
+    const std::int32_t last = level.point_begin[entry.cell + 1];
+    if (first == last) continue;
+    const Coordinates c = decode(level.node_key(entry.cell));
+    if (prune(squared_distance_to_cell(q, c, entry.depth))) continue;
+    if (last - first <= kScanPoints || !points.tree.is_split(entry.depth, entry.cell)) {
+      scan(first, last);
+      continue;
+    }
+    const float half = 0.5F / static_cast<float>(1 << entry.depth);
+    const int near = slot_of(q.x >= static_cast<float>(2 * c.x + 1) * half ? 1 : 0,
+                             q.y >= static_cast<float>(2 * c.y + 1) * half ? 1 : 0,
+                             q.z >= static_cast<float>(2 * c.z + 1) * half ? 1 : 0);
+    const std::int32_t children = 8 * level.child_brick[entry.cell];
+    for (int i = 7; i >= 0; --i) stack[top++] = {children + (near ^ i), entry.depth + 1};
+  }
+}
+
+struct FindNearest {
+  SearchView points;
+  ArrayView<const Vec3f> queries;
+  int k;
+  ArrayView<std::int32_t> ids;
+  ArrayView<float> squared;
+
+  PSK_HD void operator()(std::int64_t query) const {
+    const Vec3f q = queries[query];
+    std::int32_t* id = ids.data + query * k;
+    float* distance = squared.data + query * k;
+    int found = 0;
+    const auto prune = [&](float d) { return found == k && d > distance[k - 1]; };
+    walk(points, q, prune, [&](std::int32_t first, std::int32_t last) {
+      for (std::int32_t p = first; p < last; ++p)
+        found = insert(points.ids[p], squared_distance(q, points.positions[p]), id, distance, found);
+    });
+    for (; found < k; ++found) id[found] = -1;
+  }
+
+  /// Keeps the list sorted by (distance, id). @returns the new number of entries
+  PSK_HD int insert(std::int32_t new_id, float d, std::int32_t* id, float* distance, int found) const {
+    const auto before = [&](int i) { return d < distance[i] || (d == distance[i] && new_id < id[i]); };
+    if (found == k && !before(k - 1)) return found;
+    int place = found < k ? found : k - 1;
+    for (; place > 0 && before(place - 1); --place) {
+      id[place] = id[place - 1];
+      distance[place] = distance[place - 1];
+    }
+    id[place] = new_id;
+    distance[place] = d;
+    return found < k ? found + 1 : k;
+  }
+};
+
+struct CountWithin {
+  SearchView points;
+  ArrayView<const Vec3f> queries;
+  float squared_radius;
+  ArrayView<std::int32_t> count;
+  PSK_HD void operator()(std::int64_t query) const {
+    const Vec3f q = queries[query];
+    std::int32_t sum = 0;
+    const auto prune = [&](float d) { return d > squared_radius; };
+    walk(points, q, prune, [&](std::int32_t first, std::int32_t last) {
+      for (std::int32_t p = first; p < last; ++p)
+        if (squared_distance(q, points.positions[p]) <= squared_radius) ++sum;
+    });
+    count[query] = sum;
+  }
+};
+
+struct WriteWithin {
+  SearchView points;
+  ArrayView<const Vec3f> queries;
+  float squared_radius;
+  ArrayView<const std::int32_t> begin;
+  ArrayView<std::int32_t> order;  // place of the point among the sorted ones
+  PSK_HD void operator()(std::int64_t query) const {
+    const Vec3f q = queries[query];
+    const std::int32_t from = begin[query];
+    std::int32_t to = from;
+    const auto prune = [&](float d) { return d > squared_radius; };
+    walk(points, q, prune, [&](std::int32_t first, std::int32_t last) {
+      for (std::int32_t p = first; p < last; ++p)
+        if (squared_distance(q, points.positions[p]) <= squared_radius) order[to++] = p;
+    });
+    sort(from, to);
+  }
+
+  /// Cells come nearest first; the result is in key order. Heap sort: no recursion, no extra memory.
+  PSK_HD void sort(std::int32_t from, std::int32_t to) const {
+    std::int32_t* heap = order.data + from;
+    const std::int32_t n = to - from;
+    for (std::int32_t i = n / 2 - 1; i >= 0; --i) sift(heap, i, n);
+    for (std::int32_t end = n - 1; end > 0; --end) {
+      const std::int32_t largest = heap[0];
+      heap[0] = heap[end];
+      heap[end] = largest;
+      sift(heap, 0, end);
+    }
+  }
+  PSK_HD static void sift(std::int32_t* heap, std::int32_t i, std::int32_t n) {
+    for (std::int32_t child = 2 * i + 1; child < n; child = 2 * i + 1) {
+      if (child + 1 < n && heap[child + 1] > heap[child]) ++child;
+      if (heap[i] >= heap[child]) return;
+      const std::int32_t swapped = heap[i];
+      heap[i] = heap[child];
+      heap[child] = swapped;
+      i = child;
+    }
+  }
+};
+
+struct DescribeWithin {
+  SearchView points;
+  ArrayView<const Vec3f> queries;
+  ArrayView<const std::int32_t> begin;
+  ArrayView<std::int32_t> ids;  // holds places, receives ids
+  ArrayView<float> squared;
+  PSK_HD void operator()(std::int64_t query) const {
+    for (std::int32_t i = begin[query]; i < begin[query + 1]; ++i) {
+      const std::int32_t place = ids[i];
+      squared[i] = squared_distance(queries[query], points.positions[place]);
+      ids[i] = points.ids[place];
+    }
+  }
+};
+
+struct CountOf {
+  ArrayView<const std::int32_t> count;
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return count[i]; }
+};
+struct AddCounts {
+  PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
+};
+
+}  // namespace search
+
+template <exec::Space Exec>
+void find_nearest(Exec& ex, const SearchView& points, ArrayView<const Vec3f> queries, int k,
+                  ArrayView<std::int32_t> ids, ArrayView<float> squared) {
+  for_each(ex, "search.nearest", queries.size, search::FindNearest{points, queries, k, ids, squared});
+}
+
+template <exec::Space Exec>
+WithinRadius find_within(Exec& ex, const SearchView& points, ArrayView<const Vec3f> queries, float radius) {
+  WithinRadius result;
+  auto count = exec::make_buffer<std::int32_t>(ex, queries.size);
+  result.begin = exec::make_buffer<std::int32_t>(ex, queries.size + 1);
+  if (queries.empty()) {
+    exec::fill(ex, result.begin.view(), std::int32_t{0});
+    return result;
+  }
+  const float squared = radius * radius;
+  for_each(ex, "search.count", queries.size, search::CountWithin{points, queries, squared, count.view()});
+  const auto total = exec::reduce<std::int64_t>(ex, "search.count", queries.size, search::CountOf{count.cview()},
+                                                search::AddCounts{});
+  if (total > std::numeric_limits<std::int32_t>::max())
+    throw Error(ErrorCode::over_limit, "more than 2^31 neighbours in all; choose a smaller radius or fewer queries");
+  exclusive_scan(ex, "search.count", count.cview(), result.begin.view());
+  result.ids = exec::make_buffer<std::int32_t>(ex, total);
+  result.squared = exec::make_buffer<float>(ex, total);
+  for_each(ex, "search.write", queries.size,
+           search::WriteWithin{points, queries, squared, result.begin.cview(), result.ids.view()});
+  for_each(ex, "search.write", queries.size,
+           search::DescribeWithin{points, queries, result.begin.cview(), result.ids.view(), result.squared.view()});
+  return result;
+}
+
+}  // namespace pointskin::octree

@@ -1,0 +1,61 @@
+// Reconstructions on the CPU, and their comparison byte by byte.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <pointskin/error.hpp>
+#include <pointskin/io.hpp>
+#include <pointskin/mesh.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pointskin::test {
+
+inline Mesh reconstructed(const Cloud& cloud, const Options& options, int threads = 2) {
+  return Reconstructor(Device::cpu(threads)).reconstruct(cloud, options);
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+/// Vertices, normals, triangles and attributes; the origins are not compared.
+inline void expect_same_bytes(const Mesh& a, const Mesh& b) {
+  EXPECT_EQ(a.vertices.size(), b.vertices.size());
+  EXPECT_EQ(a.triangles.size(), b.triangles.size());
+  EXPECT_TRUE(same_bytes(a.vertices, b.vertices));
+  EXPECT_TRUE(same_bytes(a.normals, b.normals));
+  EXPECT_TRUE(same_bytes(a.triangles, b.triangles));
+  ASSERT_EQ(a.attributes.size(), b.attributes.size());
+  for (std::size_t i = 0; i < a.attributes.size(); ++i) {
+    EXPECT_EQ(a.attributes[i].name, b.attributes[i].name);
+    EXPECT_TRUE(same_bytes(a.attributes[i].values, b.attributes[i].values));
+  }
+}
+
+/// Code of the Error that `run` throws; none if it returns.
+template <class Run>
+std::optional<ErrorCode> error_of(const Run& run) {
+  try {
+    run();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()), "");
+    return error.code();
+  }
+  return std::nullopt;
+}
+
+/// A public test cloud of ../shared/data, which is not part of the project; none if it is absent.
+inline std::optional<Cloud> shared_cloud(const std::string& name) {
+  const std::string path = std::string(POINTSKIN_SOURCE_DIR) + "/../shared/data/" + name + ".ply";
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  return read_cloud(path);
+}
+
+}  // namespace pointskin::test

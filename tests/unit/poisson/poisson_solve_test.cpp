@@ -1,0 +1,276 @@
+// The level-by-level solve against direct solves and against a solution that is known.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "exec/cpu_primitives.hpp"
+#include "exec/algorithms.hpp"
+#include "poisson/density.hpp"
+#include "poisson/divergence.hpp"
+#include "poisson/screening.hpp"
+#include "poisson/solve.hpp"
+#include "unit/poisson/reference_system.hpp"
+#include "unit/poisson/small_tree.hpp"
+
+namespace pointskin {
+namespace {
+
+using test::SmallTree;
+
+/// A sphere's samples, ready to be solved.
+struct Problem {
+  explicit Problem(int depth, std::int64_t points = 1500) : tree(test::sphere_tree(points, 0.3, depth)) {
+    const poisson::Density density = poisson::splat_density(tree.ex, tree.tree, tree.samples.positions.cview());
+    poisson::weigh_samples(tree.ex, tree.tree, density, {1.5, false}, tree.samples);
+    b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view());
+    screening = poisson::collapse_samples(tree.ex, tree.tree, tree.samples.view());
+  }
+  poisson::Solution solve(const poisson::SolveOptions& options) {
+    return poisson::solve_poisson(tree.ex, tree.tree, b.cview(), screening, options);
+  }
+
+  SmallTree tree;
+  exec::Buffer<float> b;
+  poisson::Screening screening;
+};
+
+Eigen::VectorXd level_values(const octree::LevelView& level, const float* all) {
+  Eigen::VectorXd values(level.nodes());
+  for (std::int64_t n = 0; n < level.nodes(); ++n) values[n] = static_cast<double>(all[level.first_node + n]);
+  return values;
+}
+
+/// Largest difference over the unknowns.
+double difference(const test::ReferenceSystem& system, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  double worst = 0;
+  for (const std::int64_t n : system.unknowns) worst = std::max(worst, std::abs(a[n] - b[n]));
+  return worst;
+}
+
+// The field runs from 0 to 1. 1000 Chebyshev iterations damp everything above 0.005 of the bound to nothing; what is left is the
+// rounding of float, amplified by the condition of the complete levels, some 10^3 at depth 4.
+constexpr double kConverged = 1e-3;
+
+TEST(Solve, EqualsTheDirectGalerkinSolutionOfEveryLevelWithScreening) {
+  Problem problem(6);
+  const double w = 4;
+  const poisson::Solution solution = problem.solve({w, 1000, true});
+  for (int d = 0; d <= 6; ++d) {
+    const octree::LevelView& level = problem.tree.view.levels[d];
+    const auto system = test::assemble(level, problem.screening.view(d), std::ldexp(w, 2 * (d - 6)));
+    const Eigen::VectorXd u = level_values(level, solution.u.data());
+    const Eigen::VectorXd direct = test::solve_directly(system, level_values(level, problem.b.data()), u);
+    EXPECT_LT(difference(system, u, direct), kConverged) << "level " << d;
+    EXPECT_EQ(solution.levels[static_cast<std::size_t>(d)].unknowns, static_cast<std::int64_t>(system.unknowns.size()));
+  }
+}
+
+TEST(Solve, EqualsTheDirectGalerkinSolutionOfAdaptiveLevelsWithoutScreening) {
+  Problem problem(6);
+  const poisson::Solution solution = problem.solve({0, 1000, false});
+  for (int d = octree::kCompleteDepth + 1; d <= 6; ++d) {  // coarser levels leave a constant open
+    const octree::LevelView& level = problem.tree.view.levels[d];
+    const auto system = test::assemble(level, {}, 0);
+    const Eigen::VectorXd u = level_values(level, solution.u.data());
+    const Eigen::VectorXd direct = test::solve_directly(system, level_values(level, problem.b.data()), u);
+    EXPECT_LT(difference(system, u, direct), kConverged) << "level " << d;
+  }
+}
+
+TEST(Solve, SolvesTheCompleteLevelsWhateverTheNumberOfIterations) {
+  Problem problem(6);
+  const poisson::Solution solution = problem.solve({4, 1, false});
+  for (int d = 2; d <= octree::kCompleteDepth; ++d) {  // 8 and 27 unknowns above are only starting values
+    const octree::LevelView& level = problem.tree.view.levels[d];
+    const auto system = test::assemble(level, problem.screening.view(d), std::ldexp(4.0, 2 * (d - 6)));
+    const Eigen::VectorXd u = level_values(level, solution.u.data());
+    const Eigen::VectorXd direct = test::solve_directly(system, level_values(level, problem.b.data()), u);
+    EXPECT_LT(difference(system, u, direct), 0.02) << "level " << d;
+  }
+}
+
+TEST(Solve, KeepsTheInterpolatedValueAtCornersThatAreNoUnknowns) {
+  Problem problem(7);
+  const poisson::Solution solution = problem.solve({2, 7, false});  // an odd number ends in the other array
+  int kept = 0;
+  for (int d = 1; d <= 7; ++d) {
+    const octree::LevelView& level = problem.tree.view.levels[d];
+    const octree::LevelView& above = problem.tree.view.levels[d - 1];
+    for (std::int64_t n = 0; n < level.nodes(); ++n) {
+      if (test::is_unknown(level, n) || !test::in_cube(level, test::corner_at(level, n))) continue;
+      ++kept;
+      ASSERT_EQ(solution.u.data()[level.first_node + n],
+                octree::prolonged(above, solution.u.data() + above.first_node, level.parent[n >> 3],
+                                  static_cast<int>(n & 7)));
+    }
+  }
+  EXPECT_GT(kept, 1000);
+}
+
+/// sqrt(e A e) of the error of the finest level's unknowns.
+double energy_error(Problem& problem, const test::ReferenceSystem& system, const Eigen::VectorXd& u) {
+  const octree::LevelView& level = problem.tree.view.finest();
+  Eigen::VectorXd error = u - test::solve_directly(system, level_values(level, problem.b.data()), u);
+  for (std::int64_t n = 0; n < level.nodes(); ++n)
+    if (!test::is_unknown(level, n)) error[n] = 0;  // nodes outside of the cube mean nothing
+  return std::sqrt(error.dot(system.matrix * error));
+}
+
+// Chebyshev polynomials on [lower, 1] stay below 1 on (0, lower) as well: no component of the error may grow. From 29
+// iterations on the interval stays the same (solve_impl.hpp) and more iterations must come closer.
+TEST(Solve, ErrorNeverGrowsAndFallsWithManyIterations) {
+  Problem problem(5);
+  const octree::LevelView& level = problem.tree.view.finest();
+  const octree::LevelView& above = problem.tree.view.levels[4];
+  for (const double w : {0.0, 2.0}) {
+    const auto system = test::assemble(level, problem.screening.view(5), w);
+    double last = 1e9;
+    for (const int iterations : {1, 2, 4, 8, 16, 32, 64, 128}) {
+      const poisson::Solution solution = problem.solve({w, iterations, false});
+      Eigen::VectorXd start(level.nodes());
+      for (std::int64_t n = 0; n < level.nodes(); ++n)
+        start[n] = static_cast<double>(octree::prolonged(above, solution.u.data() + above.first_node,
+                                                         level.parent[n >> 3], static_cast<int>(n & 7)));
+      const double after = energy_error(problem, system, level_values(level, solution.u.data()));
+      EXPECT_LT(after, energy_error(problem, system, start)) << iterations << " iterations, screening " << w;
+      if (iterations < 32) continue;
+      EXPECT_LT(after, last) << iterations << " iterations, screening " << w;
+      last = after;
+    }
+    EXPECT_LT(last, 1e-2);
+  }
+}
+
+// Below 29 iterations, more of them reach further down the spectrum (solve.hpp); from there on all residuals must fall.
+TEST(Solve, ResidualsFallWithTheIterations) {
+  Problem problem(7);
+  for (const double w : {0.0, 2.0}) {
+    double last = 1e9;
+    for (const int iterations : {1, 8, 32, 48, 64, 96, 128}) {
+      const auto levels = problem.solve({w, iterations, true}).levels;
+      for (std::size_t d = octree::kCompleteDepth + 1; d < levels.size(); ++d) {
+        EXPECT_EQ(levels[d].iterations, iterations);
+        EXPECT_LT(levels[d].residual_after, levels[d].residual_before) << "level " << d << ", " << iterations;
+      }
+      const poisson::LevelSolve& first = levels[octree::kCompleteDepth + 1];
+      if (iterations < 32) continue;
+      EXPECT_LT(first.residual_after, last) << iterations << " iterations, screening " << w;
+      last = first.residual_after;
+    }
+  }
+}
+
+TEST(Solve, IsOneInsideZeroOutsideAndHalfAtTheSamplesOfASphere) {
+  for (const double w : {0.0, 2.0}) {
+    Problem problem(6, 20'000);
+    const poisson::Solution solution = problem.solve({w, 16, false});
+    const double isovalue =
+        poisson::mean_at_samples(problem.tree.ex, problem.tree.tree, solution.u.cview(), problem.tree.samples.view());
+    const auto at = [&](const Vec3f& p) {
+      return static_cast<double>(octree::value_at(problem.tree.view, solution.u.data(), p, problem.tree.view.depth));
+    };
+    const double centre = at({0.5F, 0.5F, 0.5F});
+    const double outside = at({0.02F, 0.03F, 0.04F});
+    EXPECT_NEAR(centre - outside, 1, 0.08) << "screening " << w;  // the jump across a surface of known area
+    EXPECT_NEAR(isovalue - outside, 0.5, 0.08) << "screening " << w;
+    if (w == 0) continue;
+    EXPECT_NEAR(isovalue, 0.5, 0.02);  // screening fixes the constant, too
+  }
+}
+
+// ---- A solution that is known:  u = cos(pi x) cos(pi y) cos(pi z) has no flux through the faces, -laplace u = 3 pi^2 u.
+
+double known(double x, double y, double z) {
+  using std::numbers::pi;
+  return std::cos(pi * x) * std::cos(pi * y) * std::cos(pi * z);
+}
+
+/// integral f phi_i / h with f = 3 pi^2 u over the cells of a complete level, by three Gauss points an axis.
+void assemble_right_side(const octree::LevelView& level, float* b) {
+  const double h = 1.0 / static_cast<double>(1 << level.depth);
+  const double points[3] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
+  const double weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  std::vector<double> sum(static_cast<std::size_t>(level.nodes()), 0.0);
+  for (std::int64_t cell = 0; cell < level.cells(); ++cell) {
+    const octree::Coordinates c = test::corner_at(level, cell);
+    for (int q = 0; q < 27; ++q) {
+      const double x = points[q / 9];
+      const double y = points[q / 3 % 3];
+      const double z = points[q % 3];
+      const double f = 3 * std::numbers::pi * std::numbers::pi * known((c.x + x) * h, (c.y + y) * h, (c.z + z) * h) *
+                       weights[q / 9] * weights[q / 3 % 3] * weights[q % 3] * h * h;
+      for (int s = 0; s < 8; ++s)
+        sum[static_cast<std::size_t>(test::corner_of(level, cell, s))] +=
+            f * (octree::slot_x(s) != 0 ? x : 1 - x) * (octree::slot_y(s) != 0 ? y : 1 - y) *
+            (octree::slot_z(s) != 0 ? z : 1 - z);
+    }
+  }
+  for (std::size_t n = 0; n < sum.size(); ++n) b[n] = static_cast<float>(sum[n]);
+}
+
+/// Largest error over the corners of the cube after taking off the mean error, which the natural boundary leaves open.
+double known_solution_error(const octree::LevelView& level, const float* u) {
+  const double h = 1.0 / static_cast<double>(1 << level.depth);
+  std::vector<double> errors;
+  for (std::int64_t n = 0; n < level.nodes(); ++n) {
+    const octree::Coordinates c = test::corner_at(level, n);
+    if (test::in_cube(level, c)) errors.push_back(u[n] - known(c.x * h, c.y * h, c.z * h));
+  }
+  double mean = 0;
+  for (const double e : errors) mean += e / static_cast<double>(errors.size());
+  double worst = 0;
+  for (const double e : errors) worst = std::max(worst, std::abs(e - mean));
+  return worst;
+}
+
+TEST(Solve, ConvergesToAKnownSolutionAtSecondOrder) {
+  std::vector<Vec3f> centres;  // a point in every cell of depth 5 makes that level complete
+  for (int i = 0; i < 32 * 32 * 32; ++i)
+    centres.push_back({(static_cast<float>(i / 1024) + 0.5F) / 32, (static_cast<float>(i / 32 % 32) + 0.5F) / 32,
+                       (static_cast<float>(i % 32) + 0.5F) / 32});
+  SmallTree tree(centres, {}, 5);
+  ASSERT_EQ(tree.view.finest().cells(), 32 * 32 * 32);
+  auto b = exec::make_buffer<float>(tree.ex, tree.view.nodes);
+  for (int d = 0; d <= 5; ++d)
+    assemble_right_side(tree.view.levels[d], b.data() + tree.view.levels[d].first_node);
+  const poisson::Solution solution = poisson::solve_poisson(tree.ex, tree.tree, b.cview(), {}, {0, 300, false});
+  std::vector<double> errors;
+  for (int d = 2; d <= 5; ++d)
+    errors.push_back(known_solution_error(tree.view.levels[d], solution.u.data() + tree.view.levels[d].first_node));
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    const double order = std::log2(errors[i - 1] / errors[i]);
+    EXPECT_NEAR(order, 2, 0.15) << "from level " << i + 1 << " to " << i + 2 << ": " << errors[i - 1] << " -> " << errors[i];
+  }
+  EXPECT_LT(errors.back(), 0.005);
+}
+
+TEST(Solve, IsZeroForAZeroRightHandSideWithoutScreening) {
+  Problem problem(6, 100);
+  exec::fill(problem.tree.ex, problem.b.view(), 0.0F);
+  const poisson::Solution solution = problem.solve({0, 8, true});
+  for (std::int64_t n = 0; n < solution.u.size(); ++n) ASSERT_EQ(solution.u.data()[n], 0.0F);
+  for (const poisson::LevelSolve& level : solution.levels) EXPECT_EQ(level.residual_after, 0);
+}
+
+TEST(Solve, IsOneHalfForAZeroRightHandSideWithScreening) {
+  Problem problem(6, 100);
+  exec::fill(problem.tree.ex, problem.b.view(), 0.0F);
+  const poisson::Solution solution = problem.solve({4, 400, false});
+  for (int d = 0; d <= 6; ++d) {
+    const octree::LevelView& level = problem.tree.view.levels[d];
+    for (std::int64_t n = 0; n < level.nodes(); ++n) {
+      if (!test::in_cube(level, test::corner_at(level, n))) continue;
+      ASSERT_NEAR(solution.u.data()[level.first_node + n], 0.5, 0.02) << "level " << d;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pointskin

@@ -129,6 +129,7 @@ class FieldOn final : public FieldImpl {
   }
 
   [[nodiscard]] std::vector<float> values(const std::vector<Vec3d>& points_world) const override {
+    ex_->activate();
     const Vec3d lower = cube_lower_world();
     std::vector<Vec3f> unit(points_world.size());
     const auto to_unit = [&](const Vec3d& p, std::size_t a) {
@@ -147,6 +148,7 @@ class FieldOn final : public FieldImpl {
   }
 
   [[nodiscard]] Mesh extract(RunReport* report) const override {
+    ex_->activate();
     PhaseClock clock(*ex_);
     const surface::Surface surface = detail::extract(*ex_, data_, options_);
     const double extract_ms = clock.lap();
@@ -187,6 +189,7 @@ class EngineOn final : public Engine {
   explicit EngineOn(std::shared_ptr<Exec> ex) : ex_(std::move(ex)) {}
 
   std::shared_ptr<FieldImpl> solve(const Cloud& cloud, const Options& options, RunReport& report) override {
+    ex_->activate();
     ex_->pool()->reset_peak();
     PhaseClock clock(*ex_);
     const DevicePoints points = upload(*ex_, cloud);
@@ -197,6 +200,7 @@ class EngineOn final : public Engine {
   }
 
   std::vector<double> repeat(const Cloud& cloud, const Options& options, int times) override {
+    ex_->activate();
     const DevicePoints points = upload(*ex_, cloud);
     std::vector<double> milliseconds;
     RunReport ignored;

@@ -30,6 +30,9 @@ class Cpu {
   /// Does nothing: CPU work is done when its call returns.
   void synchronize() {}
 
+  /// Does nothing: any thread may use the CPU.
+  void activate() {}
+
  private:
   struct Workers;
   int threads_;

@@ -74,6 +74,8 @@ void Cuda::synchronize() {
   cuda_check(cudaStreamSynchronize(static_cast<cudaStream_t>(stream_)), "waiting for the GPU");
 }
 
+void Cuda::activate() { cuda_check(cudaSetDevice(index_), "choosing the GPU"); }
+
 int cuda_device_count() noexcept {
   int count = 0;
   if (cudaGetDeviceCount(&count) != cudaSuccess) {

@@ -25,6 +25,7 @@ template <class T>
 concept Space = requires(T ex) {
   { ex.pool() } -> std::convertible_to<std::shared_ptr<MemoryPool>>;
   ex.synchronize();
+  ex.activate();
 };
 
 /// An uninitialised array of `size` elements in the space `ex`.

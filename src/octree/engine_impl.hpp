@@ -62,9 +62,13 @@ class OctreeOn final : public Octree::Impl {
   [[nodiscard]] std::int64_t points() const override { return positions_.size(); }
   [[nodiscard]] Vec3d cube_lower() const override { return frame_.lower; }
   [[nodiscard]] double cube_size() const override { return frame_.size; }
-  [[nodiscard]] std::vector<std::int32_t> point_order() const override { return engine::to_vector(*ex_, order_); }
+  [[nodiscard]] std::vector<std::int32_t> point_order() const override {
+    ex_->activate();
+    return engine::to_vector(*ex_, order_);
+  }
 
   [[nodiscard]] OctreeLevel level(int depth) const override {
+    ex_->activate();
     const LevelData& data = data_.levels[static_cast<std::size_t>(depth)];
     OctreeLevel level;
     level.depth = depth;
@@ -80,6 +84,7 @@ class OctreeOn final : public Octree::Impl {
   }
 
   [[nodiscard]] std::vector<OctreeLeaf> locate(const std::vector<Vec3f>& queries) const override {
+    ex_->activate();
     const exec::Buffer<Vec3f> unit = to_unit(upload(queries));
     auto leaves = exec::make_buffer<OctreeLeaf>(*ex_, unit.size());
     for_each(*ex_, "octree.locate", unit.size(), engine::Locate{data_.view(), unit.cview(), leaves.view()});
@@ -87,6 +92,7 @@ class OctreeOn final : public Octree::Impl {
   }
 
   [[nodiscard]] OctreeNeighbours nearest(const std::vector<Vec3f>& queries, int k) const override {
+    ex_->activate();
     const exec::Buffer<Vec3f> unit = to_unit(upload(queries));
     const auto found = static_cast<int>(std::min<std::int64_t>(k, points()));
     auto ids = exec::make_buffer<std::int32_t>(*ex_, unit.size() * found);
@@ -101,6 +107,7 @@ class OctreeOn final : public Octree::Impl {
   }
 
   [[nodiscard]] OctreeNeighbours within(const std::vector<Vec3f>& queries, double radius) const override {
+    ex_->activate();
     const exec::Buffer<Vec3f> unit = to_unit(upload(queries));
     const WithinRadius found =
         find_within(*ex_, search_view(), unit.cview(), static_cast<float>(radius / frame_.size));

@@ -83,13 +83,13 @@ struct Schedule {
   double lower;  ///< eigenvalues of diagonal^-1 A in [lower, 1] are damped evenly
 };
 
-/// Complete levels are solved: their smallest eigenvalue is known, and they are cheap. Finer levels only have to resolve
+/// Complete levels are solved to about 1e-3: their smallest eigenvalue is known, about 2 / cells^2, and they are cheap. Finer levels only have to resolve
 /// what their own cells add to the interpolated field.
 inline Schedule schedule_for(int depth, int iterations) {
   if (depth > octree::kCompleteDepth)
     return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};
   const double cells = std::pow(2.0, depth);
-  return {std::max(iterations, static_cast<int>(6 * cells)), std::min(0.5, 2.0 / (cells * cells))};
+  return {std::max(iterations, static_cast<int>(3 * cells)), std::min(0.1, 2.0 / (cells * cells))};
 }
 
 /// Coefficients of Chebyshev iterations on [lower, 1].

@@ -79,8 +79,8 @@ TEST(Density, CountsAreTheSumsOfTheSamplesHats) {
 }
 
 TEST(Density, AreasOfAPlanesSamplesSumToItsArea) {
-  // The mean over heights and tilts is right (kPlaneFactor); a single height may be off by what the factor averages over:
-  // between 1/2 (midway between corners) and 1 (on them) of a squared hat's sum against 2/3.
+  // The mean over heights and tilts is right (kPlaneFactor); a single height may be off by what the factor averages
+  // over: between 1/2 (midway between corners) and 1 (on them) of a squared hat's sum against 2/3.
   for (const double slope : {0.0, 0.31, 0.77}) {
     double mean = 0;
     constexpr int kHeights = 8;
@@ -146,7 +146,8 @@ TEST(Weigh, ScalesAreasByTheNormalsLengthWithConfidenceOnly) {
 
 TEST(Weigh, SplatsAtTheDepthWhoseKernelHoldsEnoughSamples) {
   constexpr int kDepth = 8;
-  constexpr std::int64_t kSamples = 2379;  // 3 / 16 under the finest kernel: a factor of 2 away from all thresholds below
+  constexpr std::int64_t kSamples =
+      2379;  // 3 / 16 under the finest kernel: a factor of 2 away from all thresholds below
   SmallTree tree = plane_tree(kSamples, 0.503, 0, kDepth);
   const double per_face = static_cast<double>(kSamples) / 0.64 / std::ldexp(1, 2 * kDepth);
   for (const double wanted : {0.0, 1.5, 6.0, 96.0}) {

@@ -16,7 +16,8 @@ namespace {
 
 using test::SmallTree;
 
-/// The operator's rows of the unknowns over all nodes of a level, its bounding diagonal there, and its residual of zero.
+/// The operator's rows of the unknowns over all nodes of a level, its bounding diagonal there, and its residual of
+/// zero.
 struct Assembled {
   Eigen::MatrixXd rows;  ///< (unknowns, nodes)
   Eigen::VectorXd diagonal;
@@ -73,7 +74,8 @@ Assembled assemble_by_unit_vectors(const poisson::LevelSystem& system) {
   return out;
 }
 
-/// Applies `check` to the operator of a complete level with the cube's faces and of an adaptive one, without and with screening.
+/// Applies `check` to the operator of a complete level with the cube's faces and of an adaptive one, without and with
+/// screening.
 template <class Check>
 void for_all_systems(const Check& check) {
   for (const int level_depth : {0, 1, 2, 3, 6})
@@ -136,12 +138,14 @@ TEST(Operator, IsBoundedByItsDiagonal) {
   });
 }
 
-TEST(Operator, LeavesTheConstantOneHalfWithoutResidual) {  // the screening's target: the Laplacian of a constant is zero
+TEST(Operator,
+     LeavesTheConstantOneHalfWithoutResidual) {  // the screening's target: the Laplacian of a constant is zero
   for_all_systems([](const Assembled& a, const poisson::LevelSystem& system, SmallTree&) {
     const std::vector<float> half(static_cast<std::size_t>(system.level.nodes()), 0.5F);
     const double tolerance = 1e-6 * (1 + a.diagonal.maxCoeff());
     for (std::int32_t brick = 0; brick < system.level.bricks; ++brick) {
-      const auto r = poisson::brick_residual(system, brick, octree::load_neighbourhood(system.level, brick, half.data()));
+      const auto r =
+          poisson::brick_residual(system, brick, octree::load_neighbourhood(system.level, brick, half.data()));
       for (int s = 0; s < 8; ++s) {
         if (!test::is_unknown(system.level, 8 * std::int64_t{brick} + s)) continue;
         ASSERT_NEAR(r.residual[s], 0, tolerance);
@@ -186,7 +190,8 @@ TEST(Operator, MeasuresTheDirichletEnergyPlusTheWeightedSquaresAtTheSamples) {
     for (std::int64_t cell = 0; cell < system.level.cells(); ++cell) {
       for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 8; ++j)
-          energy += test::element_stiffness(i, j) * u[static_cast<std::size_t>(test::corner_of(system.level, cell, i))] *
+          energy += test::element_stiffness(i, j) *
+                    u[static_cast<std::size_t>(test::corner_of(system.level, cell, i))] *
                     u[static_cast<std::size_t>(test::corner_of(system.level, cell, j))];
       const std::int32_t place = system.screening.brick_index[cell >> 3];
       if (place < 0 || system.screening_scale == 0) continue;

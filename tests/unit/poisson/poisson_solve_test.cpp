@@ -10,8 +10,8 @@
 
 #include <Eigen/Dense>
 
-#include "exec/cpu_primitives.hpp"
 #include "exec/algorithms.hpp"
+#include "exec/cpu_primitives.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
 #include "poisson/screening.hpp"
@@ -54,8 +54,8 @@ double difference(const test::ReferenceSystem& system, const Eigen::VectorXd& a,
   return worst;
 }
 
-// The field runs from 0 to 1. 1000 Chebyshev iterations damp everything above 0.005 of the bound to nothing; what is left is the
-// rounding of float, amplified by the condition of the complete levels, some 10^3 at depth 4.
+// The field runs from 0 to 1. 1000 Chebyshev iterations damp everything above 0.005 of the bound to nothing; what is
+// left is the rounding of float, amplified by the condition of the complete levels, some 10^3 at depth 4.
 constexpr double kConverged = 1e-3;
 
 TEST(Solve, EqualsTheDirectGalerkinSolutionOfEveryLevelWithScreening) {
@@ -114,10 +114,10 @@ TEST(Solve, KeepsTheInterpolatedValueAtCornersThatAreNoUnknowns) {
   EXPECT_GT(kept, 1000);
 }
 
-/// sqrt(e A e) of the error of the finest level's unknowns.
-double energy_error(Problem& problem, const test::ReferenceSystem& system, const Eigen::VectorXd& u) {
-  const octree::LevelView& level = problem.tree.view.finest();
-  Eigen::VectorXd error = u - test::solve_directly(system, level_values(level, problem.b.data()), u);
+/// sqrt(e A e) of the error of a level's unknowns.
+double energy_error(const octree::LevelView& level, const test::ReferenceSystem& system, const Eigen::VectorXd& u,
+                    const Eigen::VectorXd& direct) {
+  Eigen::VectorXd error = u - direct;
   for (std::int64_t n = 0; n < level.nodes(); ++n)
     if (!test::is_unknown(level, n)) error[n] = 0;  // nodes outside of the cube mean nothing
   return std::sqrt(error.dot(system.matrix * error));
@@ -132,14 +132,15 @@ TEST(Solve, ErrorNeverGrowsAndFallsWithManyIterations) {
   for (const double w : {0.0, 2.0}) {
     const auto system = test::assemble(level, problem.screening.view(5), w);
     double last = 1e9;
-    for (const int iterations : {1, 2, 4, 8, 16, 32, 64, 128}) {
+    for (const int iterations : {1, 8, 16, 32, 64, 128}) {
       const poisson::Solution solution = problem.solve({w, iterations, false});
       Eigen::VectorXd start(level.nodes());
       for (std::int64_t n = 0; n < level.nodes(); ++n)
         start[n] = static_cast<double>(octree::prolonged(above, solution.u.data() + above.first_node,
                                                          level.parent[n >> 3], static_cast<int>(n & 7)));
-      const double after = energy_error(problem, system, level_values(level, solution.u.data()));
-      EXPECT_LT(after, energy_error(problem, system, start)) << iterations << " iterations, screening " << w;
+      const Eigen::VectorXd direct = test::solve_directly(system, level_values(level, problem.b.data()), start);
+      const double after = energy_error(level, system, level_values(level, solution.u.data()), direct);
+      EXPECT_LT(after, energy_error(level, system, start, direct)) << iterations << " iterations, screening " << w;
       if (iterations < 32) continue;
       EXPECT_LT(after, last) << iterations << " iterations, screening " << w;
       last = after;
@@ -185,7 +186,8 @@ TEST(Solve, IsOneInsideZeroOutsideAndHalfAtTheSamplesOfASphere) {
   }
 }
 
-// ---- A solution that is known:  u = cos(pi x) cos(pi y) cos(pi z) has no flux through the faces, -laplace u = 3 pi^2 u.
+// ---- A solution that is known:  u = cos(pi x) cos(pi y) cos(pi z) has no flux through the faces, -laplace u = 3 pi^2
+// u.
 
 double known(double x, double y, double z) {
   using std::numbers::pi;
@@ -207,9 +209,9 @@ void assemble_right_side(const octree::LevelView& level, float* b) {
       const double f = 3 * std::numbers::pi * std::numbers::pi * known((c.x + x) * h, (c.y + y) * h, (c.z + z) * h) *
                        weights[q / 9] * weights[q / 3 % 3] * weights[q % 3] * h * h;
       for (int s = 0; s < 8; ++s)
-        sum[static_cast<std::size_t>(test::corner_of(level, cell, s))] +=
-            f * (octree::slot_x(s) != 0 ? x : 1 - x) * (octree::slot_y(s) != 0 ? y : 1 - y) *
-            (octree::slot_z(s) != 0 ? z : 1 - z);
+        sum[static_cast<std::size_t>(test::corner_of(level, cell, s))] += f * (octree::slot_x(s) != 0 ? x : 1 - x) *
+                                                                          (octree::slot_y(s) != 0 ? y : 1 - y) *
+                                                                          (octree::slot_z(s) != 0 ? z : 1 - z);
     }
   }
   for (std::size_t n = 0; n < sum.size(); ++n) b[n] = static_cast<float>(sum[n]);
@@ -238,15 +240,15 @@ TEST(Solve, ConvergesToAKnownSolutionAtSecondOrder) {
   SmallTree tree(centres, {}, 5);
   ASSERT_EQ(tree.view.finest().cells(), 32 * 32 * 32);
   auto b = exec::make_buffer<float>(tree.ex, tree.view.nodes);
-  for (int d = 0; d <= 5; ++d)
-    assemble_right_side(tree.view.levels[d], b.data() + tree.view.levels[d].first_node);
+  for (int d = 0; d <= 5; ++d) assemble_right_side(tree.view.levels[d], b.data() + tree.view.levels[d].first_node);
   const poisson::Solution solution = poisson::solve_poisson(tree.ex, tree.tree, b.cview(), {}, {0, 300, false});
   std::vector<double> errors;
   for (int d = 2; d <= 5; ++d)
     errors.push_back(known_solution_error(tree.view.levels[d], solution.u.data() + tree.view.levels[d].first_node));
   for (std::size_t i = 1; i < errors.size(); ++i) {
     const double order = std::log2(errors[i - 1] / errors[i]);
-    EXPECT_NEAR(order, 2, 0.15) << "from level " << i + 1 << " to " << i + 2 << ": " << errors[i - 1] << " -> " << errors[i];
+    EXPECT_NEAR(order, 2, 0.15) << "from level " << i + 1 << " to " << i + 2 << ": " << errors[i - 1] << " -> "
+                                << errors[i];
   }
   EXPECT_LT(errors.back(), 0.005);
 }

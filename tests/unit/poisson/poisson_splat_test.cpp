@@ -89,8 +89,9 @@ TEST(Splat, VisitsEverySampleThatReachesABrick) {
   }
 }
 
-// Hats sum to 1, whose gradient is 0; and sum_i x_i phi_i = x, so the first moment is the integral of V itself: minus the sum
-// of the samples' areas times normals, in cells^2 of the level. On complete levels, where V's support has all its cells.
+// Hats sum to 1, whose gradient is 0; and sum_i x_i phi_i = x, so the first moment is the integral of V itself: minus
+// the sum of the samples' areas times normals, in cells^2 of the level. On complete levels, where V's support has all
+// its cells.
 TEST(Divergence, HasTheSamplesNormalsAsItsFirstMomentsOnCompleteLevels) {
   for (const int depth : {3, 4})
     for (const int coarsest : {depth, 3}) {
@@ -158,8 +159,8 @@ TEST(Divergence, IsTheRestrictionOfTheFinerLevelsWhenAllSamplesAreSplattedAtTheF
   }
 }
 
-/// Weight and weighted mean position in the cell of the samples of a cell; a sample sparser than the cells of level d weighs
-/// what it weighed at its splat depth (screening.hpp).
+/// Weight and weighted mean position in the cell of the samples of a cell; a sample sparser than the cells of level d
+/// weighs what it weighed at its splat depth (screening.hpp).
 poisson::CollapsedSample collapsed_by_hand(const SmallTree& tree, int d, std::int64_t cell) {
   const octree::LevelView& level = tree.view.levels[d];
   const octree::Coordinates c = test::corner_at(level, cell);

@@ -1,4 +1,5 @@
-// The 27-point stencils against element matrices integrated here by Gauss quadrature, and what every such operator must do.
+// The 27-point stencils against element matrices integrated here by Gauss quadrature, and what every such operator must
+// do.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,8 +39,8 @@ double hat(int end, double x, bool derivative) {
   return end != 0 ? x : 1 - x;
 }
 
-/// Integral over the unit cell of the product over axes of hat i (differentiated along di) and hat j (along dj), -1: not.
-/// Two Gauss points an axis are exact for these products of degree 2.
+/// Integral over the unit cell of the product over axes of hat i (differentiated along di) and hat j (along dj), -1:
+/// not. Two Gauss points an axis are exact for these products of degree 2.
 double element_integral(int i, int di, int j, int dj) {
   double product = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -92,10 +93,11 @@ TEST(Stencil, DivergenceIsTheIntegralOfAHatTimesTheOthersDerivative) {
     });
 }
 
-TEST(Stencil, MassRowsSumToTheIntegralOfTheirHat) {  // the hats are a partition of unity
+TEST(Stencil, MassRowsSumToTheIntegralOfTheirHat) {   // the hats are a partition of unity
   const std::array<double, 3> integral{1, 0.5, 0.5};  // AxisSide: inside, lower_face, upper_face
   for (std::size_t side = 0; side < 3; ++side)
-    EXPECT_NEAR(kAxisRows.mass[side][0] + kAxisRows.mass[side][1] + kAxisRows.mass[side][2], integral[side], kTolerance);
+    EXPECT_NEAR(kAxisRows.mass[side][0] + kAxisRows.mass[side][1] + kAxisRows.mass[side][2], integral[side],
+                kTolerance);
 }
 
 TEST(Stencil, LaplacianOfAConstantIsZeroAtEveryCombinationOfCubeFaces) {
@@ -114,8 +116,8 @@ TEST(Stencil, DivergenceOfAConstantFieldIsZero) {
   }
 }
 
-// integral grad x . grad phi = boundary integral of phi times the normal's x: nothing inside, and minus or plus the hat's
-// integral over the face at the lower or upper face, halved for each of the other axes that is at a face as well.
+// integral grad x . grad phi = boundary integral of phi times the normal's x: nothing inside, and minus or plus the
+// hat's integral over the face at the lower or upper face, halved for each of the other axes that is at a face as well.
 TEST(Stencil, LaplacianOfALinearFunctionIsItsFluxThroughTheFace) {
   const std::array<double, 3> outward{0, -1, 1};
   const std::array<double, 3> integral{1, 0.5, 0.5};

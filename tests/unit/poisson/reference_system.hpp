@@ -26,7 +26,8 @@ inline double element_stiffness(int i, int j) {
   return sum;
 }
 
-/// Rows and columns of all nodes of a level; rows of corners that are no unknowns are incomplete sums over existing cells.
+/// Rows and columns of all nodes of a level; rows of corners that are no unknowns are incomplete sums over existing
+/// cells.
 struct ReferenceSystem {
   Eigen::SparseMatrix<double> matrix;  ///< Laplacian + screening, in units of h
   Eigen::VectorXd pull;                ///< screening's right-hand side

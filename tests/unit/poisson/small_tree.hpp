@@ -23,8 +23,8 @@ struct SmallTree {
     const auto n = static_cast<std::int64_t>(positions.size());
     std::vector<std::uint64_t> ties(positions.size());
     for (std::size_t i = 0; i < ties.size(); ++i) ties[i] = i;
-    const octree::SortedPoints sorted =
-        octree::sort_points(ex, ArrayView<const Vec3f>(positions.data(), n), ArrayView<const std::uint64_t>(ties.data(), n));
+    const octree::SortedPoints sorted = octree::sort_points(ex, ArrayView<const Vec3f>(positions.data(), n),
+                                                            ArrayView<const std::uint64_t>(ties.data(), n));
     samples.positions = exec::make_buffer<Vec3f>(ex, n);
     samples.normals = exec::make_buffer<Vec3f>(ex, n);
     for (std::int64_t i = 0; i < n; ++i) {
@@ -48,8 +48,8 @@ struct SmallTree {
     samples.coarsest_splat_depth = splat_depth;
   }
 
-  /// Gives samples areas between 0.5 and 1.5 and splat depths between `coarsest` and the tree's depth; at least one has the
-  /// coarsest.
+  /// Gives samples areas between 0.5 and 1.5 and splat depths between `coarsest` and the tree's depth; at least one has
+  /// the coarsest.
   void weigh_randomly(Random& random, int coarsest) {
     weigh(1, coarsest);
     for (std::int64_t i = 0; i < samples.areas.size(); ++i) {

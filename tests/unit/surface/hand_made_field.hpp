@@ -27,8 +27,8 @@ inline std::vector<float> continuous_values(const octree::OctreeView& tree, cons
       if (is_unknown(level, n))
         u[n] = value(level, corner_at(level, n));
       else if (d > 0)
-        u[n] = octree::prolonged(tree.levels[d - 1], values.data() + tree.levels[d - 1].first_node, level.parent[n >> 3],
-                                 static_cast<int>(n & 7));
+        u[n] = octree::prolonged(tree.levels[d - 1], values.data() + tree.levels[d - 1].first_node,
+                                 level.parent[n >> 3], static_cast<int>(n & 7));
     }
   }
   return values;

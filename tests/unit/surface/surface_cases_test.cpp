@@ -121,9 +121,9 @@ int turn(std::size_t axis, const Point& a, const Point& b, const Point& p) {
   return (b[u] - a[u]) * (p[v] - a[v]) - (b[v] - a[v]) * (p[u] - a[u]);
 }
 
-// With corner 0 alone inside, the outward triangle runs x -> y -> z. Its segment from the x edge to the y edge lies in the face
-// z = 0; seen from outside of the cell, from below, the inside corner is on its right. The surface continues over every
-// segment, so the inside is on the right of all segments of all cases.
+// With corner 0 alone inside, the outward triangle runs x -> y -> z. Its segment from the x edge to the y edge lies in
+// the face z = 0; seen from outside of the cell, from below, the inside corner is on its right. The surface continues
+// over every segment, so the inside is on the right of all segments of all cases.
 TEST(CaseTable, HasTheInsideOnTheRightOfEverySegmentSeenFromOutsideOfTheCell) {
   for (unsigned corners = 0; corners < 256; ++corners)
     for (const auto& [from, to] : boundary_of(cases()[corners])) {
@@ -198,7 +198,8 @@ struct Subdivision {
 };
 
 Subdivision random_subdivision(test::Random& random) {
-  Subdivision s{static_cast<unsigned>(random.below(64)), static_cast<unsigned>(random.below(4096) & random.below(4096))};
+  Subdivision s{static_cast<unsigned>(random.below(64)),
+                static_cast<unsigned>(random.below(4096) & random.below(4096))};
   for (int edge = 0; edge < 12; ++edge)
     for (const auto& [axis, side] : common_faces(edge, edge))
       if ((s.faces >> (2 * axis + static_cast<unsigned>(side)) & 1) != 0)
@@ -245,8 +246,7 @@ TEST(CellTracer, WalksThroughEveryCrossingOnceForAnySubdivisionAndAnySigns) {
     const Subdivision s = random_subdivision(random);
     const auto inside = static_cast<std::uint32_t>(random.below(std::int64_t{1} << 27));
     CellTracer tracer(inside);
-    for (int face = 0; face < 6; ++face)
-      tracer.add_face(face / 2, face % 2, (s.faces >> face & 1) != 0, s.edges);
+    for (int face = 0; face < 6; ++face) tracer.add_face(face / 2, face % 2, (s.faces >> face & 1) != 0, s.edges);
     std::set<int> walked;
     int steps = 0;
     tracer.for_loops([&](int start, int length) {

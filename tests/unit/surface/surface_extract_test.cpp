@@ -53,16 +53,17 @@ const std::vector<PlaneCase>& plane_cases() {
 
 class PlaneExtract : public testing::TestWithParam<bool> {};  // linear_fit
 
-// A linear function is its own interpolant on all levels and has constant slopes, so both fits find the plane exactly; the
-// values' rounding (2^-24 of about 1) over the slope per edge (at least 2^-7) leaves 2^-17 of an edge.
+// A linear function is its own interpolant on all levels and has constant slopes, so both fits find the plane exactly;
+// the values' rounding (2^-24 of about 1) over the slope per edge (at least 2^-7) leaves 2^-17 of an edge.
 TEST_P(PlaneExtract, LiesInThePlaneOfALinearFunctionAcrossAllLevels) {
   SmallTree tree = adaptive_tree(3, 7);
   for (const PlaneCase& c : plane_cases()) {
-    const auto values =
-        test::continuous_values(tree.view, test::at_positions([&](const Vec3d& p) { return plane(c.direction, c.offset, p); }));
+    const auto values = test::continuous_values(
+        tree.view, test::at_positions([&](const Vec3d& p) { return plane(c.direction, c.offset, p); }));
     const Mesh mesh = test::extracted(tree, values, 0, false, {.linear_fit = GetParam()});
     ASSERT_FALSE(mesh.triangles.empty());
-    // Where the plane passes within kCrossingMargin of a corner, vertices are moved by up to that part of a coarse edge.
+    // Where the plane passes within kCrossingMargin of a corner, vertices are moved by up to that part of a coarse
+    // edge.
     const double moved = surface::kCrossingMargin / 16;
     for (const Vec3f& v : mesh.vertices) ASSERT_NEAR(plane(c.direction, c.offset, to_double(v)), 0, moved + 1e-6);
   }
@@ -71,8 +72,8 @@ TEST_P(PlaneExtract, LiesInThePlaneOfALinearFunctionAcrossAllLevels) {
 TEST_P(PlaneExtract, FacesDownTheGradientWithNormalsAlongIt) {
   SmallTree tree = adaptive_tree(3, 7);
   for (const PlaneCase& c : plane_cases()) {
-    const auto values =
-        test::continuous_values(tree.view, test::at_positions([&](const Vec3d& p) { return plane(c.direction, c.offset, p); }));
+    const auto values = test::continuous_values(
+        tree.view, test::at_positions([&](const Vec3d& p) { return plane(c.direction, c.offset, p); }));
     const Mesh mesh = test::extracted(tree, values, 0, false, {.linear_fit = GetParam()});
     double twice_area = 0;
     for (const Triangle& t : mesh.triangles) twice_area -= triangle_normal_dot(mesh, t, c.direction);
@@ -103,8 +104,8 @@ double worst_radius_error(const Mesh& mesh, double radius) {
   return worst;
 }
 
-// Trilinear interpolation of the distance to a sphere of radius r errs by up to 3 h^2 / 8 max |second derivative| = 3 h^2 / (8 r)
-// along the axes; the slope is 1. h = 1/16 is the coarsest leaf.
+// Trilinear interpolation of the distance to a sphere of radius r errs by up to 3 h^2 / 8 max |second derivative| = 3
+// h^2 / (8 r) along the axes; the slope is 1. h = 1/16 is the coarsest leaf.
 TEST(SphereExtract, IsAClosedSphereOnAnAdaptiveTreeWithinTheInterpolationError) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5})
     for (const bool linear_fit : {false, true}) {

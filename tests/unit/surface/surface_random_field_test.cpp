@@ -24,9 +24,12 @@ enum class Values { continuous, whole_numbers, rough_near_one_value };
 
 float random_value(Random& random, Values values) {
   switch (values) {
-    case Values::continuous: return static_cast<float>(random.in(-1, 1));
-    case Values::whole_numbers: return static_cast<float>(random.below(3) - 1);  // often equal to the isovalue
-    case Values::rough_near_one_value: return 0.37F + static_cast<float>(random.below(3) - 1) * 0x1p-25F;  // ulps apart
+    case Values::continuous:
+      return static_cast<float>(random.in(-1, 1));
+    case Values::whole_numbers:
+      return static_cast<float>(random.below(3) - 1);  // often equal to the isovalue
+    case Values::rough_near_one_value:
+      return 0.37F + static_cast<float>(random.below(3) - 1) * 0x1p-25F;  // ulps apart
   }
   return 0;
 }
@@ -40,9 +43,8 @@ SmallTree random_tree(Random& random) {
 }
 
 std::vector<float> random_field(const SmallTree& tree, Random& random, Values values) {
-  return test::continuous_values(tree.view, [&](const octree::LevelView&, const octree::Coordinates&) {
-    return random_value(random, values);
-  });
+  return test::continuous_values(
+      tree.view, [&](const octree::LevelView&, const octree::Coordinates&) { return random_value(random, values); });
 }
 
 std::string counts(const MeshReport& r) {
@@ -161,7 +163,8 @@ TEST(RandomField, IsCappedAllAroundWhenEverythingIsInside) {
   EXPECT_TRUE(report.watertight()) << counts(report);
   EXPECT_EQ(report.components, 1);
   EXPECT_EQ(report.euler, 2);
-  // The caps lie kCrossingMargin inside of the faces; the cube's 12 edges are bevelled by at most the coarsest leaves' width.
+  // The caps lie kCrossingMargin inside of the faces; the cube's 12 edges are bevelled by at most the coarsest leaves'
+  // width.
   const double h = 1.0 / (1 << octree::kCompleteDepth);
   EXPECT_GT(report.volume, 1 - 12 * h * h / 2 - 6 * 1e-3 * h);
   EXPECT_LT(report.volume, 1);

@@ -1,0 +1,206 @@
+// The GPU against the CPU through the public API: the same bytes.
+#include <gtest/gtest.h>
+
+#include <pointskin/device.hpp>
+#include <pointskin/error.hpp>
+#include <pointskin/mesh.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "property/reconstruction.hpp"
+#include "support/shapes.hpp"
+
+namespace pointskin {
+namespace {
+
+using test::expect_same_bytes;
+
+bool gpu_required() {
+  const char* value = std::getenv("POINTSKIN_REQUIRE_GPU");
+  return value != nullptr && std::string(value) == "1";
+}
+
+/// Tests with a GPU: skipped where none answers, failed where POINTSKIN_REQUIRE_GPU=1 says that one must.
+class Gpu : public testing::Test {
+ protected:
+  void SetUp() override {
+    try {
+      gpu_ = Device::cuda(0);
+    } catch (const Error& error) {
+      ASSERT_EQ(error.code(), ErrorCode::device_unavailable) << error.what();
+      if (gpu_required()) FAIL() << "POINTSKIN_REQUIRE_GPU=1, but " << error.what();
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  /// Compares both devices' meshes, isovalues and levels.
+  void expect_parity(const Cloud& cloud, const Options& options) {
+    Reconstructor on_cpu(Device::cpu());
+    Reconstructor on_gpu(gpu_);
+    const Mesh expected = on_cpu.reconstruct(cloud, options);
+    expect_same_bytes(on_gpu.reconstruct(cloud, options), expected);
+    EXPECT_EQ(on_gpu.report().isovalue, on_cpu.report().isovalue);
+    EXPECT_EQ(on_gpu.report().nodes, on_cpu.report().nodes);
+    ASSERT_EQ(on_gpu.report().levels.size(), on_cpu.report().levels.size());
+    for (std::size_t d = 0; d < on_cpu.report().levels.size(); ++d) {
+      EXPECT_EQ(on_gpu.report().levels[d].nodes, on_cpu.report().levels[d].nodes) << "level " << d;
+      EXPECT_EQ(on_gpu.report().levels[d].unknowns, on_cpu.report().levels[d].unknowns) << "level " << d;
+      EXPECT_EQ(on_gpu.report().levels[d].residual_after, on_cpu.report().levels[d].residual_after) << "level " << d;
+    }
+  }
+
+  Device gpu_;
+};
+
+struct NamedCloud {
+  std::string name;
+  Cloud cloud;
+};
+std::vector<NamedCloud> clouds() {
+  std::vector<NamedCloud> all;
+  all.push_back({"sphere", test::sphere_cloud(20'000, 1)});
+  all.push_back({"linked tori", test::linked_tori_cloud(30'000, 2)});
+  all.push_back({"box", test::box_cloud(20'000, 3)});
+  all.push_back({"thin plate", test::thin_plate_cloud(30'000, 4, 0.05)});
+  all.push_back({"plane", test::plane_cloud(10'000, 5)});
+  all.push_back({"noisy sphere", test::jittered(test::sphere_cloud(20'000, 6), 7, 0.03)});
+  Cloud repeated = test::sphere_cloud(3'000, 8);
+  test::append(repeated, test::sphere_cloud(3'000, 8));
+  all.push_back({"repeated points", test::shuffled(repeated, 9)});
+  return all;
+}
+
+TEST_F(Gpu, GivesTheSameBytesAsTheCpuForEveryShapeAndDepth) {
+  for (const NamedCloud& c : clouds())
+    for (const int depth : {1, 2, 4, 5, 7, 9}) {
+      SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
+      expect_parity(c.cloud, {.depth = depth});
+    }
+}
+
+TEST_F(Gpu, GivesTheSameBytesAsTheCpuForEveryOption) {
+  const Cloud cloud = test::jittered(test::torus_cloud(20'000, 10), 11, 0.01);
+  std::vector<Options> all;
+  for (const double screening : {0.0, 50.0}) all.push_back({.depth = 7, .screening = screening});
+  for (const int iterations : {1, 7, 40}) all.push_back({.depth = 7, .iterations = iterations});
+  for (const double scale : {1.0, 2.5}) all.push_back({.depth = 7, .scale = scale});
+  for (const double samples : {0.0, 20.0}) all.push_back({.depth = 7, .samples_per_node = samples});
+  all.push_back({.depth = 7, .confidence = true});
+  all.push_back({.depth = 7, .linear_fit = true});
+  all.push_back({.depth = 7, .density = true});
+  all.push_back({.depth = 7, .normals = false});
+  all.push_back({.depth = 7, .domain_faces = DomainFaces::open});
+  all.push_back({.depth = 7, .residuals = true});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    SCOPED_TRACE("options number " + std::to_string(i));
+    expect_parity(cloud, all[i]);
+  }
+}
+
+TEST_F(Gpu, EndsTinyCloudsAsTheCpuDoes) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    test::Random random(seed);
+    Cloud cloud;
+    for (std::int64_t i = 1 + random.below(40); i > 0; --i) {
+      const Vec3d p = random.direction();
+      const Vec3d n = random.direction();
+      cloud.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+      cloud.normals.push_back({static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])});
+    }
+    const Options options{.depth = 1 + static_cast<int>(random.below(9))};
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Mesh on_cpu;
+    Mesh on_gpu;
+    const auto cpu_error = test::error_of([&] { on_cpu = Reconstructor(Device::cpu(1)).reconstruct(cloud, options); });
+    const auto gpu_error = test::error_of([&] { on_gpu = Reconstructor(gpu_).reconstruct(cloud, options); });
+    EXPECT_EQ(cpu_error, gpu_error);
+    expect_same_bytes(on_cpu, on_gpu);
+  }
+}
+
+TEST_F(Gpu, GivesTheSameBytesRunAfterRun) {
+  Reconstructor r(gpu_);
+  const Cloud sphere = test::sphere_cloud(50'000, 12);
+  const Cloud torus = test::torus_cloud(30'000, 13);
+  const Mesh first = r.reconstruct(sphere, {.depth = 8, .density = true});
+  const Mesh other = r.reconstruct(torus, {.depth = 7});
+  for (int i = 0; i < 5; ++i) {
+    expect_same_bytes(r.reconstruct(sphere, {.depth = 8, .density = true}), first);
+    expect_same_bytes(r.reconstruct(torus, {.depth = 7}), other);
+  }
+  expect_same_bytes(r.reconstruct(test::shuffled(sphere, 14), {.depth = 8, .density = true}), first);
+}
+
+TEST_F(Gpu, KeepsAFieldAliveAfterItsReconstructor) {
+  const Cloud cloud = test::torus_cloud(20'000, 15);
+  auto r = std::make_unique<Reconstructor>(gpu_);
+  const Field field = r->solve(cloud, {.depth = 7});
+  const Mesh expected = r->reconstruct(cloud, {.depth = 7});
+  r.reset();
+  expect_same_bytes(field.extract(), expected);
+  const Field on_cpu = Reconstructor(Device::cpu()).solve(cloud, {.depth = 7});
+  std::vector<Vec3d> at;
+  test::Random random(16);
+  for (int i = 0; i < 1000; ++i) at.push_back({random.in(-2, 2), random.in(-2, 2), random.in(-1, 1)});
+  EXPECT_TRUE(test::same_bytes(field.values(at), on_cpu.values(at)));
+  EXPECT_EQ(field.isovalue(), on_cpu.isovalue());
+}
+
+TEST_F(Gpu, RunsTwoReconstructorsSideBySide) {
+  const Cloud sphere = test::sphere_cloud(20'000, 17);
+  const Cloud torus = test::torus_cloud(20'000, 18);
+  Reconstructor a(gpu_);
+  Reconstructor b(gpu_);
+  const Field field_a = a.solve(sphere, {.depth = 7});
+  const Field field_b = b.solve(torus, {.depth = 7});
+  const Mesh mesh_a = field_a.extract();
+  const Mesh mesh_b = field_b.extract();
+  expect_same_bytes(a.reconstruct(torus, {.depth = 7}), mesh_b);
+  expect_same_bytes(b.reconstruct(sphere, {.depth = 7}), mesh_a);
+}
+
+TEST_F(Gpu, RepeatsResidentRunsAndLeavesResultsAsTheyWere) {
+  Reconstructor r(gpu_);
+  const Cloud cloud = test::sphere_cloud(20'000, 19);
+  const Mesh before = r.reconstruct(cloud, {.depth = 7});
+  EXPECT_EQ(r.repeat(cloud, {.depth = 7}, 4).size(), 4U);
+  expect_same_bytes(r.reconstruct(cloud, {.depth = 7}), before);
+}
+
+TEST_F(Gpu, ReportsErrorsAsTheCpuDoes) {
+  Reconstructor r(gpu_);
+  const auto code = [&](const Cloud& cloud) {
+    return test::error_of([&] { (void)r.reconstruct(cloud, {.depth = 6}); });
+  };
+  Cloud same;
+  same.positions.assign(1000, {1, 2, 3});
+  EXPECT_EQ(code({}), ErrorCode::empty_result);
+  EXPECT_EQ(code(same), ErrorCode::no_normals);
+  same.normals.assign(1000, {0, 0, 0});
+  EXPECT_EQ(code(same), ErrorCode::no_normals);
+  same.normals.assign(1000, {0, 0, 1});
+  EXPECT_EQ(code(same), ErrorCode::empty_result);
+  EXPECT_TRUE(measure(r.reconstruct(test::sphere_cloud(5'000, 20), {.depth = 6})).watertight());
+}
+
+TEST_F(Gpu, GivesTheSameBytesAsTheCpuOnPublicScans) {
+  int found = 0;
+  for (const char* name : {"bunny_scans", "armadillo_oriented", "srb_anchor", "srb_dc"}) {
+    const auto cloud = test::shared_cloud(name);
+    if (!cloud) continue;
+    ++found;
+    for (const int depth : {6, 8, 9}) {
+      SCOPED_TRACE(std::string(name) + ", depth " + std::to_string(depth));
+      expect_parity(*cloud, {.depth = depth});
+    }
+  }
+  if (found == 0) GTEST_SKIP() << "no clouds in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
+}
+
+}  // namespace
+}  // namespace pointskin

@@ -15,7 +15,8 @@ struct ToWorld {
   octree::Frame frame;
   ArrayView<const Vec3f> in;
   ArrayView<Vec3f> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_world(in[i]); }
+  PSK_HD
+  void operator()(std::int64_t i) const { out[i] = frame.to_world(in[i]); }
 };
 
 /// Mixes the bits of a point; equal points have equal hashes. Source: the finaliser of MurmurHash3.
@@ -23,13 +24,15 @@ struct HashPoint {
   ArrayView<const Vec3f> positions, normals;
   ArrayView<std::uint64_t> hashes;
 
-  PSK_HD static std::uint64_t mix(std::uint64_t hash, float value) {
+  PSK_HD
+  static std::uint64_t mix(std::uint64_t hash, float value) {
     std::uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     hash = (hash ^ bits) * 0xff51afd7ed558ccdULL;
     return hash ^ hash >> 33;
   }
-  PSK_HD void operator()(std::int64_t i) const {
+  PSK_HD
+  void operator()(std::int64_t i) const {
     const Vec3f p = positions[i];
     const Vec3f n = normals[i];
     hashes[i] = mix(mix(mix(mix(mix(mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z), n.x), n.y), n.z);
@@ -38,13 +41,15 @@ struct HashPoint {
 
 struct SquaredLength {
   ArrayView<const Vec3f> normals;
-  PSK_HD float operator()(std::int64_t i) const {
+  PSK_HD
+  float operator()(std::int64_t i) const {
     const Vec3f n = normals[i];
     return n.x * n.x + n.y * n.y + n.z * n.z;
   }
 };
 struct LargerLength {
-  PSK_HD float operator()(float a, float b) const { return a > b ? a : b; }
+  PSK_HD
+  float operator()(float a, float b) const { return a > b ? a : b; }
 };
 
 }  // namespace points
@@ -59,7 +64,8 @@ DevicePoints upload(Exec& ex, const Cloud& cloud) {
   copy_to_device(ex, cloud.normals.data(), points.normals.view());
   const auto longest = exec::reduce<float>(ex, "upload.normals", cloud.size(),
                                            points::SquaredLength{points.normals.cview()}, points::LargerLength{});
-  if (!(longest > 0)) throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
+  if (!(longest > 0))
+    throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
   return points;
 }
 
@@ -70,8 +76,7 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
   auto unit = exec::make_buffer<Vec3f>(ex, n);
   auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
   for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view()});
-  for_each(ex, "octree.hash", n,
-           points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
+  for_each(ex, "octree.hash", n, points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   poisson::Samples samples;
   samples.positions = exec::make_buffer<Vec3f>(ex, n);

@@ -36,9 +36,10 @@ class Reconstructor::Impl {
   static void check_memory(std::int64_t points, const Options& options) {
     const std::int64_t needed = estimate_device_bytes(points, options);
     if (options.max_memory_bytes > 0 && needed > options.max_memory_bytes)
-      throw Error(ErrorCode::over_limit,
-                  fmt::format("the run would need about {} MB of the {} MB allowed; choose a smaller depth or allow more",
-                              needed / 1'000'000, options.max_memory_bytes / 1'000'000));
+      throw Error(
+          ErrorCode::over_limit,
+          fmt::format("the run would need about {} MB of the {} MB allowed; choose a smaller depth or allow more",
+                      needed / 1'000'000, options.max_memory_bytes / 1'000'000));
   }
 
   Device device_;
@@ -84,14 +85,16 @@ void validate(const Options& options) {
 }
 
 std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) {
-  // A surface crosses about 2.5 cells per face of the finest grid, at most one per point; padding multiplies that by 7,
-  // more where points lie apart; coarser levels add a third.
-  const double faces = std::pow(4.0, options.depth);
-  const double occupied = std::min(2.5 * faces, static_cast<double>(points));
-  const double spread = 7 + 40 * std::max(0.0, 1 - static_cast<double>(points) / (1.5 * faces));
-  const double nodes = 1.34 * std::min(occupied * spread, std::pow(8.0, options.depth)) + 8000;
-  constexpr double kBytesPerNode = 64;
-  constexpr double kBytesPerPoint = 100;
+  // A level's nodes cover a band around the surface, about 25 per face of its grid for common shapes; where points lie
+  // apart, each has its own 27 bricks; and no level has more nodes than the whole grid.
+  constexpr double kNodesPerFace = 25;
+  constexpr double kNodesPerPoint = 27 * 8;
+  constexpr double kBytesPerNode = 72;
+  constexpr double kBytesPerPoint = 120;
+  double nodes = 0;
+  for (int d = 0; d <= options.depth; ++d)
+    nodes += std::max(std::min(std::pow(8.0, d), 1e4), std::min({kNodesPerPoint * static_cast<double>(points),
+                                                                 kNodesPerFace * std::pow(4.0, d), std::pow(8.0, d)}));
   return static_cast<std::int64_t>(kBytesPerNode * nodes + kBytesPerPoint * static_cast<double>(points));
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -96,9 +97,12 @@ FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options
   if (options.screening > 0) screening = poisson::collapse_samples(ex, field.tree, samples.view());
   report.splat_ms = clock.lap();
 
-  announce(options, "solve", 0.45);
-  poisson::Solution solution = poisson::solve_poisson(ex, field.tree, divergence.cview(), screening,
-                                                      {options.screening, options.iterations, options.residuals});
+  const auto before_level = [&](int depth) {  // every level costs about four times the one before
+    announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
+  };
+  poisson::Solution solution =
+      poisson::solve_poisson(ex, field.tree, divergence.cview(), screening,
+                             {options.screening, options.iterations, options.residuals, before_level});
   field.isovalue = poisson::mean_at_samples(ex, field.tree, solution.u.cview(), samples.view());
   field.values = std::move(solution.u);
   report.solve_ms = clock.lap();
@@ -135,8 +139,9 @@ class FieldOn final : public FieldImpl {
     const auto to_unit = [&](const Vec3d& p, std::size_t a) {
       return static_cast<float>(std::clamp((p[a] - lower[a]) / data_.frame.size, 0.0, 1.0));
     };
-    std::transform(points_world.begin(), points_world.end(), unit.begin(),
-                   [&](const Vec3d& p) { return Vec3f{to_unit(p, 0), to_unit(p, 1), to_unit(p, 2)}; });
+    std::transform(points_world.begin(), points_world.end(), unit.begin(), [&](const Vec3d& p) {
+      return Vec3f{to_unit(p, 0), to_unit(p, 1), to_unit(p, 2)};
+    });
     const auto n = static_cast<std::int64_t>(unit.size());
     auto points = exec::make_buffer<Vec3f>(*ex_, n);
     auto out = exec::make_buffer<float>(*ex_, n);

@@ -24,11 +24,11 @@ struct Attribute {
 /// World position of point i = origin + positions[i]. Keeping a double offset apart lets survey coordinates near
 /// 1e6 keep their millimetres while everything else works in float.
 struct Cloud {
-  Vec3d origin{0, 0, 0};               ///< world units; zero unless the reader subtracted an offset
-  std::vector<Vec3f> positions;        ///< shape (n), relative to origin, world units, finite
-  std::vector<Vec3f> normals;          ///< shape (n) or (0); outward, any length (see Options::confidence)
-  std::vector<Attribute> attributes;   ///< each of shape (n)
-  std::int64_t dropped = 0;            ///< points of the source that had a non-finite coordinate and were left out
+  Vec3d origin{0, 0, 0};              ///< world units; zero unless the reader subtracted an offset
+  std::vector<Vec3f> positions;       ///< shape (n), relative to origin, world units, finite
+  std::vector<Vec3f> normals;         ///< shape (n) or (0); outward, any length (see Options::confidence)
+  std::vector<Attribute> attributes;  ///< each of shape (n)
+  std::int64_t dropped = 0;           ///< points of the source that had a non-finite coordinate and were left out
 
   [[nodiscard]] std::int64_t size() const noexcept { return static_cast<std::int64_t>(positions.size()); }
   [[nodiscard]] bool has_normals() const noexcept { return !positions.empty() && normals.size() == positions.size(); }

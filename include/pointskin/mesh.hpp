@@ -21,11 +21,11 @@ struct Mesh {
 
 /// Topology and measures of a mesh. `watertight()` is what `pointskin check` decides on.
 struct MeshReport {
-  std::int64_t vertices = 0;        ///< vertices of the file, used or not
-  std::int64_t used_vertices = 0;   ///< vertices that some triangle uses
+  std::int64_t vertices = 0;       ///< vertices of the file, used or not
+  std::int64_t used_vertices = 0;  ///< vertices that some triangle uses
   std::int64_t triangles = 0;
-  std::int64_t edges = 0;           ///< undirected edges
-  std::int64_t boundary_edges = 0;  ///< edges with exactly one triangle
+  std::int64_t edges = 0;                  ///< undirected edges
+  std::int64_t boundary_edges = 0;         ///< edges with exactly one triangle
   std::int64_t non_manifold_edges = 0;     ///< edges with more than two triangles
   std::int64_t misoriented_edges = 0;      ///< edges whose two triangles run through it in the same direction
   std::int64_t non_manifold_vertices = 0;  ///< used vertices whose triangles form more than one fan
@@ -62,11 +62,12 @@ struct DistanceStatistics {
 };
 
 struct MeshComparison {
-  double reference_diagonal = 0;       ///< world units
-  DistanceStatistics to_reference;     ///< samples on the mesh to the reference (accuracy)
-  DistanceStatistics from_reference;   ///< samples on the reference to the mesh (completeness)
-  DistanceStatistics two_sided;        ///< mean of the two means, root of the mean of the two squared rms, larger p95, larger max
-  double normal_consistency = 0;       ///< mean over both directions of |n . n'| of the nearest faces, in [0, 1]
+  double reference_diagonal = 0;      ///< world units
+  DistanceStatistics to_reference;    ///< samples on the mesh to the reference (accuracy)
+  DistanceStatistics from_reference;  ///< samples on the reference to the mesh (completeness)
+  DistanceStatistics
+      two_sided;  ///< mean of the two means, root of the mean of the two squared rms, larger p95, larger max
+  double normal_consistency = 0;  ///< mean over both directions of |n . n'| of the nearest faces, in [0, 1]
   double precision = 0, recall = 0, f_score = 0;  ///< shares within tau, in [0, 1]
 };
 

@@ -23,17 +23,19 @@ struct OctreeOwner {
 };
 
 /// Host copy of one level. Nodes come in bricks of 8 siblings: node n is in brick n / 8, at slot n % 8 = 4 x + 2 y + z.
-/// Nodes [0, cells) are cells, in Morton order; the others are ghosts one step above a cell, which only own the corners,
-/// edges and faces there. Ids are local to the level, -1 stands for "does not exist".
+/// Nodes [0, cells) are cells, in Morton order; the others are ghosts one step above a cell, which only own the
+/// corners, edges and faces there. Ids are local to the level, -1 stands for "does not exist".
 struct OctreeLevel {
   int depth = 0;
-  std::int64_t cells = 0;                ///< nodes that are cells
-  std::int64_t nodes = 0;                ///< 8 times the number of bricks
-  std::vector<std::uint64_t> brick_keys; ///< (bricks) Morton key of the parent node's integer coordinates, x highest
-  std::vector<std::int32_t> parents;     ///< (bricks) parent node on the level above
-  std::vector<std::int32_t> neighbours;  ///< (bricks, 27) bricks around; offset (x, y, z) is at 9 (x+1) + 3 (y+1) + z + 1
-  std::vector<std::int32_t> child_bricks;///< (nodes) brick on the level below: children if below its cells / 8, else ghosts
-  std::vector<std::int32_t> point_begin; ///< (cells + 1) first point of each cell in Octree::point_order()
+  std::int64_t cells = 0;                 ///< nodes that are cells
+  std::int64_t nodes = 0;                 ///< 8 times the number of bricks
+  std::vector<std::uint64_t> brick_keys;  ///< (bricks) Morton key of the parent node's integer coordinates, x highest
+  std::vector<std::int32_t> parents;      ///< (bricks) parent node on the level above
+  std::vector<std::int32_t>
+      neighbours;  ///< (bricks, 27) bricks around; offset (x, y, z) is at 9 (x+1) + 3 (y+1) + z + 1
+  std::vector<std::int32_t>
+      child_bricks;  ///< (nodes) brick on the level below: children if below its cells / 8, else ghosts
+  std::vector<std::int32_t> point_begin;  ///< (cells + 1) first point of each cell in Octree::point_order()
 
   /// Integer coordinates of a node in cells of this level.
   [[nodiscard]] std::array<std::int32_t, 3> coordinates(std::int32_t node) const;

@@ -27,27 +27,28 @@ struct Progress {
 };
 
 struct Options {
-  int depth = 8;                 ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
-  double screening = 2;          ///< weight of the point constraints, >= 0; 0 is the unscreened problem of the paper
-  int iterations = 8;            ///< relaxations per level, in [1, 1000]
-  double scale = 1.1;            ///< working cube / bounding cube of the points, in [1, 100]
-  double samples_per_node = 1.5; ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
-  bool confidence = false;       ///< true: a normal's length is the weight of its point
-  bool linear_fit = false;       ///< true: edge crossings by linear instead of rescaled quadratic interpolation
-  bool density = false;          ///< true: the mesh carries "density", samples per unit of area (world units^-2)
-  bool normals = true;           ///< true: the mesh carries vertex normals, from the gradient of the field
+  int depth = 8;         ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
+  double screening = 2;  ///< weight of the point constraints, >= 0; 0 is the unscreened problem of the paper
+  int iterations = 8;    ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take 8 to 48
+  double scale = 1.1;    ///< working cube / bounding cube of the points, in [1, 100]
+  double samples_per_node =
+      1.5;  ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
+  bool confidence = false;  ///< true: a normal's length is the weight of its point
+  bool linear_fit = false;  ///< true: edge crossings by linear instead of rescaled quadratic interpolation
+  bool density = false;     ///< true: the mesh carries "density", samples per unit of area (world units^-2)
+  bool normals = true;      ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;
-  bool residuals = false;        ///< true: measure the residual of every level before and after its solve
+  bool residuals = false;             ///< true: measure the residual of every level before and after its solve
   std::int64_t max_memory_bytes = 0;  ///< refuse to start when the estimate is larger; 0: no limit
 
   /// Called a few times per run from the calling thread; returning false cancels the run (Error interrupted).
-  std::function<bool(const Progress&)> progress;
+  std::function<bool(const Progress&)> progress{};
 };
 
 struct LevelReport {
   int depth = 0;
-  std::int64_t nodes = 0;      ///< cells of this depth
-  std::int64_t unknowns = 0;   ///< corners solved for at this depth
+  std::int64_t nodes = 0;     ///< cells of this depth
+  std::int64_t unknowns = 0;  ///< corners solved for at this depth
   int iterations = 0;
   double residual_before = 0;  ///< 2-norm of b - A u over the unknowns; 0 unless Options::residuals
   double residual_after = 0;
@@ -55,11 +56,11 @@ struct LevelReport {
 
 /// What a run did and what it cost. Times are milliseconds of wall clock, the device synchronised at phase borders.
 struct RunReport {
-  std::int64_t points = 0;   ///< points used
+  std::int64_t points = 0;  ///< points used
   int depth = 0;
-  std::int64_t nodes = 0;    ///< cells of all depths
+  std::int64_t nodes = 0;           ///< cells of all depths
   std::vector<LevelReport> levels;  ///< depth 0 first
-  double isovalue = 0;       ///< weighted mean of the field over the samples
+  double isovalue = 0;              ///< weighted mean of the field over the samples
   double upload_ms = 0, octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0, download_ms = 0;
   std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
 };
@@ -99,7 +100,8 @@ class Reconstructor {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Upper estimate of the memory a run takes on its device, in bytes, from counts alone; the host copy of the cloud is not in it.
+/// Estimate of the memory a run takes on its device, in bytes, from counts alone: above the measured peak for common
+/// scans, too low for surfaces that fill their cube like a sponge. The host copy of the cloud is not in it.
 std::int64_t estimate_device_bytes(std::int64_t points, const Options& options);
 
 /// @throws Error usage, naming the option and its range, if an option is out of range

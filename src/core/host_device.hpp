@@ -9,8 +9,10 @@
 #endif
 
 /// PSK_UNROLL unrolls the loop after it, so that small arrays indexed by its counter stay in registers.
-#ifdef __CUDA_ARCH__
+#if defined(__CUDA_ARCH__)
 #define PSK_UNROLL _Pragma("unroll")
+#elif defined(__CUDACC__)  // the host half of a .cu file: small, and each of its compilers knows another spelling
+#define PSK_UNROLL
 #else
 #define PSK_UNROLL _Pragma("GCC unroll 64")
 #endif

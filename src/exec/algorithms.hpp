@@ -1,4 +1,5 @@
-// Data-parallel algorithms written once over the primitives of a space. Include after the primitives of the spaces used.
+// Data-parallel algorithms written once over the primitives of a space. Include after the primitives of the spaces
+// used.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,8 @@ template <class T>
 struct Fill {
   ArrayView<T> out;
   T value;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = value; }
+  PSK_HD
+  void operator()(std::int64_t i) const { out[i] = value; }
 };
 
 template <class T>
@@ -25,17 +27,20 @@ struct Gather {
   ArrayView<const T> in;
   ArrayView<const std::int32_t> index;
   ArrayView<T> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = in[index[i]]; }
+  PSK_HD
+  void operator()(std::int64_t i) const { out[i] = in[index[i]]; }
 };
 
 struct Iota {
   ArrayView<std::int32_t> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<std::int32_t>(i); }
+  PSK_HD
+  void operator()(std::int64_t i) const { out[i] = static_cast<std::int32_t>(i); }
 };
 
 struct StartsRun {
   ArrayView<const std::uint64_t> keys;
-  PSK_HD bool operator()(std::int64_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
+  PSK_HD
+  bool operator()(std::int64_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
 };
 
 /// Lane l combines f(l), f(l + lanes), f(l + 2 lanes), ...: neighbouring lanes touch neighbouring memory.
@@ -45,7 +50,8 @@ struct ReduceLane {
   Combine combine;
   std::int64_t n, lanes;
   ArrayView<T> out;
-  PSK_HD void operator()(std::int64_t lane) const {
+  PSK_HD
+  void operator()(std::int64_t lane) const {
     T sum = f(lane);
     for (std::int64_t i = lane + lanes; i < n; i += lanes) sum = combine(sum, f(i));
     out[lane] = sum;
@@ -55,7 +61,8 @@ struct ReduceLane {
 template <class T>
 struct Load {
   ArrayView<const T> in;
-  PSK_HD T operator()(std::int64_t i) const { return in[i]; }
+  PSK_HD
+  T operator()(std::int64_t i) const { return in[i]; }
 };
 
 }  // namespace detail

@@ -45,7 +45,8 @@ class CpuPool final : public MemoryPool {
   CpuPool& operator=(const CpuPool&) = delete;
 
   void trim() noexcept override {
-    for (const Block& block : free_) std::free(block.data);  // NOLINT(cppcoreguidelines-no-malloc): pairs with aligned_alloc
+    for (const Block& block : free_)
+      std::free(block.data);  // NOLINT(cppcoreguidelines-no-malloc): pairs with aligned_alloc
     free_.clear();
   }
 
@@ -69,7 +70,8 @@ class CpuPool final : public MemoryPool {
       data = std::aligned_alloc(kAlignment, rounded);
     }
     if (data == nullptr)
-      throw Error(ErrorCode::over_limit, "out of memory on the CPU; while allocating " + std::to_string(bytes) + " bytes");
+      throw Error(ErrorCode::over_limit,
+                  "out of memory on the CPU; while allocating " + std::to_string(bytes) + " bytes");
     return data;
   }
 

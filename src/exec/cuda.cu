@@ -20,7 +20,8 @@ class CudaPool final : public MemoryPool {
     properties.location.id = index;
     cuda_check(cudaMemPoolCreate(&pool_, &properties), "creating the memory pool");
     std::uint64_t keep_all = ~std::uint64_t{0};
-    cuda_check(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep_all), "setting up the memory pool");
+    cuda_check(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep_all),
+               "setting up the memory pool");
   }
   ~CudaPool() override {
     cudaStreamSynchronize(stream_);

@@ -27,7 +27,8 @@ class Cuda {
   /// Waits until the stream's work is done. @throws Error device_unavailable if some of it failed
   void synchronize();
 
-  /// Makes this GPU the calling thread's current one. To be called before work from a thread that may have used another.
+  /// Makes this GPU the calling thread's current one. To be called before work from a thread that may have used
+  /// another.
   void activate();
 
   /// Page-locked host memory for small read-backs, `kStagingBytes` long.

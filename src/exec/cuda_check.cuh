@@ -12,8 +12,7 @@ namespace pointskin::exec {
 /// @throws Error over_limit for exhausted memory, device_unavailable for anything else
 inline void cuda_check(cudaError_t status, const char* doing) {
   if (status == cudaSuccess) return;
-  const ErrorCode code =
-      status == cudaErrorMemoryAllocation ? ErrorCode::over_limit : ErrorCode::device_unavailable;
+  const ErrorCode code = status == cudaErrorMemoryAllocation ? ErrorCode::over_limit : ErrorCode::device_unavailable;
   throw Error(code, std::string("CUDA: ") + cudaGetErrorString(status) + "; while " + doing);
 }
 

@@ -85,10 +85,14 @@ struct CountingIterator {
   using iterator_category = std::random_access_iterator_tag;
 
   std::int64_t at = 0;
-  PSK_HD std::int32_t operator*() const { return static_cast<std::int32_t>(at); }
-  PSK_HD std::int32_t operator[](std::int64_t i) const { return static_cast<std::int32_t>(at + i); }
-  PSK_HD CountingIterator operator+(std::int64_t i) const { return {at + i}; }
-  PSK_HD CountingIterator& operator+=(std::int64_t i) {
+  PSK_HD
+  std::int32_t operator*() const { return static_cast<std::int32_t>(at); }
+  PSK_HD
+  std::int32_t operator[](std::int64_t i) const { return static_cast<std::int32_t>(at + i); }
+  PSK_HD
+  CountingIterator operator+(std::int64_t i) const { return {at + i}; }
+  PSK_HD
+  CountingIterator& operator+=(std::int64_t i) {
     at += i;
     return *this;
   }
@@ -101,7 +105,8 @@ Buffer<std::int32_t> select(Cuda& ex, const char* label, std::int64_t n, const K
   Buffer<std::int32_t> found(ex.pool(), n);
   Buffer<std::int32_t> count(ex.pool(), 1);
   run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceSelect::If(scratch, bytes, CountingIterator{}, found.data(), count.data(), n, keep, stream_of(ex));
+    return cub::DeviceSelect::If(scratch, bytes, CountingIterator{}, found.data(), count.data(), n, keep,
+                                 stream_of(ex));
   });
   std::int32_t kept_count = 0;
   copy_to_host(ex, count.cview(), &kept_count);

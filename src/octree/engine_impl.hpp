@@ -17,14 +17,16 @@ namespace engine {
 /// The tie break of a public tree: points with equal keys keep the caller's order.
 struct ById {
   ArrayView<std::uint64_t> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<std::uint64_t>(i); }
+  PSK_HD
+  void operator()(std::int64_t i) const { out[i] = static_cast<std::uint64_t>(i); }
 };
 
 struct Locate {
   OctreeView tree;
   ArrayView<const Vec3f> queries;
   ArrayView<OctreeLeaf> out;
-  PSK_HD void operator()(std::int64_t i) const {
+  PSK_HD
+  void operator()(std::int64_t i) const {
     const Vec3f q = queries[i];
     const Leaf leaf = locate(tree, point_key(q.x, q.y, q.z), tree.depth);
     out[i] = {leaf.depth, leaf.cell};
@@ -99,8 +101,7 @@ class OctreeOn final : public Octree::Impl {
     auto squared = exec::make_buffer<float>(*ex_, unit.size() * found);
     find_nearest(*ex_, search_view(), unit.cview(), found, ids.view(), squared.view());
     OctreeNeighbours result;
-    for (std::size_t q = 0; q <= queries.size(); ++q)
-      result.begin.push_back(static_cast<std::int64_t>(q) * found);
+    for (std::size_t q = 0; q <= queries.size(); ++q) result.begin.push_back(static_cast<std::int64_t>(q) * found);
     result.points = engine::to_vector(*ex_, ids);
     result.distances = distances_world(squared);
     return result;
@@ -109,8 +110,7 @@ class OctreeOn final : public Octree::Impl {
   [[nodiscard]] OctreeNeighbours within(const std::vector<Vec3f>& queries, double radius) const override {
     ex_->activate();
     const exec::Buffer<Vec3f> unit = to_unit(upload(queries));
-    const WithinRadius found =
-        find_within(*ex_, search_view(), unit.cview(), static_cast<float>(radius / frame_.size));
+    const WithinRadius found = find_within(*ex_, search_view(), unit.cview(), static_cast<float>(radius / frame_.size));
     const std::vector<std::int32_t> begin = engine::to_vector(*ex_, found.begin);
     return {{begin.begin(), begin.end()}, engine::to_vector(*ex_, found.ids), distances_world(found.squared)};
   }

@@ -15,12 +15,16 @@ struct Box {
 };
 struct BoxOf {
   ArrayView<const Vec3f> positions;
-  PSK_HD Box operator()(std::int64_t i) const { return {positions[i], positions[i]}; }
+  PSK_HD
+  Box operator()(std::int64_t i) const { return {positions[i], positions[i]}; }
 };
 struct Join {
-  PSK_HD static float smaller(float a, float b) { return a < b ? a : b; }
-  PSK_HD static float larger(float a, float b) { return a > b ? a : b; }
-  PSK_HD Box operator()(const Box& a, const Box& b) const {
+  PSK_HD
+  static float smaller(float a, float b) { return a < b ? a : b; }
+  PSK_HD
+  static float larger(float a, float b) { return a > b ? a : b; }
+  PSK_HD
+  Box operator()(const Box& a, const Box& b) const {
     return {{smaller(a.lower.x, b.lower.x), smaller(a.lower.y, b.lower.y), smaller(a.lower.z, b.lower.z)},
             {larger(a.upper.x, b.upper.x), larger(a.upper.y, b.upper.y), larger(a.upper.z, b.upper.z)}};
   }
@@ -31,7 +35,8 @@ struct Join {
 template <exec::Space Exec>
 Frame fit_frame(Exec& ex, ArrayView<const Vec3f> positions, double scale) {
   if (positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
-  const auto box = exec::reduce<frame::Box>(ex, "octree.bounds", positions.size, frame::BoxOf{positions}, frame::Join{});
+  const auto box =
+      exec::reduce<frame::Box>(ex, "octree.bounds", positions.size, frame::BoxOf{positions}, frame::Join{});
   const Vec3d lower{box.lower.x, box.lower.y, box.lower.z};
   const Vec3d upper{box.upper.x, box.upper.y, box.upper.z};
   Frame result;

@@ -37,8 +37,8 @@ struct OctreeData {
 
 /// Points of the unit cube in the order of their keys.
 struct SortedPoints {
-  exec::Buffer<std::uint64_t> keys;   ///< (n) point_key, ascending
-  exec::Buffer<std::int32_t> order;   ///< (n) index in the caller's order
+  exec::Buffer<std::uint64_t> keys;  ///< (n) point_key, ascending
+  exec::Buffer<std::int32_t> order;  ///< (n) index in the caller's order
 };
 
 /// Sorts points by key; points with equal keys by a hash of `tie_break` (any function of all their data), so that the
@@ -52,8 +52,8 @@ SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<c
 /// Builds the padded, graded octree of `point_keys` (P1, P2, P3).
 ///
 /// Level D holds all bricks touched by the 27-neighbourhoods of occupied cells; level d < D those touched by the
-/// 27-neighbourhoods of cells that have children; levels 0..kCompleteDepth are complete. Adjacent leaves therefore differ by
-/// one level at most, and every corner of every cell has its owner.
+/// 27-neighbourhoods of cells that have children; levels 0..kCompleteDepth are complete. Adjacent leaves therefore
+/// differ by one level at most, and every corner of every cell has its owner.
 /// @param point_keys  shape (n), ascending, n >= 0
 /// @param depth       D in [1, kMaxDepth]
 /// @throws Error over_limit if a level would need more than 2^31 / 8 bricks, or memory runs out

@@ -15,8 +15,8 @@ namespace pointskin::octree {
 /// The tree with its points in key order.
 struct SearchView {
   OctreeView tree;
-  ArrayView<const Vec3f> positions;    ///< (n) in the unit cube
-  ArrayView<const std::int32_t> ids;   ///< (n) the caller's ids
+  ArrayView<const Vec3f> positions;   ///< (n) in the unit cube
+  ArrayView<const std::int32_t> ids;  ///< (n) the caller's ids
 };
 
 /// ids[q k + i], squared[q k + i]: the i-th nearest point of query q and its squared distance, by ascending

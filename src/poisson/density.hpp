@@ -13,11 +13,12 @@ namespace pointskin::poisson {
 /// Samples around a cell below which an estimate of the density is taken from a coarser level.
 inline constexpr float kReliableSamples = 8;
 
-/// Mean over a cell's width of the sum of squared hats across a plane: turns splatted counts into samples per cell face.
+/// Mean over a cell's width of the sum of squared hats across a plane: turns splatted counts into samples per cell
+/// face.
 inline constexpr float kPlaneFactor = 2.0F / 3;
 
-/// Cell faces that the splat kernel averages over in the plane of the surface: 1 / (integral B^2)^2 with integral B^2 = 11/20
-/// for the quadratic B-spline. Samples per node are counted over this area.
+/// Cell faces that the splat kernel averages over in the plane of the surface: 1 / (integral B^2)^2 with integral B^2 =
+/// 11/20 for the quadratic B-spline. Samples per node are counted over this area.
 inline constexpr float kKernelFaces = 400.0F / 121;
 
 /// Normals are not splatted at depths coarser than this.
@@ -36,15 +37,18 @@ struct DensityView {
 
   /// Samples per finest cell face (cells^-2) at a point of the unit cube, > 0 at samples: from the finest counted level
   /// whose cells hold kReliableSamples there.
-  PSK_HD float samples_per_cell(const octree::OctreeView& tree, const Vec3f& p) const {
-    int level = depth;
-    float samples = 0;
-    for (; level >= 0; --level) {
-      samples = octree::value_at(tree, counts, p, level) * (1 / kPlaneFactor);
-      if (samples >= kReliableSamples) break;
-    }
-    const int used = level < 0 ? 0 : level;
-    return samples / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - used));
+  PSK_HD
+  float samples_per_cell(const octree::OctreeView& tree, const Vec3f& p) const {
+    int level = octree::locate(tree, octree::point_key(p.x, p.y, p.z), depth).depth;
+    float samples = samples_per_face(tree, p, level);
+    while (level > 0 && samples < kReliableSamples) samples = samples_per_face(tree, p, --level);
+    return samples / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - level));
+  }
+
+  /// Samples per cell face of a level that has a cell at p.
+  PSK_HD
+  float samples_per_face(const octree::OctreeView& tree, const Vec3f& p, int level) const {
+    return octree::value_at(tree, counts, p, level) * (1 / kPlaneFactor);
   }
 };
 
@@ -58,8 +62,8 @@ struct WeighOptions {
 template <exec::Space Exec>
 Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const Vec3f> positions);
 
-/// Fills `samples.areas`, `splat_depths` and `coarsest_splat_depth`, and normalises `samples.normals` in place; with confidence, their
-/// former lengths scale the areas. O(n depth).
+/// Fills `samples.areas`, `splat_depths` and `coarsest_splat_depth`, and normalises `samples.normals` in place; with
+/// confidence, their former lengths scale the areas. O(n depth).
 template <exec::Space Exec>
 void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& density, const WeighOptions& options,
                    Samples& samples);

@@ -15,7 +15,8 @@ struct SplatCounts {
   octree::LevelView level;
   ArrayView<const Vec3f> positions;
   ArrayView<float> counts;
-  PSK_HD void operator()(std::int64_t brick) const {
+  PSK_HD
+  void operator()(std::int64_t brick) const {
     const octree::Coordinates origin = brick_origin(level, brick);
     const auto scale = static_cast<float>(1 << level.depth);
     float sum[8] = {};
@@ -36,7 +37,8 @@ struct RestrictCounts {
   octree::LevelView level, below;
   const float* below_counts;
   ArrayView<float> counts;
-  PSK_HD void operator()(std::int64_t n) const {
+  PSK_HD
+  void operator()(std::int64_t n) const {
     counts[n] = octree::restricted(level, below, below_counts, static_cast<std::int32_t>(n));
   }
 };
@@ -51,7 +53,8 @@ struct Weigh {
   ArrayView<float> areas;
   ArrayView<std::uint8_t> splat_depths;
 
-  PSK_HD void operator()(std::int64_t i) const {
+  PSK_HD
+  void operator()(std::int64_t i) const {
     const Vec3f n = normals[i];
     const float length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
     normals[i] = length > 0 ? Vec3f{n.x / length, n.y / length, n.z / length} : Vec3f{};
@@ -69,17 +72,20 @@ struct Weigh {
 
 struct DepthOf {
   ArrayView<const std::uint8_t> depths;
-  PSK_HD std::int32_t operator()(std::int64_t i) const { return depths[i]; }
+  PSK_HD
+  std::int32_t operator()(std::int64_t i) const { return depths[i]; }
 };
 struct Smaller {
-  PSK_HD std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a < b ? a : b; }
+  PSK_HD
+  std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a < b ? a : b; }
 };
 struct EvaluateDensity {
   octree::OctreeView tree;
   DensityView density;
   ArrayView<const Vec3f> points;
   ArrayView<float> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = density.samples_per_cell(tree, points[i]); }
+  PSK_HD
+  void operator()(std::int64_t i) const { out[i] = density.samples_per_cell(tree, points[i]); }
 };
 
 }  // namespace density
@@ -100,8 +106,7 @@ Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const 
     if (d > result.depth) own = exec::make_buffer<float>(ex, level.nodes());
     const ArrayView<float> counts =
         d > result.depth ? own.view() : result.counts.view().part(level.first_node, level.nodes());
-    const float* below_counts =
-        d >= result.depth ? below.data() : result.counts.data() + view.levels[d + 1].first_node;
+    const float* below_counts = d >= result.depth ? below.data() : result.counts.data() + view.levels[d + 1].first_node;
     for_each(ex, "density.restrict", level.nodes(),
              density::RestrictCounts{level, view.levels[d + 1], below_counts, counts});
     if (d > result.depth) below = std::move(own);

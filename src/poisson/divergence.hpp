@@ -1,6 +1,6 @@
 // The right-hand side: normals splatted to a vector field, its divergence, and its restriction to all levels.
-// Source: Zhou et al. 2010, sections 4.2 and appendix (equations 2, 4, 5). Differs: corner hats, so coarse levels are the
-// restriction of the finer one; samples are splatted at the depth that their density supports.
+// Source: Zhou et al. 2010, sections 4.2 and appendix (equations 2, 4, 5). Differs: corner hats, so coarse levels are
+// the restriction of the finer one; samples are splatted at the depth that their density supports.
 #pragma once
 
 #include "exec/space.hpp"

@@ -14,7 +14,8 @@ namespace pointskin::poisson {
 struct SamplesView {
   ArrayView<const Vec3f> positions;  ///< in the unit cube
   ArrayView<const Vec3f> normals;    ///< unit length, or zero for a sample without a normal
-  ArrayView<const float> areas;      ///< area of the surface that the sample stands for, in finest cells^2, > 0
+  ArrayView<const float> areas;  ///< area of the surface that the sample stands for, in finest cells^2; 0 only for zero
+                                 ///< normals with confidence
   ArrayView<const std::uint8_t> splat_depths;  ///< depth whose cells hold enough samples to carry the normal
   int coarsest_splat_depth = 0;                ///< smallest of splat_depths
 };

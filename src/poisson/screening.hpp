@@ -39,8 +39,8 @@ struct Screening {
   }
 };
 
-/// Collapses the samples of every cell of every level, finest first: from the samples themselves down to the coarsest splat
-/// depth, then from the collapsed samples of the children. O(n (D - coarsest splat depth + 1) + bricks).
+/// Collapses the samples of every cell of every level, finest first: from the samples themselves down to the coarsest
+/// splat depth, then from the collapsed samples of the children. O(n (D - coarsest splat depth + 1) + bricks).
 template <exec::Space Exec>
 Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples);
 

@@ -16,7 +16,8 @@ struct Prolong {
   octree::LevelView level, above;
   const float* above_u;
   ArrayView<float> u, other;
-  PSK_HD void operator()(std::int64_t n) const {
+  PSK_HD
+  void operator()(std::int64_t n) const {
     const float value = octree::prolonged(above, above_u, level.parent[n >> 3], static_cast<int>(n & 7));
     u[n] = value;
     other[n] = value;
@@ -30,7 +31,8 @@ struct Relax {
   const float* u;
   float* step;
   float* next;
-  PSK_HD void operator()(std::int64_t brick) const {
+  PSK_HD
+  void operator()(std::int64_t brick) const {
     const int unknowns = system.level.unknowns[brick];
     if (unknowns == 0) return;  // `next` holds the interpolated values already
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
@@ -49,7 +51,8 @@ struct Relax {
 struct SquaredResidual {
   LevelSystem system;
   const float* u;
-  PSK_HD double operator()(std::int64_t brick) const {
+  PSK_HD
+  double operator()(std::int64_t brick) const {
     const int unknowns = system.level.unknowns[brick];
     if (unknowns == 0) return 0;
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
@@ -63,7 +66,8 @@ struct SquaredResidual {
 
 struct CountUnknowns {
   const std::uint8_t* unknowns;
-  PSK_HD std::int64_t operator()(std::int64_t brick) const {
+  PSK_HD
+  std::int64_t operator()(std::int64_t brick) const {
     int count = 0;
     for (int bits = unknowns[brick]; bits != 0; bits &= bits - 1) ++count;
     return count;
@@ -72,9 +76,8 @@ struct CountUnknowns {
 
 struct Plus {
   template <class T>
-  PSK_HD T operator()(T a, T b) const {
-    return a + b;
-  }
+  PSK_HD
+  T operator()(T a, T b) const { return a + b; }
 };
 
 /// How long and on which part of the spectrum a level is iterated.
@@ -83,8 +86,9 @@ struct Schedule {
   double lower;  ///< eigenvalues of diagonal^-1 A in [lower, 1] are damped evenly
 };
 
-/// Complete levels are solved to about 1e-3: their smallest eigenvalue is known, about 2 / cells^2, and they are cheap. Finer levels only have to resolve
-/// what their own cells add to the interpolated field.
+/// Complete levels are iterated longer, over their whole spectrum, whose lower end is about 2 / cells^2: they carry the
+/// far field, and they are cheap. The finest of them mends what the few iterations above left. Finer levels only have
+/// to resolve what their own cells add to the interpolated field.
 inline Schedule schedule_for(int depth, int iterations) {
   if (depth > octree::kCompleteDepth)
     return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};
@@ -128,7 +132,8 @@ LevelSolve solve_level(Exec& ex, const LevelSystem& system, const SolveOptions& 
   const Schedule schedule = schedule_for(level.depth, options.iterations);
   LevelSolve report{level.depth, 0, schedule.iterations};
   if (options.residuals) {
-    report.unknowns = exec::reduce<std::int64_t>(ex, "solve.unknowns", level.bricks, CountUnknowns{level.unknowns}, Plus{});
+    report.unknowns =
+        exec::reduce<std::int64_t>(ex, "solve.unknowns", level.bricks, CountUnknowns{level.unknowns}, Plus{});
     report.residual_before = residual_norm(ex, system, u);
   }
   auto step = exec::make_buffer<float>(ex, level.nodes());
@@ -148,7 +153,8 @@ struct WeightedValue {
   double sum = 0, weight = 0;
 };
 struct AddWeighted {
-  PSK_HD WeightedValue operator()(const WeightedValue& a, const WeightedValue& b) const {
+  PSK_HD
+  WeightedValue operator()(const WeightedValue& a, const WeightedValue& b) const {
     return {a.sum + b.sum, a.weight + b.weight};
   }
 };
@@ -156,7 +162,8 @@ struct ValueAtSample {
   octree::OctreeView tree;
   const float* u;
   SamplesView samples;
-  PSK_HD WeightedValue operator()(std::int64_t i) const {
+  PSK_HD
+  WeightedValue operator()(std::int64_t i) const {
     const double area = samples.areas[i];
     return {area * octree::value_at(tree, u, samples.positions[i], tree.depth), area};
   }
@@ -171,6 +178,7 @@ Solution solve_poisson(Exec& ex, const octree::OctreeData& tree, ArrayView<const
   Solution solution{exec::make_buffer<float>(ex, view.nodes), {}};
   const ArrayView<float> all = solution.u.view();
   for (int d = 0; d <= view.depth; ++d) {
+    if (options.before_level) options.before_level(d);
     const octree::LevelView& level = view.levels[d];
     LevelSystem system{level, b.data + level.first_node, {}, 0, make_axis_rows_f()};
     if (options.screening > 0) {
@@ -194,9 +202,9 @@ Solution solve_poisson(Exec& ex, const octree::OctreeData& tree, ArrayView<const
 
 template <exec::Space Exec>
 double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> u, const SamplesView& samples) {
-  const auto total = exec::reduce<solve::WeightedValue>(ex, "solve.isovalue", samples.positions.size,
-                                                        solve::ValueAtSample{tree.view(), u.data, samples},
-                                                        solve::AddWeighted{});
+  const auto total =
+      exec::reduce<solve::WeightedValue>(ex, "solve.isovalue", samples.positions.size,
+                                         solve::ValueAtSample{tree.view(), u.data, samples}, solve::AddWeighted{});
   return total.sum / total.weight;
 }
 

@@ -4,9 +4,9 @@
 //   mass        M = h / 6 [ 2  1;  1  2]
 //   stiffness   K = 1 / h [ 1 -1; -1  1]
 //   derivative  D[i][j] = integral phi_j phi_i' = 1 / 2 [-1 -1; 1 1]
-// Summed over the cells around a corner, tensor products of these give operators on the 27 corners around it. Everything
-// is in units of h: the Laplacian is divided by h, the divergence by h^2.
-// Source: Zhou et al. 2010, section 4.1 (the same products for hats at cell centres).
+// Summed over the cells around a corner, tensor products of these give operators on the 27 corners around it.
+// Everything is in units of h: the Laplacian is divided by h, the divergence by h^2. Source: Zhou et al. 2010,
+// section 4.1 (the same products for hats at cell centres).
 #pragma once
 
 #include <array>

@@ -60,7 +60,8 @@ Case make_case(unsigned corners) {
     for (int at = start, i = 0; i < length; ++i, at = tracer.next(at)) loop.push_back(edge_of(at));
     const auto triangles = triangulate(loop, 0, loop.size() - 1);
     if (!triangles || result.triangles + triangles->size() > static_cast<std::size_t>(Case::kMaxTriangles))
-      throw Error(ErrorCode::internal, "marching cubes case " + std::to_string(corners) + " has no valid triangulation");
+      throw Error(ErrorCode::internal,
+                  "marching cubes case " + std::to_string(corners) + " has no valid triangulation");
     for (const auto& triangle : *triangles) {
       for (int corner = 0; corner < 3; ++corner)
         result.edges[3 * result.triangles + corner] =

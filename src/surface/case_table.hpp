@@ -15,8 +15,9 @@ struct Case {
 };
 static_assert(sizeof(Case) == 16);
 
-/// All cases, indexed by the inside bits of the cell's corners (bit = slot). Loops are triangulated so that no diagonal lies
-/// in a face of the cell: a neighbour might have the same one, and four triangles would meet there. All 256 cases allow that.
+/// All cases, indexed by the inside bits of the cell's corners (bit = slot). Loops are triangulated so that no diagonal
+/// lies in a face of the cell: a neighbour might have the same one, and four triangles would meet there. All 256 cases
+/// allow that.
 std::array<Case, 256> make_case_table();
 
 }  // namespace pointskin::surface

@@ -20,17 +20,23 @@ struct CrossedEdge {
   std::int32_t before, start, end, after;
 };
 
-PSK_HD inline CrossedEdge crossed_edge(const octree::OctreeView& tree, const EdgeOwner& owner) {
+PSK_HD
+inline CrossedEdge crossed_edge(const octree::OctreeView& tree, const EdgeOwner& owner) {
   const octree::LevelView& l = tree.levels[owner.level];
   const int x = owner.axis == 0 ? 1 : 0;
   const int y = owner.axis == 1 ? 1 : 0;
   const int z = owner.axis == 2 ? 1 : 0;
+  // Ghost bricks hold a node beyond the cube's upper faces, without a value.
+  const octree::Coordinates c = octree::decode(l.node_key(owner.node));
+  const std::int32_t along = owner.axis == 0 ? c.x : owner.axis == 1 ? c.y : c.z;
+  const bool at_face = along + 1 == 1 << owner.level;
   return {owner.level, l.neighbour(owner.node, -x, -y, -z), owner.node, l.neighbour(owner.node, x, y, z),
-          l.neighbour(owner.node, 2 * x, 2 * y, 2 * z)};
+          at_face ? -1 : l.neighbour(owner.node, 2 * x, 2 * y, 2 * z)};
 }
 
 /// Root in [0, 1] of u0 + s0 t + (d - s0) t^2, whose values at 0 and 1 have different signs.
-PSK_HD inline float quadratic_root(float u0, float s0, float d) {
+PSK_HD
+inline float quadratic_root(float u0, float s0, float d) {
   const float a = d - s0;
   const float discriminant = s0 * s0 - 4 * a * u0;
   const float root = std::sqrt(discriminant > 0 ? discriminant : 0);
@@ -42,15 +48,16 @@ PSK_HD inline float quadratic_root(float u0, float s0, float d) {
   return t >= 0 && t <= 1 ? t : linear;
 }
 
-/// Parameter in (0, 1) of the crossing. With neighbours on both sides, slopes from central differences, rescaled so that
-/// their mean is the difference of the ends, give a quadratic; else linear interpolation.
-PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedEdge& e, bool linear_fit) {
+/// Parameter in (0, 1) of the crossing. With neighbours on both sides, slopes from central differences, rescaled so
+/// that their mean is the difference of the ends, give a quadratic; else linear interpolation.
+PSK_HD
+inline float crossing_parameter(const field::FieldView& f, const CrossedEdge& e, bool linear_fit) {
   const float u0 = f.value(e.level, e.start) - f.isovalue;
   const float u1 = f.value(e.level, e.end) - f.isovalue;
   // Closed at the cube's faces: a corner there counts as outside whatever its value, and the cap lies next to it.
   if ((u0 < 0) == (u1 < 0)) {
     const octree::Coordinates c = octree::decode(f.tree.levels[e.level].node_key(e.start));
-    return f.may_be_inside(c, e.level) ? 1 - kCrossingMargin : kCrossingMargin;
+    return f.inside(e.level, e.start, c) ? 1 - kCrossingMargin : kCrossingMargin;
   }
   const float d = u1 - u0;
   float t = -u0 / d;
@@ -64,7 +71,8 @@ PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedE
 }
 
 /// -v / |v|, or zero: values fall towards the outside.
-PSK_HD inline Vec3f outward(const Vec3f& v) {
+PSK_HD
+inline Vec3f outward(const Vec3f& v) {
   const float length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
   return length > 0 ? Vec3f{-v.x / length, -v.y / length, -v.z / length} : Vec3f{};
 }

@@ -1,7 +1,7 @@
 // The isosurface of a field as a closed, 2-manifold mesh, across all levels of the octree (P9).
-// Source: Zhou et al. 2010, section 4.4; the transition cells follow Kazhdan, Klein, Dalal & Hoppe, "Unconstrained isosurface
-// extraction on arbitrary octrees", SGP 2007, for the one case that 2:1 grading leaves.
-// Differs: coarse leaves are not refined to depth D; they close the loops of their finer faces' segments.
+// Source: Zhou et al. 2010, section 4.4; the transition cells follow Kazhdan, Klein, Dalal & Hoppe, "Unconstrained
+// isosurface extraction on arbitrary octrees", SGP 2007, for the one case that 2:1 grading leaves. Differs: coarse
+// leaves are not refined to depth D; they close the loops of their finer faces' segments.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,15 @@ struct ExtractOptions {
 
 /// A mesh in the space it was made in.
 struct Surface {
-  exec::Buffer<Vec3f> positions;    ///< (v) in the unit cube, sorted by Morton key of the cell corner they start at
-  exec::Buffer<Vec3f> normals;      ///< (v) unit length, or (0)
-  exec::Buffer<Triangle> triangles; ///< (t) counter-clockwise from outside, by level and Morton key of their cells
+  exec::Buffer<Vec3f> positions;     ///< (v) in the unit cube, sorted by Morton key of the cell corner they start at
+  exec::Buffer<Vec3f> normals;       ///< (v) unit length, or (0)
+  exec::Buffer<Triangle> triangles;  ///< (t) counter-clockwise from outside, by level and Morton key of their cells
 };
 
-/// Extracts the level set of `f` at its isovalue. Every edge of the mesh has exactly two triangles and every vertex one fan,
-/// except on the faces of the cube if f.closed is false. An empty mesh if nothing crosses.
-/// @throws Error over_limit if vertices or triangles exceed 2^31
-/// O(nodes); three host round trips. Deterministic, the same bits on every device.
+/// Extracts the level set of `f` at its isovalue. Every edge of the mesh has exactly two triangles and every vertex one
+/// fan, except on the faces of the cube if f.closed is false. An empty mesh if nothing crosses.
+/// @throws Error over_limit if nodes, vertices or triangles exceed 2^31
+/// O(nodes); a handful of host round trips, for sizes only. Deterministic, the same bits on every device.
 template <exec::Space Exec>
 Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOptions& options);
 

@@ -78,7 +78,8 @@ TEST(Octree, CellsThatShareACornerEdgeOrFaceNameTheSameOwner) {
 TEST(Octree, LocatesTheLeafThatHoldsThePoint) {
   const std::vector<Vec3f> points = test_points();
   const Octree tree = Octree::build(points, {.depth = 7}, Device::cpu());
-  for (const OctreeLeaf& leaf : tree.locate(points)) EXPECT_EQ(leaf.depth, 7);  // occupied cells are on the finest level
+  for (const OctreeLeaf& leaf : tree.locate(points))
+    EXPECT_EQ(leaf.depth, 7);  // occupied cells are on the finest level
 }
 
 TEST(Octree, FindsTheSameNearestPointsAsBruteForce) {

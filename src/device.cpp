@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <charconv>
+#include <fstream>
 
 #include "exec/cpu.hpp"
 
@@ -24,6 +25,19 @@ int gpu_count() { return 0; }
 std::string gpu_name(int /*index*/) { return "GPU"; }
 std::int64_t gpu_free_bytes(int /*index*/) { return 0; }
 #endif
+
+/// What the kernel would give to new programs without swapping; free pages alone leave out its caches.
+std::int64_t available_host_bytes() {
+  std::ifstream info("/proc/meminfo");
+  std::string name;
+  std::int64_t kibibytes = 0;
+  std::string unit;
+  while (info >> name >> kibibytes) {
+    if (name == "MemAvailable:") return 1024 * kibibytes;
+    std::getline(info, unit);
+  }
+  return static_cast<std::int64_t>(sysconf(_SC_AVPHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+}
 
 }  // namespace
 
@@ -75,7 +89,7 @@ std::string Device::name() const {
 
 std::int64_t Device::available_bytes() const {
   if (kind == DeviceKind::cuda) return gpu_free_bytes(index);
-  return static_cast<std::int64_t>(sysconf(_SC_AVPHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+  return available_host_bytes();
 }
 
 }  // namespace pointskin

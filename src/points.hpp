@@ -18,7 +18,9 @@ struct DevicePoints {
 };
 
 /// Copies a cloud to the space.
-/// @throws Error no_normals if there are none or all have zero length
+/// @throws Error no_normals if there are none or all have zero length, empty_result without points, invalid_input if
+/// some
+///         are not finite, over_limit beyond 2^31 - 1
 template <exec::Space Exec>
 DevicePoints upload(Exec& ex, const Cloud& cloud);
 

@@ -3,6 +3,8 @@
 #include <pointskin/error.hpp>
 
 #include <cstring>
+#include <limits>
+#include <string>
 
 #include "exec/algorithms.hpp"
 #include "octree/octree_data.hpp"
@@ -15,8 +17,7 @@ struct ToWorld {
   octree::Frame frame;
   ArrayView<const Vec3f> in;
   ArrayView<Vec3f> out;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] = frame.to_world(in[i]); }
+  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_world(in[i]); }
 };
 
 /// Mixes the bits of a point; equal points have equal hashes. Source: the finaliser of MurmurHash3.
@@ -24,32 +25,40 @@ struct HashPoint {
   ArrayView<const Vec3f> positions, normals;
   ArrayView<std::uint64_t> hashes;
 
-  PSK_HD
-  static std::uint64_t mix(std::uint64_t hash, float value) {
+  PSK_HD static std::uint64_t mix(std::uint64_t hash, float value) {
     std::uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     hash = (hash ^ bits) * 0xff51afd7ed558ccdULL;
     return hash ^ hash >> 33;
   }
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Vec3f p = positions[i];
     const Vec3f n = normals[i];
     hashes[i] = mix(mix(mix(mix(mix(mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z), n.x), n.y), n.z);
   }
 };
 
-struct SquaredLength {
-  ArrayView<const Vec3f> normals;
-  PSK_HD
-  float operator()(std::int64_t i) const {
+/// What may be wrong with points.
+struct Flaws {
+  std::int64_t not_finite = 0;
+  std::int64_t with_normal = 0;  // normals that are not zero
+};
+struct FindFlaws {
+  ArrayView<const Vec3f> positions, normals;
+
+  PSK_HD static bool is_finite(const Vec3f& v) {
+    const float sum = 0 * v.x + 0 * v.y + 0 * v.z;  // anything not finite becomes NaN
+    return sum == 0;
+  }
+  PSK_HD Flaws operator()(std::int64_t i) const {
     const Vec3f n = normals[i];
-    return n.x * n.x + n.y * n.y + n.z * n.z;
+    return {is_finite(positions[i]) && is_finite(n) ? 0 : 1, n.x != 0 || n.y != 0 || n.z != 0 ? 1 : 0};
   }
 };
-struct LargerLength {
-  PSK_HD
-  float operator()(float a, float b) const { return a > b ? a : b; }
+struct AddFlaws {
+  PSK_HD Flaws operator()(const Flaws& a, const Flaws& b) const {
+    return {a.not_finite + b.not_finite, a.with_normal + b.with_normal};
+  }
 };
 
 }  // namespace points
@@ -59,12 +68,19 @@ DevicePoints upload(Exec& ex, const Cloud& cloud) {
   if (cloud.positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
   if (!cloud.has_normals())
     throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
+  if (cloud.size() > std::numeric_limits<std::int32_t>::max())
+    throw Error(ErrorCode::over_limit, "the cloud has more than 2^31 - 1 points; thin it or split it");
   DevicePoints points{exec::make_buffer<Vec3f>(ex, cloud.size()), exec::make_buffer<Vec3f>(ex, cloud.size())};
   copy_to_device(ex, cloud.positions.data(), points.positions.view());
   copy_to_device(ex, cloud.normals.data(), points.normals.view());
-  const auto longest = exec::reduce<float>(ex, "upload.normals", cloud.size(),
-                                           points::SquaredLength{points.normals.cview()}, points::LargerLength{});
-  if (!(longest > 0))
+  const auto flaws = exec::reduce<points::Flaws>(ex, "upload.check", cloud.size(),
+                                                 points::FindFlaws{points.positions.cview(), points.normals.cview()},
+                                                 points::AddFlaws{});
+  if (flaws.not_finite > 0)
+    throw Error(
+        ErrorCode::invalid_input,
+        std::to_string(flaws.not_finite) + " points have coordinates or normals that are not finite; leave them out");
+  if (flaws.with_normal == 0)
     throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
   return points;
 }

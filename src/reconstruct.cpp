@@ -55,7 +55,10 @@ Reconstructor& Reconstructor::operator=(Reconstructor&&) noexcept = default;
 Field Reconstructor::solve(const Cloud& cloud, const Options& options) { return Field(impl_->solve(cloud, options)); }
 
 Mesh Reconstructor::reconstruct(const Cloud& cloud, const Options& options) {
-  return impl_->solve(cloud, options)->extract(&impl_->report_);
+  const std::shared_ptr<detail::FieldImpl> field = impl_->solve(cloud, options);
+  if (options.progress && !options.progress({"extract", 0.8}))
+    throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
+  return field->extract(&impl_->report_);
 }
 
 std::vector<double> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
@@ -77,7 +80,7 @@ Mesh Field::extract() const { return impl_->extract(nullptr); }
 
 void validate(const Options& options) {
   require(options.depth >= 1 && options.depth <= 20, "depth", "in 1..20");
-  require(options.screening >= 0 && std::isfinite(options.screening), "screening", "at least 0");
+  require(options.screening >= 0 && options.screening <= 1e6, "screening", "in 0..1e6");
   require(options.iterations >= 1 && options.iterations <= 1000, "iterations", "in 1..1000");
   require(options.scale >= 1 && options.scale <= 100, "scale", "in 1..100");
   require(options.samples_per_node >= 0 && options.samples_per_node <= 100, "samples-per-node", "in 0..100");

@@ -116,7 +116,6 @@ FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options
 /// Implicit function to mesh, on the device.
 template <exec::Space Exec>
 surface::Surface extract(Exec& ex, const FieldData& field, const Options& options) {
-  announce(options, "extract", 0.8);
   return surface::extract_surface(ex, field.view(options.domain_faces), {options.linear_fit, options.normals});
 }
 
@@ -124,7 +123,9 @@ template <exec::Space Exec>
 class FieldOn final : public FieldImpl {
  public:
   FieldOn(std::shared_ptr<Exec> ex, FieldData data, Options options, const Vec3d& origin)
-      : ex_(std::move(ex)), data_(std::move(data)), options_(std::move(options)), origin_(origin) {}
+      : ex_(std::move(ex)), data_(std::move(data)), options_(std::move(options)), origin_(origin) {
+    options_.progress = nullptr;  // it may refer to what the caller no longer has
+  }
 
   [[nodiscard]] double isovalue() const override { return data_.isovalue; }
   [[nodiscard]] double cube_size_world() const override { return data_.frame.size; }

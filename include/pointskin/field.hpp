@@ -16,6 +16,8 @@ class FieldImpl;
 
 /// The function u of docs/algorithm.md: about 1 inside, 0 outside, continuous, trilinear in every leaf.
 /// The surface is where u equals isovalue(). A cheap handle; copies share the same data.
+/// Fields use their Reconstructor's stream and memory pool: a Reconstructor and its fields belong to one thread at a
+/// time.
 class Field {
  public:
   explicit Field(std::shared_ptr<detail::FieldImpl> impl);
@@ -31,7 +33,8 @@ class Field {
   /// O(n depth). Deterministic.
   [[nodiscard]] std::vector<float> values(const std::vector<Vec3d>& points_world) const;
 
-  /// The level set u = isovalue() as a closed, 2-manifold, outward-oriented mesh with vertices in Morton order.
+  /// The level set u = isovalue() as a 2-manifold, outward-oriented mesh with vertices in Morton order, closed
+  /// unless Options::domain_faces is open.
   /// @throws Error empty_result if nothing crosses the isovalue
   [[nodiscard]] Mesh extract() const;
 

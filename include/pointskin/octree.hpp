@@ -93,7 +93,8 @@ class Octree {
   /// Leaf around each query; queries outside of the cube are moved to its nearest point. O(depth) each.
   [[nodiscard]] std::vector<OctreeLeaf> locate(const std::vector<Vec3f>& queries) const;
 
-  /// The k nearest points of each query (all if there are fewer), by ascending (distance, id). Exact in float.
+  /// The k nearest points of each query (all if there are fewer), by ascending (distance, id). Distances are
+  /// those of the points in the unit cube, rounded to float: neighbours closer together than cube / 2^23 may swap.
   /// About O(log n + k^2) each. @throws Error usage if k < 1
   [[nodiscard]] OctreeNeighbours nearest(const std::vector<Vec3f>& queries, int k) const;
 

@@ -28,12 +28,13 @@ struct Progress {
 
 struct Options {
   int depth = 8;         ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
-  double screening = 2;  ///< weight of the point constraints, >= 0; 0 is the unscreened problem of the paper
-  int iterations = 8;    ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take 8 to 48
+  double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
+  int iterations = 8;    ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
+                         ///< max(this, 3 times their cells along an axis)
   double scale = 1.1;    ///< working cube / bounding cube of the points, in [1, 100]
   double samples_per_node =
       1.5;  ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
-  bool confidence = false;  ///< true: a normal's length is the weight of its point
+  bool confidence = false;  ///< true: a normal's length, relative to the mean length, is the weight of its point
   bool linear_fit = false;  ///< true: edge crossings by linear instead of rescaled quadratic interpolation
   bool density = false;     ///< true: the mesh carries "density", samples per unit of area (world units^-2)
   bool normals = true;      ///< true: the mesh carries vertex normals, from the gradient of the field
@@ -48,7 +49,7 @@ struct Options {
 struct LevelReport {
   int depth = 0;
   std::int64_t nodes = 0;     ///< cells of this depth
-  std::int64_t unknowns = 0;  ///< corners solved for at this depth
+  std::int64_t unknowns = 0;  ///< corners solved for at this depth; 0 unless Options::residuals
   int iterations = 0;
   double residual_before = 0;  ///< 2-norm of b - A u over the unknowns; 0 unless Options::residuals
   double residual_after = 0;
@@ -69,6 +70,7 @@ struct RunReport {
 /// several reconstructors may live side by side.
 class Reconstructor {
  public:
+  /// @throws Error device_unavailable if the device does not answer, usage for a negative number of threads
   explicit Reconstructor(Device device = Device::automatic());
   ~Reconstructor();
   Reconstructor(Reconstructor&&) noexcept;
@@ -82,11 +84,12 @@ class Reconstructor {
   /// The Field shares this reconstructor's device resources and may outlive it.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.
   /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),
-  ///         empty_result (no points, or all points at one place), over_limit (memory or 32-bit indices),
-  ///         interrupted (Options::progress returned false)
+  ///         invalid_input (points that are not finite), empty_result (no points, or all points at one place),
+  ///         over_limit (memory or 32-bit indices), interrupted (Options::progress returned false)
   Field solve(const Cloud& cloud, const Options& options = {});
 
   /// Runs the in-memory job `times` times on points resident on the device, the mesh staying there too.
+  /// report() stays as it was.
   /// @returns milliseconds of each run (points on the device to mesh on the device)
   std::vector<double> repeat(const Cloud& cloud, const Options& options, int times);
 

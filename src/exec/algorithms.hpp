@@ -18,8 +18,7 @@ template <class T>
 struct Fill {
   ArrayView<T> out;
   T value;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] = value; }
+  PSK_HD void operator()(std::int64_t i) const { out[i] = value; }
 };
 
 template <class T>
@@ -27,20 +26,17 @@ struct Gather {
   ArrayView<const T> in;
   ArrayView<const std::int32_t> index;
   ArrayView<T> out;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] = in[index[i]]; }
+  PSK_HD void operator()(std::int64_t i) const { out[i] = in[index[i]]; }
 };
 
 struct Iota {
   ArrayView<std::int32_t> out;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] = static_cast<std::int32_t>(i); }
+  PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<std::int32_t>(i); }
 };
 
 struct StartsRun {
   ArrayView<const std::uint64_t> keys;
-  PSK_HD
-  bool operator()(std::int64_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
+  PSK_HD bool operator()(std::int64_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
 };
 
 /// Lane l combines f(l), f(l + lanes), f(l + 2 lanes), ...: neighbouring lanes touch neighbouring memory.
@@ -50,8 +46,7 @@ struct ReduceLane {
   Combine combine;
   std::int64_t n, lanes;
   ArrayView<T> out;
-  PSK_HD
-  void operator()(std::int64_t lane) const {
+  PSK_HD void operator()(std::int64_t lane) const {
     T sum = f(lane);
     for (std::int64_t i = lane + lanes; i < n; i += lanes) sum = combine(sum, f(i));
     out[lane] = sum;
@@ -61,8 +56,11 @@ struct ReduceLane {
 template <class T>
 struct Load {
   ArrayView<const T> in;
-  PSK_HD
-  T operator()(std::int64_t i) const { return in[i]; }
+  PSK_HD T operator()(std::int64_t i) const { return in[i]; }
+};
+
+struct Plus {
+  PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
 };
 
 }  // namespace detail
@@ -104,6 +102,13 @@ T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
     lanes = fewer;
   }
   return read_element(ex, sums.cview(), 0);
+}
+
+/// Sum of counts, in 64 bits. Waits.
+template <Space Exec>
+std::int64_t sum_counts(Exec& ex, const char* label, ArrayView<const std::int32_t> counts) {
+  if (counts.empty()) return 0;
+  return reduce<std::int64_t>(ex, label, counts.size, detail::Load<std::int32_t>{counts}, detail::Plus{});
 }
 
 /// 0, 1, ..., n-1.

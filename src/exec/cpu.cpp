@@ -112,8 +112,10 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
       }
     }
   };
+  // A thread is started for 16 blocks at least: starting one takes longer than a block.
   std::vector<std::thread> helpers;
-  for (std::int64_t t = 1; t < std::min<std::int64_t>(workers_->threads, count); ++t) helpers.emplace_back(work);
+  for (std::int64_t t = 1; t < std::min<std::int64_t>(workers_->threads, 1 + count / 16); ++t)
+    helpers.emplace_back(work);
   work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);

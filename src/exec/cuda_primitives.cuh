@@ -85,14 +85,10 @@ struct CountingIterator {
   using iterator_category = std::random_access_iterator_tag;
 
   std::int64_t at = 0;
-  PSK_HD
-  std::int32_t operator*() const { return static_cast<std::int32_t>(at); }
-  PSK_HD
-  std::int32_t operator[](std::int64_t i) const { return static_cast<std::int32_t>(at + i); }
-  PSK_HD
-  CountingIterator operator+(std::int64_t i) const { return {at + i}; }
-  PSK_HD
-  CountingIterator& operator+=(std::int64_t i) {
+  PSK_HD std::int32_t operator*() const { return static_cast<std::int32_t>(at); }
+  PSK_HD std::int32_t operator[](std::int64_t i) const { return static_cast<std::int32_t>(at + i); }
+  PSK_HD CountingIterator operator+(std::int64_t i) const { return {at + i}; }
+  PSK_HD CountingIterator& operator+=(std::int64_t i) {
     at += i;
     return *this;
   }

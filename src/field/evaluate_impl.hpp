@@ -10,8 +10,9 @@ struct Evaluate {
   FieldView f;
   ArrayView<const Vec3f> points;
   ArrayView<float> values;
-  PSK_HD
-  void operator()(std::int64_t i) const { values[i] = octree::value_at(f.tree, f.values, points[i], f.tree.depth); }
+  PSK_HD void operator()(std::int64_t i) const {
+    values[i] = octree::value_at(f.tree, f.values, points[i], f.tree.depth);
+  }
 };
 
 }  // namespace detail

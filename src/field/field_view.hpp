@@ -17,26 +17,24 @@ struct FieldView {
   float isovalue = 0;
   bool closed = true;  ///< corners on the faces of the cube count as outside
 
-  [[nodiscard]] PSK_HD
-  float value(int level, std::int32_t node) const { return values[tree.levels[level].first_node + node]; }
+  [[nodiscard]] PSK_HD float value(int level, std::int32_t node) const {
+    return values[tree.levels[level].first_node + node];
+  }
 
   /// True if the corner at these coordinates may be inside at all.
-  [[nodiscard]] PSK_HD
-  bool may_be_inside(const octree::Coordinates& c, int level) const {
+  [[nodiscard]] PSK_HD bool may_be_inside(const octree::Coordinates& c, int level) const {
     const std::int32_t last = 1 << level;
     return !closed || (c.x > 0 && c.y > 0 && c.z > 0 && c.x < last && c.y < last && c.z < last);
   }
 
   /// True if the corner is inside.
-  [[nodiscard]] PSK_HD
-  bool inside(int level, std::int32_t node, const octree::Coordinates& c) const {
+  [[nodiscard]] PSK_HD bool inside(int level, std::int32_t node, const octree::Coordinates& c) const {
     return value(level, node) >= isovalue && may_be_inside(c, level) && !is_cut_off(level, node, c);
   }
 
   /// True for the middle of a coarser leaf's edge between a face of a closed cube and an outside corner: both ends
   /// count as outside, so the middle must too, or the edge would be crossed twice.
-  [[nodiscard]] PSK_HD
-  bool is_cut_off(int level, std::int32_t node, const octree::Coordinates& c) const {
+  [[nodiscard]] PSK_HD bool is_cut_off(int level, std::int32_t node, const octree::Coordinates& c) const {
     if (!closed || node < 0 || ((c.x & 1) + (c.y & 1) + (c.z & 1)) != 1) return false;
     const std::int32_t odd = (c.x & 1) != 0 ? c.x : (c.y & 1) != 0 ? c.y : c.z;
     const std::int32_t before_last = (1 << level) - 1;
@@ -50,8 +48,7 @@ struct FieldView {
 };
 
 /// Gradient at a corner by central differences of its level, per cell; one-sided where a neighbour is missing.
-PSK_HD
-inline Vec3f gradient_at(const FieldView& f, int level, std::int32_t node) {
+PSK_HD inline Vec3f gradient_at(const FieldView& f, int level, std::int32_t node) {
   const octree::LevelView& l = f.tree.levels[level];
   const float* u = f.values + l.first_node;
   const octree::Coordinates c = octree::decode(l.node_key(node));

@@ -13,8 +13,7 @@ namespace pointskin::octree {
 
 /// Value at node `slot` of a brick whose parent node is `parent`, interpolated from the corners `above` of the level
 /// above: the mean of the 1, 2, 4 or 8 corners around it. Exact for hat functions, whose spaces are nested.
-PSK_HD
-inline float prolonged(const LevelView& level_above, const float* above, std::int32_t parent, int slot) {
+PSK_HD inline float prolonged(const LevelView& level_above, const float* above, std::int32_t parent, int slot) {
   float sum = 0;
   int count = 0;
   for (int s = 0; s < 8; ++s) {
@@ -28,8 +27,7 @@ inline float prolonged(const LevelView& level_above, const float* above, std::in
 
 /// Sum over the 27 finer corners around node `n` of weight times value, weights 1, 1/2, 1/4, 1/8: the transpose of
 /// prolonged(). Finer corners that do not exist count as zero.
-PSK_HD
-inline float restricted(const LevelView& level, const LevelView& below, const float* values, std::int32_t n) {
+PSK_HD inline float restricted(const LevelView& level, const LevelView& below, const float* values, std::int32_t n) {
   float sum = 0;
   for (int s = 0; s < 8; ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
     const int x = slot_x(s);
@@ -54,15 +52,13 @@ inline float restricted(const LevelView& level, const LevelView& below, const fl
 }
 
 /// Trilinear weight of corner `slot` at local coordinates (x, y, z) of a cell.
-PSK_HD
-inline float corner_weight(int slot, const Vec3f& local) {
+PSK_HD inline float corner_weight(int slot, const Vec3f& local) {
   return (slot_x(slot) != 0 ? local.x : 1 - local.x) * (slot_y(slot) != 0 ? local.y : 1 - local.y) *
          (slot_z(slot) != 0 ? local.z : 1 - local.z);
 }
 
 /// Local coordinates in [0, 1] of a point of the unit cube in the cell at `c` of level `depth`.
-PSK_HD
-inline Vec3f local_in_cell(const Vec3f& p, const Coordinates& c, int depth) {
+PSK_HD inline Vec3f local_in_cell(const Vec3f& p, const Coordinates& c, int depth) {
   const auto scale = static_cast<float>(1 << depth);
   const auto clamp = [](float v) { return v < 0 ? 0.0F : v > 1 ? 1.0F : v; };
   return {clamp(p.x * scale - static_cast<float>(c.x)), clamp(p.y * scale - static_cast<float>(c.y)),
@@ -70,8 +66,7 @@ inline Vec3f local_in_cell(const Vec3f& p, const Coordinates& c, int depth) {
 }
 
 /// Trilinear interpolation of corner values in a cell.
-PSK_HD
-inline float interpolated(const LevelView& level, const float* values, std::int32_t cell, const Vec3f& local) {
+PSK_HD inline float interpolated(const LevelView& level, const float* values, std::int32_t cell, const Vec3f& local) {
   float sum = 0;
   for (int s = 0; s < 8; ++s)
     sum += corner_weight(s, local) * values[level.neighbour(cell, slot_x(s), slot_y(s), slot_z(s))];
@@ -85,8 +80,7 @@ struct Leaf {
 };
 
 /// Descends from the root to level `last` or to the leaf above it. O(depth).
-PSK_HD
-inline Leaf locate(const OctreeView& tree, std::uint64_t point_key, int last) {
+PSK_HD inline Leaf locate(const OctreeView& tree, std::uint64_t point_key, int last) {
   Leaf leaf;
   while (leaf.depth < last && tree.is_split(leaf.depth, leaf.cell)) {
     const std::int32_t brick = tree.levels[leaf.depth].child_brick[leaf.cell];
@@ -98,8 +92,7 @@ inline Leaf locate(const OctreeView& tree, std::uint64_t point_key, int last) {
 
 /// Value of corner values over all levels (level-major) at a point of the unit cube: one trilinear interpolation in the
 /// deepest cell no finer than `last`.
-PSK_HD
-inline float value_at(const OctreeView& tree, const float* values, const Vec3f& p, int last) {
+PSK_HD inline float value_at(const OctreeView& tree, const float* values, const Vec3f& p, int last) {
   const std::uint64_t key = point_key(p.x, p.y, p.z);
   const Leaf leaf = locate(tree, key, last);
   const LevelView& level = tree.levels[leaf.depth];

@@ -22,8 +22,7 @@ namespace build {
 struct PointKey {
   ArrayView<const Vec3f> positions;
   ArrayView<std::uint64_t> keys;
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Vec3f p = positions[i];
     keys[i] = point_key(p.x, p.y, p.z);
   }
@@ -32,13 +31,11 @@ struct PointKey {
 /// 1 where a point has the key of the one before it.
 struct RepeatsKey {
   ArrayView<const std::uint64_t> keys;
-  PSK_HD
-  std::int32_t operator()(std::int64_t i) const { return i > 0 && keys[i] == keys[i - 1] ? 1 : 0; }
+  PSK_HD std::int32_t operator()(std::int64_t i) const { return i > 0 && keys[i] == keys[i - 1] ? 1 : 0; }
 };
 
 struct Larger {
-  PSK_HD
-  std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a > b ? a : b; }
+  PSK_HD std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a > b ? a : b; }
 };
 
 struct ToCellKey {
@@ -46,16 +43,14 @@ struct ToCellKey {
   ArrayView<const std::int32_t> first_points;
   int depth;
   ArrayView<std::uint64_t> cells;
-  PSK_HD
-  void operator()(std::int64_t i) const { cells[i] = cell_key(point_keys[first_points[i]], depth); }
+  PSK_HD void operator()(std::int64_t i) const { cells[i] = cell_key(point_keys[first_points[i]], depth); }
 };
 
 /// Keeps the first point of every occupied cell.
 struct StartsCell {
   ArrayView<const std::uint64_t> point_keys;
   int depth;
-  PSK_HD
-  bool operator()(std::int64_t i) const {
+  PSK_HD bool operator()(std::int64_t i) const {
     return i == 0 || cell_key(point_keys[i], depth) != cell_key(point_keys[i - 1], depth);
   }
 };
@@ -66,13 +61,11 @@ struct TouchedBricks {
   std::int32_t bricks_per_axis;
   ArrayView<std::uint64_t> touched;
 
-  PSK_HD
-  std::int32_t brick(std::int32_t cell, int side) const {
+  PSK_HD std::int32_t brick(std::int32_t cell, int side) const {
     const std::int32_t b = (cell + (side == 0 ? -1 : 1)) >> 1;
     return b < 0 ? 0 : b >= bricks_per_axis ? bricks_per_axis - 1 : b;
   }
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Coordinates c = decode(cells[i]);
     for (int s = 0; s < 8; ++s)
       touched[8 * i + s] = encode({brick(c.x, slot_x(s)), brick(c.y, slot_y(s)), brick(c.z, slot_z(s))});
@@ -81,13 +74,11 @@ struct TouchedBricks {
 
 struct AllBricks {
   ArrayView<std::uint64_t> keys;
-  PSK_HD
-  void operator()(std::int64_t i) const { keys[i] = static_cast<std::uint64_t>(i); }
+  PSK_HD void operator()(std::int64_t i) const { keys[i] = static_cast<std::uint64_t>(i); }
 };
 
 /// Node with this key among the nodes of bricks with sorted keys; it must exist. O(log bricks).
-PSK_HD
-inline std::int64_t find_node(ArrayView<const std::uint64_t> brick_keys, std::uint64_t node_key) {
+PSK_HD inline std::int64_t find_node(ArrayView<const std::uint64_t> brick_keys, std::uint64_t node_key) {
   std::int64_t low = 0;
   std::int64_t high = brick_keys.size - 1;
   while (low < high) {
@@ -107,8 +98,7 @@ struct FindParent {
   ArrayView<std::int32_t> parent;
   ArrayView<std::int32_t> child_brick_above;
 
-  PSK_HD
-  void operator()(std::int64_t b) const {
+  PSK_HD void operator()(std::int64_t b) const {
     const auto node = static_cast<std::int32_t>(find_node(above_keys, keys[b]));
     parent[b] = node;
     child_brick_above[node] = static_cast<std::int32_t>(b);
@@ -118,8 +108,7 @@ struct FindParent {
 /// Nodes of the level above that need a ghost brick: not split, but some node one step below them is.
 struct NeedsGhost {
   LevelView above;  // its child_brick holds cell bricks only
-  PSK_HD
-  bool operator()(std::int64_t i) const {
+  PSK_HD bool operator()(std::int64_t i) const {
     const auto node = static_cast<std::int32_t>(i);
     if (above.child_brick[node] >= 0) return false;
     for (int s = 1; s < 8; ++s) {
@@ -137,8 +126,7 @@ struct AddGhost {
   ArrayView<std::uint64_t> keys;
   ArrayView<std::int32_t> parent;
   ArrayView<std::int32_t> child_brick_above;
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const std::int32_t node = ghost_parents[i];
     keys[first + i] = above.node_key(node);
     parent[first + i] = node;
@@ -152,8 +140,7 @@ struct FindNeighbours {
   NeighbourTables tables;
   ArrayView<const std::int32_t> parent;
   ArrayView<std::int32_t> neighbours;
-  PSK_HD
-  void operator()(std::int64_t b) const {
+  PSK_HD void operator()(std::int64_t b) const {
     const std::int32_t node = parent[b];
     const std::int64_t around = std::int64_t{node >> 3} * kNeighbours;
     const int slot = node & 7;
@@ -170,11 +157,9 @@ struct FindUnknowns {
   ArrayView<std::uint8_t> unknowns;
 
   /// Cells of the cube around coordinate c of an axis: bit 0 the lower one, bit 1 the upper one.
-  PSK_HD
-  int in_cube(std::int32_t c) const { return (c > 0 ? 1 : 0) | (c < (1 << level.depth) ? 2 : 0); }
+  PSK_HD int in_cube(std::int32_t c) const { return (c > 0 ? 1 : 0) | (c < (1 << level.depth) ? 2 : 0); }
 
-  PSK_HD
-  bool is_unknown(std::int32_t node) const {
+  PSK_HD bool is_unknown(std::int32_t node) const {
     const Coordinates c = decode(level.node_key(node));
     const std::int32_t last = 1 << level.depth;
     if (c.x > last || c.y > last || c.z > last) return false;
@@ -186,8 +171,7 @@ struct FindUnknowns {
     }
     return true;
   }
-  PSK_HD
-  void operator()(std::int64_t b) const {
+  PSK_HD void operator()(std::int64_t b) const {
     int mask = 0;
     for (int s = 0; s < 8; ++s) mask |= is_unknown(static_cast<std::int32_t>(8 * b + s)) ? 1 << s : 0;
     unknowns[b] = static_cast<std::uint8_t>(mask);
@@ -201,8 +185,7 @@ struct CountPoints {
   ArrayView<const std::uint64_t> brick_keys;   // of the cell bricks
   std::int64_t points;
   ArrayView<std::int32_t> count;  // zero before
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const std::int64_t end = i + 1 < first_points.size ? first_points[i + 1] : points;
     count[find_node(brick_keys, cells[i])] = static_cast<std::int32_t>(end - first_points[i]);
   }
@@ -214,8 +197,7 @@ struct SumPoints {
   const std::int32_t* below_begin;
   std::int32_t below_cell_bricks;
   ArrayView<std::int32_t> count;
-  PSK_HD
-  void operator()(std::int64_t node) const {
+  PSK_HD void operator()(std::int64_t node) const {
     const std::int32_t brick = level.child_brick[node];
     const bool split = brick >= 0 && brick < below_cell_bricks;
     count[node] = split ? below_begin[8 * std::int64_t{brick} + 8] - below_begin[8 * std::int64_t{brick}] : 0;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <pointskin/error.hpp>
+
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -17,16 +20,14 @@ namespace engine {
 /// The tie break of a public tree: points with equal keys keep the caller's order.
 struct ById {
   ArrayView<std::uint64_t> out;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] = static_cast<std::uint64_t>(i); }
+  PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<std::uint64_t>(i); }
 };
 
 struct Locate {
   OctreeView tree;
   ArrayView<const Vec3f> queries;
   ArrayView<OctreeLeaf> out;
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Vec3f q = queries[i];
     const Leaf leaf = locate(tree, point_key(q.x, q.y, q.z), tree.depth);
     out[i] = {leaf.depth, leaf.cell};
@@ -48,6 +49,8 @@ class OctreeOn final : public Octree::Impl {
  public:
   OctreeOn(std::unique_ptr<Exec> ex, const std::vector<Vec3f>& positions, const OctreeOptions& options)
       : ex_(std::move(ex)) {
+    if (positions.size() > std::size_t{std::numeric_limits<std::int32_t>::max()})
+      throw Error(ErrorCode::over_limit, "the cloud has more than 2^31 - 1 points; thin it or split it");
     const exec::Buffer<Vec3f> world = upload(positions);
     frame_ = fit_frame(*ex_, world.cview(), options.scale);
     const exec::Buffer<Vec3f> unit = to_unit(world);

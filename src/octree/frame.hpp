@@ -15,15 +15,13 @@ struct Frame {
   Vec3d lower{0, 0, 0};  ///< lower corner, relative to the cloud's origin, world units
   double size = 1;       ///< side, world units
 
-  PSK_HD
-  Vec3f to_unit(const Vec3f& p) const {
+  PSK_HD Vec3f to_unit(const Vec3f& p) const {
     const double inverse = 1 / size;
     return {static_cast<float>((static_cast<double>(p.x) - lower[0]) * inverse),
             static_cast<float>((static_cast<double>(p.y) - lower[1]) * inverse),
             static_cast<float>((static_cast<double>(p.z) - lower[2]) * inverse)};
   }
-  PSK_HD
-  Vec3f to_world(const Vec3f& unit) const {
+  PSK_HD Vec3f to_world(const Vec3f& unit) const {
     return {static_cast<float>(lower[0] + static_cast<double>(unit.x) * size),
             static_cast<float>(lower[1] + static_cast<double>(unit.y) * size),
             static_cast<float>(lower[2] + static_cast<double>(unit.z) * size)};
@@ -35,8 +33,7 @@ struct ToUnit {
   Frame frame;
   ArrayView<const Vec3f> in;
   ArrayView<Vec3f> out;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] = frame.to_unit(in[i]); }
+  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_unit(in[i]); }
 };
 
 /// Cube around the bounding box of `positions`, `scale` times as wide as its longest side, with the same centre.

@@ -15,16 +15,12 @@ struct Box {
 };
 struct BoxOf {
   ArrayView<const Vec3f> positions;
-  PSK_HD
-  Box operator()(std::int64_t i) const { return {positions[i], positions[i]}; }
+  PSK_HD Box operator()(std::int64_t i) const { return {positions[i], positions[i]}; }
 };
 struct Join {
-  PSK_HD
-  static float smaller(float a, float b) { return a < b ? a : b; }
-  PSK_HD
-  static float larger(float a, float b) { return a > b ? a : b; }
-  PSK_HD
-  Box operator()(const Box& a, const Box& b) const {
+  PSK_HD static float smaller(float a, float b) { return a < b ? a : b; }
+  PSK_HD static float larger(float a, float b) { return a > b ? a : b; }
+  PSK_HD Box operator()(const Box& a, const Box& b) const {
     return {{smaller(a.lower.x, b.lower.x), smaller(a.lower.y, b.lower.y), smaller(a.lower.z, b.lower.z)},
             {larger(a.upper.x, b.upper.x), larger(a.upper.y, b.upper.y), larger(a.upper.z, b.upper.z)}};
   }

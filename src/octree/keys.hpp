@@ -24,8 +24,7 @@ struct Coordinates {
 };
 
 /// Moves bit i of the lowest 21 bits to bit 3 i.
-PSK_HD
-constexpr std::uint64_t spread_bits(std::uint64_t v) {
+PSK_HD constexpr std::uint64_t spread_bits(std::uint64_t v) {
   v &= 0x1fffff;
   v = (v | v << 32) & 0x001f00000000ffff;
   v = (v | v << 16) & 0x001f0000ff0000ff;
@@ -36,8 +35,7 @@ constexpr std::uint64_t spread_bits(std::uint64_t v) {
 }
 
 /// Inverse of spread_bits; other bits are ignored.
-PSK_HD
-constexpr std::uint64_t gather_bits(std::uint64_t v) {
+PSK_HD constexpr std::uint64_t gather_bits(std::uint64_t v) {
   v &= 0x1249249249249249;
   v = (v | v >> 2) & 0x10c30c30c30c30c3;
   v = (v | v >> 4) & 0x100f00f00f00f00f;
@@ -48,49 +46,42 @@ constexpr std::uint64_t gather_bits(std::uint64_t v) {
 }
 
 /// Key of non-negative coordinates below 2^21.
-PSK_HD
-constexpr std::uint64_t encode(const Coordinates& c) {
+PSK_HD constexpr std::uint64_t encode(const Coordinates& c) {
   return spread_bits(static_cast<std::uint64_t>(c.x)) << 2 | spread_bits(static_cast<std::uint64_t>(c.y)) << 1 |
          spread_bits(static_cast<std::uint64_t>(c.z));
 }
 
-PSK_HD
-constexpr Coordinates decode(std::uint64_t key) {
+PSK_HD constexpr Coordinates decode(std::uint64_t key) {
   return {static_cast<std::int32_t>(gather_bits(key >> 2)), static_cast<std::int32_t>(gather_bits(key >> 1)),
           static_cast<std::int32_t>(gather_bits(key))};
 }
 
 /// Position of a node among its siblings: x is the highest bit.
-PSK_HD
-constexpr int slot_of(int x, int y, int z) { return x << 2 | y << 1 | z; }
-PSK_HD
-constexpr int slot_x(int slot) { return slot >> 2; }
-PSK_HD
-constexpr int slot_y(int slot) { return slot >> 1 & 1; }
-PSK_HD
-constexpr int slot_z(int slot) { return slot & 1; }
+PSK_HD constexpr int slot_of(int x, int y, int z) { return x << 2 | y << 1 | z; }
+PSK_HD constexpr int slot_x(int slot) { return slot >> 2; }
+PSK_HD constexpr int slot_y(int slot) { return slot >> 1 & 1; }
+PSK_HD constexpr int slot_z(int slot) { return slot & 1; }
 
 /// Index of an offset in {-1, 0, 1}^3 among the 27 neighbours; 13 is the node itself.
-PSK_HD
-constexpr int neighbour_index(int dx, int dy, int dz) { return (dx + 1) * 9 + (dy + 1) * 3 + dz + 1; }
+PSK_HD constexpr int neighbour_index(int dx, int dy, int dz) { return (dx + 1) * 9 + (dy + 1) * 3 + dz + 1; }
 inline constexpr int kNeighbours = 27;
 inline constexpr int kSelf = 13;
 
 /// Key at depth kPointBits of a point of the unit cube; coordinates outside [0, 1) are clamped into the cube.
 /// Scaling by a power of two and rounding down are exact, so every processor computes the same key.
-PSK_HD
-inline std::uint64_t point_key(float x, float y, float z) {
+PSK_HD inline std::uint64_t point_key(float x, float y, float z) {
   constexpr float kCells = static_cast<float>(1 << kPointBits);
   constexpr float kLast = kCells - 1;
   const auto cell = [](float v) {
     const float scaled = v * kCells;
-    return static_cast<std::int32_t>(scaled < 0 ? 0.0F : scaled > kLast ? kLast : scaled);
+    return static_cast<std::int32_t>(!(scaled > 0) ? 0.0F : scaled > kLast ? kLast : scaled);
   };
   return encode({cell(x), cell(y), cell(z)});
 }
 
 /// Depth-d cell key of a point key.
-PSK_HD
-constexpr std::uint64_t cell_key(std::uint64_t point_key, int depth) { return point_key >> 3 * (kPointBits - depth); }
+PSK_HD constexpr std::uint64_t cell_key(std::uint64_t point_key, int depth) {
+  return point_key >> 3 * (kPointBits - depth);
+}
 
 }  // namespace pointskin::octree

@@ -13,19 +13,15 @@ struct Neighbourhood {
   float value[64];
 
   /// Index of offset (x, y, z), each in -1..2.
-  PSK_HD
-  static constexpr int index(int x, int y, int z) { return (x + 1) * 16 + (y + 1) * 4 + z + 1; }
-  [[nodiscard]] PSK_HD
-  float at(int x, int y, int z) const { return value[index(x, y, z)]; }
+  PSK_HD static constexpr int index(int x, int y, int z) { return (x + 1) * 16 + (y + 1) * 4 + z + 1; }
+  [[nodiscard]] PSK_HD float at(int x, int y, int z) const { return value[index(x, y, z)]; }
 };
 
 /// Brick that holds offset x of -1..2, as a step of -1, 0 or 1.
-PSK_HD
-constexpr int brick_step(int x) { return x < 0 ? -1 : x > 1 ? 1 : 0; }
+PSK_HD constexpr int brick_step(int x) { return x < 0 ? -1 : x > 1 ? 1 : 0; }
 
 /// Loads `values` (of one level) around `brick`. 27 bricks of 32 bytes.
-PSK_HD
-inline Neighbourhood load_neighbourhood(const LevelView& level, std::int64_t brick, const float* values) {
+PSK_HD inline Neighbourhood load_neighbourhood(const LevelView& level, std::int64_t brick, const float* values) {
   Neighbourhood around;
   const std::int32_t* bricks = level.neighbours + brick * kNeighbours;
   PSK_UNROLL for (int x = -1; x <= 2; ++x) {

@@ -14,8 +14,7 @@ namespace search {
 /// A cell is scanned point by point when it holds no more than this.
 inline constexpr std::int32_t kScanPoints = 16;
 
-PSK_HD
-inline float squared_distance(const Vec3f& a, const Vec3f& b) {
+PSK_HD inline float squared_distance(const Vec3f& a, const Vec3f& b) {
   const float x = a.x - b.x;
   const float y = a.y - b.y;
   const float z = a.z - b.z;
@@ -23,8 +22,7 @@ inline float squared_distance(const Vec3f& a, const Vec3f& b) {
 }
 
 /// Squared distance to a cell, a little less than exact so that rounding prunes nothing.
-PSK_HD
-inline float squared_distance_to_cell(const Vec3f& q, const Coordinates& c, int depth) {
+PSK_HD inline float squared_distance_to_cell(const Vec3f& q, const Coordinates& c, int depth) {
   const float width = 1.0F / static_cast<float>(1 << depth);
   const auto gap = [&](float v, std::int32_t lower) {
     const float below = static_cast<float>(lower) * width - v;
@@ -40,8 +38,7 @@ inline float squared_distance_to_cell(const Vec3f& q, const Coordinates& c, int 
 /// Calls scan(first, last) for the points of every cell that `prune(squared distance)` lets pass, nearest children
 /// first.
 template <class Prune, class Scan>
-PSK_HD
-void walk(const SearchView& points, const Vec3f& q, const Prune& prune, const Scan& scan) {
+PSK_HD void walk(const SearchView& points, const Vec3f& q, const Prune& prune, const Scan& scan) {
   struct Entry {
     std::int32_t cell;
     std::int32_t depth;
@@ -77,8 +74,7 @@ struct FindNearest {
   ArrayView<std::int32_t> ids;
   ArrayView<float> squared;
 
-  PSK_HD
-  void operator()(std::int64_t query) const {
+  PSK_HD void operator()(std::int64_t query) const {
     const Vec3f q = queries[query];
     std::int32_t* id = ids.data + query * k;
     float* distance = squared.data + query * k;
@@ -92,8 +88,7 @@ struct FindNearest {
   }
 
   /// Keeps the list sorted by (distance, id). @returns the new number of entries
-  PSK_HD
-  int insert(std::int32_t new_id, float d, std::int32_t* id, float* distance, int found) const {
+  PSK_HD int insert(std::int32_t new_id, float d, std::int32_t* id, float* distance, int found) const {
     const auto before = [&](int i) { return d < distance[i] || (d == distance[i] && new_id < id[i]); };
     if (found == k && !before(k - 1)) return found;
     int place = found < k ? found : k - 1;
@@ -112,8 +107,7 @@ struct CountWithin {
   ArrayView<const Vec3f> queries;
   float squared_radius;
   ArrayView<std::int32_t> count;
-  PSK_HD
-  void operator()(std::int64_t query) const {
+  PSK_HD void operator()(std::int64_t query) const {
     const Vec3f q = queries[query];
     std::int32_t sum = 0;
     const auto prune = [&](float d) { return d > squared_radius; };
@@ -131,8 +125,7 @@ struct WriteWithin {
   float squared_radius;
   ArrayView<const std::int32_t> begin;
   ArrayView<std::int32_t> order;  // place of the point among the sorted ones
-  PSK_HD
-  void operator()(std::int64_t query) const {
+  PSK_HD void operator()(std::int64_t query) const {
     const Vec3f q = queries[query];
     const std::int32_t from = begin[query];
     std::int32_t to = from;
@@ -145,8 +138,7 @@ struct WriteWithin {
   }
 
   /// Cells come nearest first; the result is in key order. Heap sort: no recursion, no extra memory.
-  PSK_HD
-  void sort(std::int32_t from, std::int32_t to) const {
+  PSK_HD void sort(std::int32_t from, std::int32_t to) const {
     std::int32_t* heap = order.data + from;
     const std::int32_t n = to - from;
     for (std::int32_t i = n / 2 - 1; i >= 0; --i) sift(heap, i, n);
@@ -157,8 +149,7 @@ struct WriteWithin {
       sift(heap, 0, end);
     }
   }
-  PSK_HD
-  static void sift(std::int32_t* heap, std::int32_t i, std::int32_t n) {
+  PSK_HD static void sift(std::int32_t* heap, std::int32_t i, std::int32_t n) {
     for (std::int32_t child = 2 * i + 1; child < n; child = 2 * i + 1) {
       if (child + 1 < n && heap[child + 1] > heap[child]) ++child;
       if (heap[i] >= heap[child]) return;
@@ -176,24 +167,13 @@ struct DescribeWithin {
   ArrayView<const std::int32_t> begin;
   ArrayView<std::int32_t> ids;  // holds places, receives ids
   ArrayView<float> squared;
-  PSK_HD
-  void operator()(std::int64_t query) const {
+  PSK_HD void operator()(std::int64_t query) const {
     for (std::int32_t i = begin[query]; i < begin[query + 1]; ++i) {
       const std::int32_t place = ids[i];
       squared[i] = squared_distance(queries[query], points.positions[place]);
       ids[i] = points.ids[place];
     }
   }
-};
-
-struct CountOf {
-  ArrayView<const std::int32_t> count;
-  PSK_HD
-  std::int64_t operator()(std::int64_t i) const { return count[i]; }
-};
-struct AddCounts {
-  PSK_HD
-  std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
 };
 
 }  // namespace search
@@ -215,8 +195,7 @@ WithinRadius find_within(Exec& ex, const SearchView& points, ArrayView<const Vec
   }
   const float squared = radius * radius;
   for_each(ex, "search.count", queries.size, search::CountWithin{points, queries, squared, count.view()});
-  const auto total =
-      exec::reduce<std::int64_t>(ex, "search.count", queries.size, search::CountOf{count.cview()}, search::AddCounts{});
+  const std::int64_t total = exec::sum_counts(ex, "search.count", count.cview());
   if (total > std::numeric_limits<std::int32_t>::max())
     throw Error(ErrorCode::over_limit, "more than 2^31 neighbours in all; choose a smaller radius or fewer queries");
   exclusive_scan(ex, "search.count", count.cview(), result.begin.view());

@@ -27,17 +27,13 @@ struct LevelView {
   const std::uint8_t* unknowns = nullptr;     ///< (bricks) bit s: the corner of node s has all its cells of this level
   const std::int32_t* point_begin = nullptr;  ///< (8 cell_bricks + 1) first point of each cell, in point order
 
-  PSK_HD
-  std::int64_t nodes() const { return std::int64_t{8} * bricks; }
+  PSK_HD std::int64_t nodes() const { return std::int64_t{8} * bricks; }
   /// Number of cells: nodes [0, cells()) are cells of the tree.
-  PSK_HD
-  std::int64_t cells() const { return depth == 0 ? 1 : std::int64_t{8} * cell_bricks; }
-  PSK_HD
-  bool is_cell(std::int64_t node) const { return node >= 0 && node < cells(); }
+  PSK_HD std::int64_t cells() const { return depth == 0 ? 1 : std::int64_t{8} * cell_bricks; }
+  PSK_HD bool is_cell(std::int64_t node) const { return node >= 0 && node < cells(); }
 
   /// Node at an offset of up to two nodes along each axis, or -1.
-  PSK_HD
-  std::int32_t neighbour(std::int32_t node, int dx, int dy, int dz) const {
+  PSK_HD std::int32_t neighbour(std::int32_t node, int dx, int dy, int dz) const {
     const int slot = node & 7;
     const int x = slot_x(slot) + dx;
     const int y = slot_y(slot) + dy;
@@ -47,8 +43,7 @@ struct LevelView {
     return brick < 0 ? -1 : brick * 8 + slot_of(x & 1, y & 1, z & 1);
   }
 
-  PSK_HD
-  std::uint64_t node_key(std::int32_t node) const { return brick_key[node >> 3] << 3 | (node & 7); }
+  PSK_HD std::uint64_t node_key(std::int32_t node) const { return brick_key[node >> 3] << 3 | (node & 7); }
 };
 
 /// All levels. Small enough to travel as a kernel's argument.
@@ -57,20 +52,17 @@ struct OctreeView {
   std::int64_t nodes = 0;  ///< of all levels
   LevelView levels[kMaxDepth + 1];
 
-  PSK_HD
-  const LevelView& finest() const { return levels[depth]; }
+  PSK_HD const LevelView& finest() const { return levels[depth]; }
 
   /// True if the cell has children (ghost bricks below a node are not children).
-  PSK_HD
-  bool is_split(int level, std::int64_t node) const {
+  PSK_HD bool is_split(int level, std::int64_t node) const {
     if (level >= depth || !levels[level].is_cell(node)) return false;
     const std::int32_t brick = levels[level].child_brick[node];
     return brick >= 0 && brick < levels[level + 1].cell_bricks;
   }
 
   /// Level that holds node `index` of arrays over all levels. Most nodes are on the finest one.
-  PSK_HD
-  int level_of(std::int64_t index) const {
+  PSK_HD int level_of(std::int64_t index) const {
     int level = depth;
     while (index < levels[level].first_node) --level;
     return level;

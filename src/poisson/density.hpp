@@ -21,9 +21,6 @@ inline constexpr float kPlaneFactor = 2.0F / 3;
 /// 11/20 for the quadratic B-spline. Samples per node are counted over this area.
 inline constexpr float kKernelFaces = 400.0F / 121;
 
-/// Normals are not splatted at depths coarser than this.
-inline constexpr int kCoarsestSplatDepth = 2;
-
 /// Splatted sample counts of the coarser levels.
 struct Density {
   int depth = 0;               ///< finest level with counts
@@ -37,8 +34,7 @@ struct DensityView {
 
   /// Samples per finest cell face (cells^-2) at a point of the unit cube, > 0 at samples: from the finest counted level
   /// whose cells hold kReliableSamples there.
-  PSK_HD
-  float samples_per_cell(const octree::OctreeView& tree, const Vec3f& p) const {
+  PSK_HD float samples_per_cell(const octree::OctreeView& tree, const Vec3f& p) const {
     int level = octree::locate(tree, octree::point_key(p.x, p.y, p.z), depth).depth;
     float samples = samples_per_face(tree, p, level);
     while (level > 0 && samples < kReliableSamples) samples = samples_per_face(tree, p, --level);
@@ -46,15 +42,14 @@ struct DensityView {
   }
 
   /// Samples per cell face of a level that has a cell at p.
-  PSK_HD
-  float samples_per_face(const octree::OctreeView& tree, const Vec3f& p, int level) const {
+  PSK_HD float samples_per_face(const octree::OctreeView& tree, const Vec3f& p, int level) const {
     return octree::value_at(tree, counts, p, level) * (1 / kPlaneFactor);
   }
 };
 
 struct WeighOptions {
   double samples_per_node = 1.5;  ///< samples the splat kernel must average over, >= 0
-  bool confidence = false;        ///< weight a sample by the length of its normal
+  bool confidence = false;        ///< weight a sample by its normal's length over the mean length
 };
 
 /// Splats every sample's hat at the finest level and restricts the counts to levels depth - 2 .. 0.

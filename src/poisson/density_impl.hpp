@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "exec/algorithms.hpp"
@@ -15,8 +16,7 @@ struct SplatCounts {
   octree::LevelView level;
   ArrayView<const Vec3f> positions;
   ArrayView<float> counts;
-  PSK_HD
-  void operator()(std::int64_t brick) const {
+  PSK_HD void operator()(std::int64_t brick) const {
     const octree::Coordinates origin = brick_origin(level, brick);
     const auto scale = static_cast<float>(1 << level.depth);
     float sum[8] = {};
@@ -37,32 +37,57 @@ struct RestrictCounts {
   octree::LevelView level, below;
   const float* below_counts;
   ArrayView<float> counts;
-  PSK_HD
-  void operator()(std::int64_t n) const {
+  PSK_HD void operator()(std::int64_t n) const {
     counts[n] = octree::restricted(level, below, below_counts, static_cast<std::int32_t>(n));
   }
 };
+
+/// In double: floats of any size have a length.
+PSK_HD inline double length_of(const Vec3f& n) {
+  const double x = n.x;
+  const double y = n.y;
+  const double z = n.z;
+  return std::sqrt(x * x + y * y + z * z);
+}
+struct LengthOf {
+  ArrayView<const Vec3f> normals;
+  PSK_HD double operator()(std::int64_t i) const { return length_of(normals[i]); }
+};
+struct Plus {
+  PSK_HD double operator()(double a, double b) const { return a + b; }
+};
+
+/// Coarsest depth to splat at. Threads gather whole cells there, so a cell of a surface should not hold more than some
+/// thousand samples, whatever a few outliers would need.
+inline int coarsest_splat_depth(std::int64_t points, int depth) {
+  constexpr double kMostPerCell = 4096;
+  int coarsest = 2;
+  while (coarsest<depth&& static_cast<double>(points)> kMostPerCell * std::pow(4.0, coarsest)) ++coarsest;
+  return std::min(coarsest, depth);
+}
 
 struct Weigh {
   octree::OctreeView tree;
   DensityView density;
   ArrayView<const Vec3f> positions;
   float samples_per_node;
-  bool confidence;
+  double mean_length;  // of the normals; 0: all samples weigh the same
+  int coarsest;        // depth
   ArrayView<Vec3f> normals;
   ArrayView<float> areas;
   ArrayView<std::uint8_t> splat_depths;
 
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Vec3f n = normals[i];
-    const float length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-    normals[i] = length > 0 ? Vec3f{n.x / length, n.y / length, n.z / length} : Vec3f{};
+    const double length = length_of(n);
+    normals[i] = length > 0 ? Vec3f{static_cast<float>(n.x / length), static_cast<float>(n.y / length),
+                                    static_cast<float>(n.z / length)}
+                            : Vec3f{};
     const float per_cell = density.samples_per_cell(tree, positions[i]);
-    areas[i] = (confidence ? length : 1.0F) / per_cell;
+    areas[i] = (mean_length > 0 ? static_cast<float>(length / mean_length) : 1.0F) / per_cell;
     int depth = tree.depth;
     float samples = per_cell * kKernelFaces;  // under the kernel at `depth`: four times more at each coarser one
-    while (depth > kCoarsestSplatDepth && samples < samples_per_node) {
+    while (depth > coarsest && samples < samples_per_node) {
       samples *= 4;
       --depth;
     }
@@ -72,20 +97,17 @@ struct Weigh {
 
 struct DepthOf {
   ArrayView<const std::uint8_t> depths;
-  PSK_HD
-  std::int32_t operator()(std::int64_t i) const { return depths[i]; }
+  PSK_HD std::int32_t operator()(std::int64_t i) const { return depths[i]; }
 };
 struct Smaller {
-  PSK_HD
-  std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a < b ? a : b; }
+  PSK_HD std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a < b ? a : b; }
 };
 struct EvaluateDensity {
   octree::OctreeView tree;
   DensityView density;
   ArrayView<const Vec3f> points;
   ArrayView<float> out;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] = density.samples_per_cell(tree, points[i]); }
+  PSK_HD void operator()(std::int64_t i) const { out[i] = density.samples_per_cell(tree, points[i]); }
 };
 
 }  // namespace density
@@ -120,12 +142,18 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
   const std::int64_t n = samples.positions.size();
   samples.areas = exec::make_buffer<float>(ex, n);
   samples.splat_depths = exec::make_buffer<std::uint8_t>(ex, n);
+  double mean_length = 0;
+  if (options.confidence)
+    mean_length =
+        exec::reduce<double>(ex, "density.confidence", n, density::LengthOf{samples.normals.cview()}, density::Plus{}) /
+        static_cast<double>(n);
   for_each(ex, "density.weigh", n,
            density::Weigh{tree.view(),
                           {density.depth, density.counts.data()},
                           samples.positions.cview(),
                           static_cast<float>(options.samples_per_node),
-                          options.confidence,
+                          mean_length,
+                          density::coarsest_splat_depth(n, tree.depth),
                           samples.normals.view(),
                           samples.areas.view(),
                           samples.splat_depths.view()});

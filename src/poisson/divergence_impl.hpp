@@ -27,8 +27,7 @@ struct VectorField {
 struct ProlongField {
   octree::LevelView level, above;
   VectorField above_field, field;
-  PSK_HD
-  void operator()(std::int64_t n) const {
+  PSK_HD void operator()(std::int64_t n) const {
     const std::int32_t parent = level.parent[n >> 3];
     const int slot = static_cast<int>(n & 7);
     for (int a = 0; a < 3; ++a)
@@ -44,8 +43,7 @@ struct SplatNormals {
   float area_scale;  // finest cells^2 -> cells^2 of this level
   VectorField field;
 
-  PSK_HD
-  void operator()(std::int64_t brick) const {
+  PSK_HD void operator()(std::int64_t brick) const {
     const octree::Coordinates origin = brick_origin(level, brick);
     const auto scale = static_cast<float>(1 << level.depth);
     float sum[3][8] = {};
@@ -59,8 +57,7 @@ struct SplatNormals {
       for (int s = 0; s < 8; ++s) field.axis[a][8 * brick + s] += sum[a][s];
   }
 
-  PSK_HD
-  void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
+  PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
     const BrickSample at(samples.positions[sample], origin, scale);
     if (!at.reaches<QuadraticKernel>()) return;
     float w[8];
@@ -106,8 +103,7 @@ struct Divergence {
   Coefficients coefficients;
   ArrayView<float> b;
 
-  PSK_HD
-  void operator()(std::int64_t brick) const {
+  PSK_HD void operator()(std::int64_t brick) const {
     // Corners inside the finest level see 8 leaves, so their cells' matrices are summed beforehand.
     const int inside_corners = finer_cell_bricks == 0 ? level.unknowns[brick] & ~face_corners(brick) : 0;
     float sum[8] = {};
@@ -122,8 +118,7 @@ struct Divergence {
   }
 
   /// Corners of the brick that lie on a face of the cube: unknowns with fewer than 8 cells.
-  PSK_HD
-  int face_corners(std::int64_t brick) const {
+  PSK_HD int face_corners(std::int64_t brick) const {
     const octree::Coordinates c = octree::decode(level.brick_key[brick]);
     const std::int32_t last = 1 << level.depth;
     int mask = 0;
@@ -136,8 +131,7 @@ struct Divergence {
     return mask;
   }
 
-  PSK_HD
-  static float inside(const octree::Neighbourhood& v, int s, const float* coefficient) {
+  PSK_HD static float inside(const octree::Neighbourhood& v, int s, const float* coefficient) {
     float sum = 0;
     PSK_UNROLL for (int dx = -1; dx <= 1; ++dx) PSK_UNROLL for (int dy = -1; dy <= 1; ++dy)
         PSK_UNROLL for (int dz = -1; dz <= 1; ++dz) sum +=
@@ -147,8 +141,7 @@ struct Divergence {
   }
 
   /// Sum over the leaf cells around corner `s` of their element matrices' rows.
-  PSK_HD
-  float by_cells(std::int64_t brick, const octree::Neighbourhood& v, int s, const float (&element)[8][8]) const {
+  PSK_HD float by_cells(std::int64_t brick, const octree::Neighbourhood& v, int s, const float (&element)[8][8]) const {
     float sum = 0;
     for (int t = 0; t < 8; ++t) {
       const int x = octree::slot_x(s) + octree::slot_x(t) - 1;
@@ -161,8 +154,7 @@ struct Divergence {
     return sum;
   }
 
-  PSK_HD
-  bool is_leaf(std::int32_t node) const {
+  PSK_HD bool is_leaf(std::int32_t node) const {
     if (!level.is_cell(node)) return false;
     if (finer_cell_bricks == 0) return true;
     const std::int32_t brick = level.child_brick[node];
@@ -176,8 +168,7 @@ struct AddRestriction {
   const float* below_b;
   bool add;
   ArrayView<float> b;
-  PSK_HD
-  void operator()(std::int64_t n) const {
+  PSK_HD void operator()(std::int64_t n) const {
     const float finer = 0.5F * octree::restricted(level, below, below_b, static_cast<std::int32_t>(n));
     b[n] = add ? b[n] + finer : finer;
   }
@@ -186,14 +177,12 @@ struct AddRestriction {
 struct IsAtDepth {
   ArrayView<const std::uint8_t> depths;
   int depth;
-  PSK_HD
-  bool operator()(std::int64_t i) const { return depths[i] == depth; }
+  PSK_HD bool operator()(std::int64_t i) const { return depths[i] == depth; }
 };
 struct FlagDepth {
   IsAtDepth is_at;
   ArrayView<std::int32_t> flags;
-  PSK_HD
-  void operator()(std::int64_t i) const { flags[i] = is_at(i) ? 1 : 0; }
+  PSK_HD void operator()(std::int64_t i) const { flags[i] = is_at(i) ? 1 : 0; }
 };
 
 /// The samples whose splat depth is `depth`.

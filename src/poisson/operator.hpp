@@ -28,8 +28,7 @@ struct BrickResidual {
 };
 
 /// Sum of the 12 edge and 8 corner neighbours with their coefficients, and the corner itself.
-PSK_HD
-inline float laplacian_inside(const octree::Neighbourhood& u, int x, int y, int z) {
+PSK_HD inline float laplacian_inside(const octree::Neighbourhood& u, int x, int y, int z) {
   constexpr auto kCentre = static_cast<float>(InsideLaplacian::kCentre);
   constexpr auto kEdge = static_cast<float>(InsideLaplacian::kEdge);
   constexpr auto kCorner = static_cast<float>(InsideLaplacian::kCorner);
@@ -45,15 +44,13 @@ inline float laplacian_inside(const octree::Neighbourhood& u, int x, int y, int 
 }
 
 /// Side of coordinate c of a corner of level `depth`.
-PSK_HD
-inline int side_of(std::int32_t c, int depth) {
+PSK_HD inline int side_of(std::int32_t c, int depth) {
   return static_cast<int>(c == 0 ? AxisSide::lower_face : c == (1 << depth) ? AxisSide::upper_face : AxisSide::inside);
 }
 
 /// The same for a corner on the cube's faces: rows with one cell missing (natural boundary condition).
-PSK_HD
-inline float laplacian_at_face(const LevelSystem& system, const octree::Neighbourhood& u,
-                               const octree::Coordinates& corner, int slot) {
+PSK_HD inline float laplacian_at_face(const LevelSystem& system, const octree::Neighbourhood& u,
+                                      const octree::Coordinates& corner, int slot) {
   const int depth = system.level.depth;
   const int sides[3] = {side_of(corner.x, depth), side_of(corner.y, depth), side_of(corner.z, depth)};
   const AxisRowsF& rows = system.rows;
@@ -73,16 +70,14 @@ inline float laplacian_at_face(const LevelSystem& system, const octree::Neighbou
 }
 
 /// True if some corner of the brick may lie on a face of the cube.
-PSK_HD
-inline bool touches_faces(const octree::Coordinates& brick, int depth) {
+PSK_HD inline bool touches_faces(const octree::Coordinates& brick, int depth) {
   const std::int32_t last = depth == 0 ? 0 : 1 << (depth - 1);
   return brick.x == 0 || brick.y == 0 || brick.z == 0 || brick.x == last || brick.y == last || brick.z == last;
 }
 
 /// Adds the collapsed sample of the cell at offset (x, y, z) from the brick's first corner to the brick's corners.
-PSK_HD
-inline void screen_cell(const CollapsedSample& sample, float scale, const octree::Neighbourhood& u, int x, int y, int z,
-                        BrickResidual& out) {
+PSK_HD inline void screen_cell(const CollapsedSample& sample, float scale, const octree::Neighbourhood& u, int x, int y,
+                               int z, BrickResidual& out) {
   if (!(sample.weight > 0)) return;
   const float ax[2] = {1 - sample.x, sample.x};
   const float ay[2] = {1 - sample.y, sample.y};
@@ -108,9 +103,8 @@ inline void screen_cell(const CollapsedSample& sample, float scale, const octree
 }
 
 /// Adds the screening of all 27 cells around the brick's corners.
-PSK_HD
-inline void screen_brick(const LevelSystem& system, std::int64_t brick, const octree::Neighbourhood& u,
-                         BrickResidual& out) {
+PSK_HD inline void screen_brick(const LevelSystem& system, std::int64_t brick, const octree::Neighbourhood& u,
+                                BrickResidual& out) {
   const std::int32_t* bricks = system.level.neighbours + brick * octree::kNeighbours;
   PSK_UNROLL for (int x = -1; x <= 1; ++x) {
     PSK_UNROLL for (int y = -1; y <= 1; ++y) {
@@ -127,8 +121,8 @@ inline void screen_brick(const LevelSystem& system, std::int64_t brick, const oc
 }
 
 /// Residual and bounding diagonal at the 8 corners of a brick. Entries of corners that are no unknowns mean nothing.
-PSK_HD
-inline BrickResidual brick_residual(const LevelSystem& system, std::int64_t brick, const octree::Neighbourhood& u) {
+PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64_t brick,
+                                           const octree::Neighbourhood& u) {
   BrickResidual out;
   const octree::Coordinates at = octree::decode(system.level.brick_key[brick]);
   const bool faces = touches_faces(at, system.level.depth);

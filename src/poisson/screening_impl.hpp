@@ -10,29 +10,27 @@ namespace screening {
 
 struct HoldsSamples {
   octree::LevelView level;
-  PSK_HD
-  bool operator()(std::int64_t brick) const { return level.point_begin[8 * brick] < level.point_begin[8 * brick + 8]; }
+  PSK_HD bool operator()(std::int64_t brick) const {
+    return level.point_begin[8 * brick] < level.point_begin[8 * brick + 8];
+  }
 };
 
 struct IndexBricks {
   ArrayView<const std::int32_t> occupied;
   ArrayView<std::int32_t> brick_index;
-  PSK_HD
-  void operator()(std::int64_t i) const { brick_index[occupied[i]] = static_cast<std::int32_t>(i); }
+  PSK_HD void operator()(std::int64_t i) const { brick_index[occupied[i]] = static_cast<std::int32_t>(i); }
 };
 
 /// Sums area and area-weighted local position, then divides.
 struct Collapse {
   CollapsedSample sum;
-  PSK_HD
-  void add(const Vec3f& local, float weight) {
+  PSK_HD void add(const Vec3f& local, float weight) {
     sum.x += weight * local.x;
     sum.y += weight * local.y;
     sum.z += weight * local.z;
     sum.weight += weight;
   }
-  [[nodiscard]] PSK_HD
-  CollapsedSample mean() const {
+  [[nodiscard]] PSK_HD CollapsedSample mean() const {
     if (!(sum.weight > 0)) return {};
     return {sum.x / sum.weight, sum.y / sum.weight, sum.z / sum.weight, sum.weight};
   }
@@ -46,8 +44,7 @@ struct CollapsePoints {
   SamplesView samples;
   ArrayView<const std::int32_t> occupied;
   ArrayView<CollapsedSample> out;
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const std::int64_t brick = occupied[i];
     const octree::Coordinates origin = brick_origin(level, brick);
     for (int s = 0; s < 8; ++s) {
@@ -60,8 +57,7 @@ struct CollapsePoints {
     }
   }
 
-  PSK_HD
-  float weight(std::int32_t p) const {
+  PSK_HD float weight(std::int32_t p) const {
     const int sparser = level.depth - samples.splat_depths[p];
     return samples.areas[p] / static_cast<float>(sparser > 0 ? std::int64_t{1} << 2 * sparser : 1);
   }
@@ -73,8 +69,7 @@ struct CollapseChildren {
   ScreeningView below;
   ArrayView<const std::int32_t> occupied;
   ArrayView<CollapsedSample> out;
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const std::int64_t brick = occupied[i];
     for (int s = 0; s < 8; ++s) {
       Collapse collapse;

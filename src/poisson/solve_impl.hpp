@@ -16,8 +16,7 @@ struct Prolong {
   octree::LevelView level, above;
   const float* above_u;
   ArrayView<float> u, other;
-  PSK_HD
-  void operator()(std::int64_t n) const {
+  PSK_HD void operator()(std::int64_t n) const {
     const float value = octree::prolonged(above, above_u, level.parent[n >> 3], static_cast<int>(n & 7));
     u[n] = value;
     other[n] = value;
@@ -31,8 +30,7 @@ struct Relax {
   const float* u;
   float* step;
   float* next;
-  PSK_HD
-  void operator()(std::int64_t brick) const {
+  PSK_HD void operator()(std::int64_t brick) const {
     const int unknowns = system.level.unknowns[brick];
     if (unknowns == 0) return;  // `next` holds the interpolated values already
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
@@ -51,8 +49,7 @@ struct Relax {
 struct SquaredResidual {
   LevelSystem system;
   const float* u;
-  PSK_HD
-  double operator()(std::int64_t brick) const {
+  PSK_HD double operator()(std::int64_t brick) const {
     const int unknowns = system.level.unknowns[brick];
     if (unknowns == 0) return 0;
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
@@ -66,8 +63,7 @@ struct SquaredResidual {
 
 struct CountUnknowns {
   const std::uint8_t* unknowns;
-  PSK_HD
-  std::int64_t operator()(std::int64_t brick) const {
+  PSK_HD std::int64_t operator()(std::int64_t brick) const {
     int count = 0;
     for (int bits = unknowns[brick]; bits != 0; bits &= bits - 1) ++count;
     return count;
@@ -76,8 +72,9 @@ struct CountUnknowns {
 
 struct Plus {
   template <class T>
-  PSK_HD
-  T operator()(T a, T b) const { return a + b; }
+  PSK_HD T operator()(T a, T b) const {
+    return a + b;
+  }
 };
 
 /// How long and on which part of the spectrum a level is iterated.
@@ -153,8 +150,7 @@ struct WeightedValue {
   double sum = 0, weight = 0;
 };
 struct AddWeighted {
-  PSK_HD
-  WeightedValue operator()(const WeightedValue& a, const WeightedValue& b) const {
+  PSK_HD WeightedValue operator()(const WeightedValue& a, const WeightedValue& b) const {
     return {a.sum + b.sum, a.weight + b.weight};
   }
 };
@@ -162,8 +158,7 @@ struct ValueAtSample {
   octree::OctreeView tree;
   const float* u;
   SamplesView samples;
-  PSK_HD
-  WeightedValue operator()(std::int64_t i) const {
+  PSK_HD WeightedValue operator()(std::int64_t i) const {
     const double area = samples.areas[i];
     return {area * octree::value_at(tree, u, samples.positions[i], tree.depth), area};
   }

@@ -15,8 +15,7 @@ namespace pointskin::poisson {
 /// Linear B-spline, the basis itself.
 struct HatKernel {
   static constexpr float kReach = 1;
-  PSK_HD
-  float operator()(float x) const {
+  PSK_HD float operator()(float x) const {
     const float a = x < 0 ? -x : x;
     return a < 1 ? 1 - a : 0;
   }
@@ -25,8 +24,7 @@ struct HatKernel {
 /// Quadratic B-spline.
 struct QuadraticKernel {
   static constexpr float kReach = 1.5F;
-  PSK_HD
-  float operator()(float x) const {
+  PSK_HD float operator()(float x) const {
     const float a = x < 0 ? -x : x;
     if (a < 0.5F) return 0.75F - a * a;
     const float b = 1.5F - a;
@@ -40,15 +38,13 @@ struct BrickSample {
 
   /// @param origin  coordinates of the brick's first node
   /// @param scale   2^depth
-  PSK_HD
-  BrickSample(const Vec3f& p, const octree::Coordinates& origin, float scale)
+  PSK_HD BrickSample(const Vec3f& p, const octree::Coordinates& origin, float scale)
       : rel{p.x * scale - static_cast<float>(origin.x), p.y * scale - static_cast<float>(origin.y),
             p.z * scale - static_cast<float>(origin.z)} {}
 
   /// True if the kernel gives some corner of the brick a weight.
   template <class Kernel>
-  [[nodiscard]] PSK_HD
-  bool reaches() const {
+  [[nodiscard]] PSK_HD bool reaches() const {
     constexpr float kLower = -Kernel::kReach;
     constexpr float kUpper = 1 + Kernel::kReach;
     return rel[0] > kLower && rel[0] < kUpper && rel[1] > kLower && rel[1] < kUpper && rel[2] > kLower &&
@@ -57,8 +53,7 @@ struct BrickSample {
 
   /// Weights on the brick's 8 corners.
   template <class Kernel>
-  PSK_HD
-  void weights(float (&w)[8]) const {
+  PSK_HD void weights(float (&w)[8]) const {
     const Kernel kernel;
     float axis[3][2];
     for (int a = 0; a < 3; ++a) {
@@ -71,16 +66,14 @@ struct BrickSample {
 };
 
 /// Coordinates of a brick's first node.
-PSK_HD
-inline octree::Coordinates brick_origin(const octree::LevelView& level, std::int64_t brick) {
+PSK_HD inline octree::Coordinates brick_origin(const octree::LevelView& level, std::int64_t brick) {
   const octree::Coordinates c = octree::decode(level.brick_key[brick]);
   return {2 * c.x, 2 * c.y, 2 * c.z};
 }
 
 /// Calls visit(first, last) for the points [first, last) of each cell brick around `brick` (itself included).
 template <class Visit>
-PSK_HD
-void for_points_around(const octree::LevelView& level, std::int64_t brick, const Visit& visit) {
+PSK_HD void for_points_around(const octree::LevelView& level, std::int64_t brick, const Visit& visit) {
   for (int j = 0; j < octree::kNeighbours; ++j) {
     const std::int32_t other = level.neighbours[brick * octree::kNeighbours + j];
     if (other < 0 || other >= level.cell_bricks) continue;

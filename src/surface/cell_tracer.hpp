@@ -14,17 +14,14 @@
 namespace pointskin::surface {
 
 /// Positions on a cell are a 3 x 3 x 3 grid: 0 and 2 are its corners, 1 the middles that finer neighbours have.
-PSK_HD
-constexpr int grid_index(int x, int y, int z) { return x * 9 + y * 3 + z; }
+PSK_HD constexpr int grid_index(int x, int y, int z) { return x * 9 + y * 3 + z; }
 
 /// A crossing is named by the sum of its edge's end positions, each coordinate 0..4.
-PSK_HD
-constexpr int crossing_index(int x, int y, int z) { return x * 25 + y * 5 + z; }
+PSK_HD constexpr int crossing_index(int x, int y, int z) { return x * 25 + y * 5 + z; }
 inline constexpr int kCrossings = 125;
 
 /// Sum of two grid indices as a crossing index.
-PSK_HD
-constexpr int crossing_between(int p, int q) {
+PSK_HD constexpr int crossing_between(int p, int q) {
   return crossing_index(p / 9 + q / 9, p / 3 % 3 + q / 3 % 3, p % 3 + q % 3);
 }
 
@@ -32,16 +29,14 @@ constexpr int crossing_between(int p, int q) {
 class CellTracer {
  public:
   /// @param inside  bit grid_index of every position that exists: inside the surface
-  PSK_HD
-  explicit CellTracer(std::uint32_t inside) : inside_(inside) {
+  PSK_HD explicit CellTracer(std::uint32_t inside) : inside_(inside) {
     for (int i = 0; i < kCrossings; ++i) next_[i] = -1;
   }
 
   /// Adds the polygons of face (axis, side), side 0 or 1: four quarters if it is subdivided, else one polygon that
   /// takes in the middles of its subdivided edges.
   /// @param split_edges  bit (of edge_bit) set for edges with a middle
-  PSK_HD
-  void add_face(int axis, int side, bool subdivided, std::uint32_t split_edges) {
+  PSK_HD void add_face(int axis, int side, bool subdivided, std::uint32_t split_edges) {
     if (subdivided) {
       for (int q = 0; q < 4; ++q) add_quad(axis, side, q >> 1, q & 1, 1, 0);
     } else {
@@ -50,13 +45,11 @@ class CellTracer {
   }
 
   /// Next crossing along the loop, or -1 if `crossing` has none.
-  [[nodiscard]] PSK_HD
-  int next(int crossing) const { return next_[crossing]; }
+  [[nodiscard]] PSK_HD int next(int crossing) const { return next_[crossing]; }
 
   /// Calls visit(first crossing, length) for every loop, by ascending first crossing.
   template <class Visit>
-  PSK_HD
-  void for_loops(const Visit& visit) const {
+  PSK_HD void for_loops(const Visit& visit) const {
     std::uint64_t seen[2] = {0, 0};
     for (int start = 0; start < kCrossings; ++start) {
       if (next_[start] < 0 || (seen[start >> 6] >> (start & 63) & 1) != 0) continue;
@@ -72,20 +65,17 @@ class CellTracer {
   }
 
   /// Bit of the edge along `axis` at the lower (0) or upper (1) side of the two following axes.
-  PSK_HD
-  static constexpr std::uint32_t edge_bit(int axis, int side_b, int side_c) {
+  PSK_HD static constexpr std::uint32_t edge_bit(int axis, int side_b, int side_c) {
     return 1U << (axis * 4 + side_b * 2 + side_c);
   }
 
  private:
-  PSK_HD
-  static int position(int axis, int a, int b, int c) {
+  PSK_HD static int position(int axis, int a, int b, int c) {
     return axis == 0 ? grid_index(a, b, c) : axis == 1 ? grid_index(c, a, b) : grid_index(b, c, a);
   }
 
   /// The quadrilateral of width `width` at (b, c) of a face, counter-clockwise seen from outside of the cell.
-  PSK_HD
-  void add_quad(int axis, int side, int b, int c, int width, std::uint32_t split_edges) {
+  PSK_HD void add_quad(int axis, int side, int b, int c, int width, std::uint32_t split_edges) {
     int points[8];
     int count = 0;
     const int a = 2 * side;
@@ -108,8 +98,7 @@ class CellTracer {
   }
 
   /// Cuts off every run of inside points. `reversed`: the points run clockwise.
-  PSK_HD
-  void add_polygon(const int* points, int count, bool reversed) {
+  PSK_HD void add_polygon(const int* points, int count, bool reversed) {
     const auto point = [&](int i) { return points[reversed ? count - 1 - i % count : i % count]; };
     const auto is_inside = [&](int i) { return (inside_ >> point(i) & 1) != 0; };
     for (int i = 0; i < count; ++i) {

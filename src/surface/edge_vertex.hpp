@@ -11,7 +11,8 @@
 
 namespace pointskin::surface {
 
-/// Crossings keep this distance (in edge lengths) from the edge's ends, so that no two vertices coincide.
+/// Crossings keep this distance (in edge lengths) from the edge's ends, so that vertices around a corner stay apart (as
+/// far as floats of the unit cube can: from depth 14 on they may coincide).
 inline constexpr float kCrossingMargin = 1e-3F;
 
 /// An edge that the surface crosses: its end corners and, where they exist, one more corner on either side.
@@ -20,8 +21,7 @@ struct CrossedEdge {
   std::int32_t before, start, end, after;
 };
 
-PSK_HD
-inline CrossedEdge crossed_edge(const octree::OctreeView& tree, const EdgeOwner& owner) {
+PSK_HD inline CrossedEdge crossed_edge(const octree::OctreeView& tree, const EdgeOwner& owner) {
   const octree::LevelView& l = tree.levels[owner.level];
   const int x = owner.axis == 0 ? 1 : 0;
   const int y = owner.axis == 1 ? 1 : 0;
@@ -35,8 +35,7 @@ inline CrossedEdge crossed_edge(const octree::OctreeView& tree, const EdgeOwner&
 }
 
 /// Root in [0, 1] of u0 + s0 t + (d - s0) t^2, whose values at 0 and 1 have different signs.
-PSK_HD
-inline float quadratic_root(float u0, float s0, float d) {
+PSK_HD inline float quadratic_root(float u0, float s0, float d) {
   const float a = d - s0;
   const float discriminant = s0 * s0 - 4 * a * u0;
   const float root = std::sqrt(discriminant > 0 ? discriminant : 0);
@@ -50,8 +49,7 @@ inline float quadratic_root(float u0, float s0, float d) {
 
 /// Parameter in (0, 1) of the crossing. With neighbours on both sides, slopes from central differences, rescaled so
 /// that their mean is the difference of the ends, give a quadratic; else linear interpolation.
-PSK_HD
-inline float crossing_parameter(const field::FieldView& f, const CrossedEdge& e, bool linear_fit) {
+PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedEdge& e, bool linear_fit) {
   const float u0 = f.value(e.level, e.start) - f.isovalue;
   const float u1 = f.value(e.level, e.end) - f.isovalue;
   // Closed at the cube's faces: a corner there counts as outside whatever its value, and the cap lies next to it.
@@ -71,8 +69,7 @@ inline float crossing_parameter(const field::FieldView& f, const CrossedEdge& e,
 }
 
 /// -v / |v|, or zero: values fall towards the outside.
-PSK_HD
-inline Vec3f outward(const Vec3f& v) {
+PSK_HD inline Vec3f outward(const Vec3f& v) {
   const float length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
   return length > 0 ? Vec3f{-v.x / length, -v.y / length, -v.z / length} : Vec3f{};
 }

@@ -8,135 +8,36 @@
 #include <utility>
 
 #include "exec/algorithms.hpp"
-#include "octree/neighbourhood.hpp"
 #include "surface/case_table.hpp"
 #include "surface/edge_vertex.hpp"
 #include "surface/extract.hpp"
 #include "surface/leaf_cell.hpp"
+#include "surface/mark.hpp"
 
 namespace pointskin::surface {
 namespace extract {
 
-/// What a node adds to the mesh: bits 0-2 its crossed edges by axis, then how its cell is triangulated.
-inline constexpr unsigned kEdges = 7;
-inline constexpr unsigned kTableCell = 8;    ///< a leaf without finer neighbours
-inline constexpr unsigned kTracedCell = 16;  ///< a leaf that closes loops with finer neighbours' edges
-inline constexpr unsigned kCells = kTableCell | kTracedCell;
-
-/// Marks the nodes of one brick; most bricks do not meet the surface and are done after a look at their 27 corners.
-struct MarkBrick {
-  field::FieldView f;
-  ArrayView<std::uint8_t> marks;
-
-  PSK_HD
-  void operator()(std::int64_t global_brick) const {
-    const int level = f.tree.level_of(8 * global_brick);
-    const octree::LevelView& l = f.tree.levels[level];
-    const std::int64_t brick = global_brick - l.first_node / 8;
-    const std::uint32_t signs = corner_signs(l, brick);
-    constexpr std::uint32_t kAll = (1U << 27) - 1;
-    const bool uniform = signs == 0 || signs == kAll;
-    for (int s = 0; s < 8; ++s) {
-      const auto node = static_cast<std::int32_t>(8 * brick + s);
-      const unsigned mark = uniform && !f.closed ? 0 : mark_node(level, node, signs, uniform);
-      marks[8 * global_brick + s] = static_cast<std::uint8_t>(mark);
-    }
-  }
-
-  /// Inside bits of the 3 x 3 x 3 corners from the brick's first one, bit = grid_index.
-  PSK_HD
-  std::uint32_t corner_signs(const octree::LevelView& l, std::int64_t brick) const {
-    const octree::Neighbourhood around = octree::load_neighbourhood(l, brick, f.values + l.first_node);
-    const octree::Coordinates b = octree::decode(l.brick_key[brick]);
-    const std::int32_t last = l.depth == 0 ? 0 : (1 << (l.depth - 1)) - 1;
-    const bool near_face = b.x == 0 || b.y == 0 || b.z == 0 || b.x >= last || b.y >= last || b.z >= last;
-    std::uint32_t signs = 0;
-    PSK_UNROLL for (int x = 0; x < 3; ++x) {
-      PSK_UNROLL for (int y = 0; y < 3; ++y) {
-        PSK_UNROLL for (int z = 0; z < 3; ++z) {
-          bool inside = around.at(x, y, z) >= f.isovalue;
-          if (inside && near_face) {
-            const std::int32_t corner = l.neighbour(static_cast<std::int32_t>(8 * brick), x, y, z);
-            inside = corner >= 0 && f.inside(l.depth, corner, {2 * b.x + x, 2 * b.y + y, 2 * b.z + z});
-          }
-          if (inside) signs |= 1U << grid_index(x, y, z);
-        }
-      }
-    }
-    return signs;
-  }
-
-  PSK_HD
-  unsigned mark_node(int level, std::int32_t node, std::uint32_t signs, bool uniform) const {
-    const int x = octree::slot_x(node & 7);
-    const int y = octree::slot_y(node & 7);
-    const int z = octree::slot_z(node & 7);
-    const auto sign = [&](int dx, int dy, int dz) { return signs >> grid_index(x + dx, y + dy, z + dz) & 1; };
-    unsigned mark = 0;
-    if (!uniform) {
-      const unsigned own = sign(0, 0, 0);
-      if (own != sign(1, 0, 0) && is_finest_edge(level, node, 0)) mark |= 1;
-      if (own != sign(0, 1, 0) && is_finest_edge(level, node, 1)) mark |= 2;
-      if (own != sign(0, 0, 1) && is_finest_edge(level, node, 2)) mark |= 4;
-    }
-    unsigned corners = 0;
-    for (int s = 0; s < 8; ++s) corners |= sign(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)) << s;
-    return mark | mark_cell(level, node, corners == 0 || corners == 0xff);
-  }
-
-  PSK_HD
-  unsigned mark_cell(int level, std::int32_t node, bool uniform) const {
-    const octree::LevelView& l = f.tree.levels[level];
-    if (!l.is_cell(node) || f.tree.is_split(level, node)) return 0;
-    const LeafCell cell(f, level, node);
-    // Middles are interpolated between corners, so equal corners mean no crossing, except where a corner on the cube's
-    // face was made outside.
-    if (uniform && !(f.closed && cell.touches_cube_face())) return 0;
-    if (cell.has_finer_neighbour()) return kTracedCell;
-    return uniform ? 0 : kTableCell;
-  }
-
-  /// True if some cell around the edge is a leaf of this level and none is split.
-  PSK_HD
-  bool is_finest_edge(int level, std::int32_t node, int axis) const {
-    const octree::LevelView& l = f.tree.levels[level];
-    bool any_leaf = false;
-    for (int i = 0; i < 4; ++i) {
-      int d[3] = {0, 0, 0};
-      d[(axis + 1) % 3] = -(i >> 1);
-      d[(axis + 2) % 3] = -(i & 1);
-      const std::int32_t cell = l.neighbour(node, d[0], d[1], d[2]);
-      if (!l.is_cell(cell)) continue;
-      if (f.tree.is_split(level, cell)) return false;
-      any_leaf = true;
-    }
-    return any_leaf;
-  }
-};
-
 struct HasMark {
   ArrayView<const std::uint8_t> marks;
   unsigned wanted;
-  PSK_HD
-  bool operator()(std::int64_t n) const { return (marks[n] & wanted) != 0; }
+  PSK_HD bool operator()(std::int64_t n) const { return (marks[n] & wanted) != 0; }
 };
 
-PSK_HD
-inline int count_edges(unsigned mark) { return static_cast<int>((mark & 1) + (mark >> 1 & 1) + (mark >> 2 & 1)); }
+PSK_HD inline int count_edges(unsigned mark) {
+  return static_cast<int>((mark & 1) + (mark >> 1 & 1) + (mark >> 2 & 1));
+}
 
 struct CountEdges {
   ArrayView<const std::uint8_t> marks;
   ArrayView<const std::int32_t> nodes;
   ArrayView<std::int32_t> count;
-  PSK_HD
-  void operator()(std::int64_t i) const { count[i] = count_edges(marks[nodes[i]]); }
+  PSK_HD void operator()(std::int64_t i) const { count[i] = count_edges(marks[nodes[i]]); }
 };
 
 struct StoreFirst {
   ArrayView<const std::int32_t> nodes, first;
   ArrayView<std::int32_t> first_vertex;
-  PSK_HD
-  void operator()(std::int64_t i) const { first_vertex[nodes[i]] = first[i]; }
+  PSK_HD void operator()(std::int64_t i) const { first_vertex[nodes[i]] = first[i]; }
 };
 
 /// Where a node of the arrays over all levels is.
@@ -144,15 +45,13 @@ struct Place {
   int level;
   std::int32_t node;
 };
-PSK_HD
-inline Place place_of(const octree::OctreeView& tree, std::int64_t index) {
+PSK_HD inline Place place_of(const octree::OctreeView& tree, std::int64_t index) {
   const int level = tree.level_of(index);
   return {level, static_cast<std::int32_t>(index - tree.levels[level].first_node)};
 }
 
 /// Sort key of a vertex: the corner that its edge or cell starts at, in units of the finest cells.
-PSK_HD
-inline std::uint64_t vertex_key(const octree::OctreeView& tree, const Place& place) {
+PSK_HD inline std::uint64_t vertex_key(const octree::OctreeView& tree, const Place& place) {
   const octree::Coordinates c = octree::decode(tree.levels[place.level].node_key(place.node));
   const int shift = tree.depth - place.level;
   return octree::encode({c.x << shift, c.y << shift, c.z << shift});
@@ -173,16 +72,14 @@ struct EmitEdges {
   ArrayView<const std::int32_t> nodes, first;
   MeshView mesh;
 
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Place place = place_of(f.tree, nodes[i]);
     std::int32_t vertex = first[i];
     for (int axis = 0; axis < 3; ++axis)
       if ((marks[nodes[i]] >> axis & 1) != 0) emit({place.level, place.node, axis}, vertex++);
   }
 
-  PSK_HD
-  void emit(const EdgeOwner& owner, std::int32_t vertex) const {
+  PSK_HD void emit(const EdgeOwner& owner, std::int32_t vertex) const {
     const CrossedEdge edge = crossed_edge(f.tree, owner);
     const float t = crossing_parameter(f, edge, linear_fit);
     const octree::LevelView& l = f.tree.levels[owner.level];
@@ -204,8 +101,7 @@ struct VertexLookup {
   octree::OctreeView tree;
   ArrayView<const std::uint8_t> marks;
   ArrayView<const std::int32_t> first_vertex;
-  PSK_HD
-  std::int32_t operator()(const EdgeOwner& owner) const {
+  PSK_HD std::int32_t operator()(const EdgeOwner& owner) const {
     const std::int64_t n = tree.levels[owner.level].first_node + owner.node;
     return first_vertex[n] + count_edges(marks[n] & ((1U << owner.axis) - 1));
   }
@@ -218,8 +114,7 @@ struct CellCounts {
 
 /// A traced loop of three crossings is a triangle; a longer one is a fan around a vertex at its centre, which has no
 /// diagonals that a neighbour could share.
-PSK_HD
-inline CellCounts count_loop(int length) { return length == 3 ? CellCounts{1, 0} : CellCounts{length, 1}; }
+PSK_HD inline CellCounts count_loop(int length) { return length == 3 ? CellCounts{1, 0} : CellCounts{length, 1}; }
 
 struct CountCells {
   field::FieldView f;
@@ -227,8 +122,7 @@ struct CountCells {
   ArrayView<const std::uint8_t> marks;
   ArrayView<const std::int32_t> cells;
   ArrayView<std::int32_t> triangles, centres;
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Place place = place_of(f.tree, cells[i]);
     const LeafCell cell(f, place.level, place.node);
     CellCounts total;
@@ -255,8 +149,7 @@ struct EmitCells {
   std::int32_t edge_vertices;
   MeshView mesh;
 
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Place place = place_of(f.tree, cells[i]);
     const LeafCell cell(f, place.level, place.node);
     std::int32_t triangle = first_triangle[i];
@@ -295,8 +188,7 @@ struct EmitCells {
     });
   }
 
-  PSK_HD
-  static void add(Vec3f& sum, const Vec3f& v) {
+  PSK_HD static void add(Vec3f& sum, const Vec3f& v) {
     sum.x += v.x;
     sum.y += v.y;
     sum.z += v.z;
@@ -306,15 +198,13 @@ struct EmitCells {
 struct Invert {
   ArrayView<const std::int32_t> order;
   ArrayView<std::int32_t> rank;
-  PSK_HD
-  void operator()(std::int64_t i) const { rank[order[i]] = static_cast<std::int32_t>(i); }
+  PSK_HD void operator()(std::int64_t i) const { rank[order[i]] = static_cast<std::int32_t>(i); }
 };
 
 struct Renumber {
   ArrayView<const std::int32_t> rank;
   ArrayView<Triangle> triangles;
-  PSK_HD
-  void operator()(std::int64_t t) const {
+  PSK_HD void operator()(std::int64_t t) const {
     std::int32_t* corner = triangles[t].data();
     for (int k = 0; k < 3; ++k) corner[k] = rank[corner[k]];
   }
@@ -326,24 +216,13 @@ inline void check_size(const char* what, std::int64_t count) {
                                            ", more than 32-bit ids reach; choose a smaller depth");
 }
 
-struct CountOf {
-  ArrayView<const std::int32_t> count;
-  PSK_HD
-  std::int64_t operator()(std::int64_t i) const { return count[i]; }
-};
-struct AddCounts {
-  PSK_HD
-  std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
-};
-
 /// Exclusive scan with the total on the host.
 /// @throws Error over_limit if the total does not fit into 32 bits
 template <exec::Space Exec>
 std::int32_t scan_counts(Exec& ex, const exec::Buffer<std::int32_t>& count, exec::Buffer<std::int32_t>& first) {
   constexpr std::int64_t kMostPerEntry = 64;  // a traced cell has at most 48 segments, so no more triangles
   if (count.size() > std::numeric_limits<std::int32_t>::max() / kMostPerEntry)
-    check_size("elements",
-               exec::reduce<std::int64_t>(ex, "extract.scan", count.size(), CountOf{count.cview()}, AddCounts{}));
+    check_size("elements", exec::sum_counts(ex, "extract.scan", count.cview()));
   first = exec::make_buffer<std::int32_t>(ex, count.size() + 1);
   exclusive_scan(ex, "extract.scan", count.cview(), first.view());
   return exec::read_element(ex, first.cview(), count.size());

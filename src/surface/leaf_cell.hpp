@@ -16,42 +16,32 @@ struct EdgeOwner {
   int axis;
 };
 
-/// Sign at a corner given its coordinates.
-PSK_HD
-inline bool inside_at(const field::FieldView& f, int level, std::int32_t node, const octree::Coordinates& c) {
-  return f.inside(level, node, c);
-}
-
 /// A leaf of the octree.
 class LeafCell {
  public:
-  PSK_HD
-  LeafCell(const field::FieldView& f, int level, std::int32_t node)
+  PSK_HD LeafCell(const field::FieldView& f, int level, std::int32_t node)
       : f_(f), level_(level), node_(node), at_(octree::decode(f.tree.levels[level].node_key(node))) {}
 
   /// Inside bits of the 8 corners, bit = slot.
-  [[nodiscard]] PSK_HD
-  unsigned corner_signs() const {
+  [[nodiscard]] PSK_HD unsigned corner_signs() const {
     unsigned signs = 0;
     for (int s = 0; s < 8; ++s) {
       const int x = octree::slot_x(s);
       const int y = octree::slot_y(s);
       const int z = octree::slot_z(s);
       const std::int32_t corner = f_.tree.levels[level_].neighbour(node_, x, y, z);
-      if (inside_at(f_, level_, corner, {at_.x + x, at_.y + y, at_.z + z})) signs |= 1U << s;
+      if (f_.inside(level_, corner, {at_.x + x, at_.y + y, at_.z + z})) signs |= 1U << s;
     }
     return signs;
   }
 
   /// True if the cell next to this one at the given offset has children.
-  [[nodiscard]] PSK_HD
-  bool is_split_at(int dx, int dy, int dz) const {
+  [[nodiscard]] PSK_HD bool is_split_at(int dx, int dy, int dz) const {
     return f_.tree.is_split(level_, f_.tree.levels[level_].neighbour(node_, dx, dy, dz));
   }
 
   /// True if a neighbour across a face or an edge is finer.
-  [[nodiscard]] PSK_HD
-  bool has_finer_neighbour() const {
+  [[nodiscard]] PSK_HD bool has_finer_neighbour() const {
     for (int j = 0; j < octree::kNeighbours; ++j) {
       const int d[3] = {j / 9 - 1, j / 3 % 3 - 1, j % 3 - 1};
       const int distance = (d[0] != 0) + (d[1] != 0) + (d[2] != 0);
@@ -61,15 +51,13 @@ class LeafCell {
   }
 
   /// True if the cell touches a face of the cube, where signs do not follow the interpolated values.
-  [[nodiscard]] PSK_HD
-  bool touches_cube_face() const {
+  [[nodiscard]] PSK_HD bool touches_cube_face() const {
     const std::int32_t last = (1 << level_) - 1;
     return at_.x == 0 || at_.y == 0 || at_.z == 0 || at_.x == last || at_.y == last || at_.z == last;
   }
 
   /// The loops around this cell with its finer neighbours' faces and edges.
-  [[nodiscard]] PSK_HD
-  CellTracer trace() const {
+  [[nodiscard]] PSK_HD CellTracer trace() const {
     std::uint32_t split_edges = 0;
     for (int e = 0; e < 12; ++e)
       if (edge_is_split(e / 4, e / 2 & 1, e & 1)) split_edges |= CellTracer::edge_bit(e / 4, e / 2 & 1, e & 1);
@@ -83,8 +71,7 @@ class LeafCell {
   }
 
   /// Owner of the edge that a crossing of trace() lies on.
-  [[nodiscard]] PSK_HD
-  EdgeOwner owner_of(int crossing) const {
+  [[nodiscard]] PSK_HD EdgeOwner owner_of(int crossing) const {
     const int c[3] = {crossing / 25, crossing / 5 % 5, crossing % 5};
     for (int axis = 0; axis < 3; ++axis)
       if ((c[axis] & 1) != 0) return {level_ + 1, fine_node(c[0] / 2, c[1] / 2, c[2] / 2), axis};
@@ -94,8 +81,7 @@ class LeafCell {
   }
 
   /// Owner of edge number axis * 4 + side_b * 2 + side_c of a cell without finer neighbours.
-  [[nodiscard]] PSK_HD
-  EdgeOwner owner_of_edge(int edge) const {
+  [[nodiscard]] PSK_HD EdgeOwner owner_of_edge(int edge) const {
     const int axis = edge / 4;
     int d[3] = {0, 0, 0};
     d[(axis + 1) % 3] = edge / 2 & 1;
@@ -105,8 +91,7 @@ class LeafCell {
 
  private:
   /// True if one of the three other cells around an edge has children.
-  [[nodiscard]] PSK_HD
-  bool edge_is_split(int axis, int side_b, int side_c) const {
+  [[nodiscard]] PSK_HD bool edge_is_split(int axis, int side_b, int side_c) const {
     int b[3] = {0, 0, 0};
     int c[3] = {0, 0, 0};
     b[(axis + 1) % 3] = side_b == 0 ? -1 : 1;
@@ -116,8 +101,7 @@ class LeafCell {
   }
 
   /// Node of the finer level at grid position (x, y, z) of this cell, or -1.
-  [[nodiscard]] PSK_HD
-  std::int32_t fine_node(int x, int y, int z) const {
+  [[nodiscard]] PSK_HD std::int32_t fine_node(int x, int y, int z) const {
     const octree::LevelView& l = f_.tree.levels[level_];
     const std::int32_t corner = l.neighbour(node_, x >> 1, y >> 1, z >> 1);
     const std::int32_t brick = corner < 0 ? -1 : l.child_brick[corner];
@@ -125,8 +109,7 @@ class LeafCell {
   }
 
   /// Inside bits over the 3 x 3 x 3 grid; positions that do not exist count as outside and are never used.
-  [[nodiscard]] PSK_HD
-  std::uint32_t grid_signs(bool with_middles) const {
+  [[nodiscard]] PSK_HD std::uint32_t grid_signs(bool with_middles) const {
     std::uint32_t signs = 0;
     for (int x = 0; x < 3; ++x)
       for (int y = 0; y < 3; ++y)
@@ -135,16 +118,14 @@ class LeafCell {
     return signs;
   }
 
-  [[nodiscard]] PSK_HD
-  bool inside_grid(int x, int y, int z, bool with_middles) const {
+  [[nodiscard]] PSK_HD bool inside_grid(int x, int y, int z, bool with_middles) const {
     if (((x | y | z) & 1) == 0) {
       const octree::LevelView& l = f_.tree.levels[level_];
-      return inside_at(f_, level_, l.neighbour(node_, x / 2, y / 2, z / 2),
-                       {at_.x + x / 2, at_.y + y / 2, at_.z + z / 2});
+      return f_.inside(level_, l.neighbour(node_, x / 2, y / 2, z / 2), {at_.x + x / 2, at_.y + y / 2, at_.z + z / 2});
     }
     if (!with_middles) return false;
     const std::int32_t node = fine_node(x, y, z);
-    return node >= 0 && inside_at(f_, level_ + 1, node, {2 * at_.x + x, 2 * at_.y + y, 2 * at_.z + z});
+    return node >= 0 && f_.inside(level_ + 1, node, {2 * at_.x + x, 2 * at_.y + y, 2 * at_.z + z});
   }
 
   const field::FieldView& f_;

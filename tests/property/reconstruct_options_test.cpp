@@ -59,9 +59,9 @@ TEST(Options, LengthsOfNormalsDoNotMatterWithoutConfidence) {
   expect_same_bytes(reconstructed(cloud, {.depth = 6}), reconstructed(with_normals_times(cloud, 4), {.depth = 6}));
 }
 
-TEST(Options, ACommonLengthOfAllNormalsKeepsTheUnscreenedSurfaceWithConfidence) {  // u scales, and its isovalue with it
+TEST(Options, ACommonLengthOfAllNormalsKeepsTheSurfaceWithConfidence) {
   const Cloud cloud = test::torus_cloud(5'000, 4);
-  const Options options{.depth = 6, .screening = 0, .confidence = true};
+  const Options options{.depth = 6, .confidence = true};
   const Mesh once = reconstructed(cloud, options);
   const Mesh twice = reconstructed(with_normals_times(cloud, 2), options);  // a power of two: exact
   EXPECT_EQ(once.triangles, twice.triangles);

@@ -21,8 +21,7 @@ namespace pointskin::test {
 
 /// A bijection of 64 bits without visible structure: deterministic data on every device.
 /// Source: Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014 (the mixer of SplitMix64).
-PSK_HD
-inline std::uint64_t hash(std::uint64_t v) {
+PSK_HD inline std::uint64_t hash(std::uint64_t v) {
   v += 0x9e3779b97f4a7c15;
   v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9;
   v = (v ^ (v >> 27)) * 0x94d049bb133111eb;

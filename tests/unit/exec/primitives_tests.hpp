@@ -35,28 +35,24 @@ inline std::vector<std::int32_t> counted(std::int64_t n) {
 
 struct AddHash {
   ArrayView<std::uint64_t> out;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] += hash(static_cast<std::uint64_t>(i)); }
+  PSK_HD void operator()(std::int64_t i) const { out[i] += hash(static_cast<std::uint64_t>(i)); }
 };
 
 /// Keeps about `kept` of 8 indices.
 struct KeepSome {
   std::uint64_t kept;
-  PSK_HD
-  bool operator()(std::int64_t i) const { return hash(static_cast<std::uint64_t>(i)) % 8 < kept; }
+  PSK_HD bool operator()(std::int64_t i) const { return hash(static_cast<std::uint64_t>(i)) % 8 < kept; }
 };
 
 /// In (-1, 1); sums of such floats are rounded at nearly every step.
 struct RandomFloat {
-  PSK_HD
-  float operator()(std::int64_t i) const {
+  PSK_HD float operator()(std::int64_t i) const {
     const auto bits = static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) >> 40);
     return static_cast<float>(bits - (1 << 23)) * 0x1p-23F;
   }
 };
 struct AddFloats {
-  PSK_HD
-  float operator()(float a, float b) const { return a + b; }
+  PSK_HD float operator()(float a, float b) const { return a + b; }
 };
 
 /// The tree that exec::reduce documents: lane l of max(1, n / 64) combines elements l, l + lanes, l + 2 lanes, ...;

@@ -99,8 +99,7 @@ struct LocateAll {
   ArrayView<const Vec3f> points;
   int last;
   ArrayView<octree::Leaf> leaves;
-  PSK_HD
-  void operator()(std::int64_t i) const {
+  PSK_HD void operator()(std::int64_t i) const {
     const Vec3f p = points[i];
     leaves[i] = octree::locate(tree, octree::point_key(p.x, p.y, p.z), last);
   }
@@ -112,16 +111,14 @@ struct EvaluateAll {
   ArrayView<const Vec3f> points;
   int last;
   ArrayView<float> out;
-  PSK_HD
-  void operator()(std::int64_t i) const { out[i] = octree::value_at(tree, values.data, points[i], last); }
+  PSK_HD void operator()(std::int64_t i) const { out[i] = octree::value_at(tree, values.data, points[i], last); }
 };
 
 struct ProlongAll {
   octree::LevelView above, level;
   ArrayView<const float> values;
   ArrayView<float> out;
-  PSK_HD
-  void operator()(std::int64_t n) const {
+  PSK_HD void operator()(std::int64_t n) const {
     out[n] = octree::prolonged(above, values.data, level.parent[n >> 3], static_cast<int>(n & 7));
   }
 };
@@ -130,8 +127,7 @@ struct RestrictAll {
   octree::LevelView level, below;
   ArrayView<const float> values;
   ArrayView<float> out;
-  PSK_HD
-  void operator()(std::int64_t n) const {
+  PSK_HD void operator()(std::int64_t n) const {
     out[n] = octree::restricted(level, below, values.data, static_cast<std::int32_t>(n));
   }
 };

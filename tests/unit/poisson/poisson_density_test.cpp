@@ -135,13 +135,21 @@ TEST(Weigh, GivesNormalsUnitLengthAndLeavesZeroOnesZero) {
   EXPECT_EQ(zeros, 10);
 }
 
-TEST(Weigh, ScalesAreasByTheNormalsLengthWithConfidenceOnly) {
+TEST(Weigh, ScalesAreasByTheNormalsRelativeLengthWithConfidenceOnly) {
   SmallTree plain = plane_tree(500, 0.503, 0, 6);
-  SmallTree confident = plane_tree(500, 0.503, 0, 6);  // normals of length 2
+  SmallTree confident = plane_tree(500, 0.503, 0, 6);
+  // Every fifth normal is 6 times as long as the others: the mean is (6 + 4) / 5 = 2 of theirs, so areas scale by 3 and
+  // 1/2.
+  const auto is_long = [](std::int64_t i) { return i % 5 == 0; };
+  for (std::int64_t i = 0; i < 500; ++i) {
+    Vec3f& n = confident.samples.normals.data()[i];
+    const float length = is_long(i) ? 6.0F : 1.0F;
+    n = {0.5F * length * n.x, 0.5F * length * n.y, 0.5F * length * n.z};  // they come with length 2
+  }
   weigh(plain, {1.5, false});
   weigh(confident, {1.5, true});
   for (std::int64_t i = 0; i < 500; ++i)
-    ASSERT_FLOAT_EQ(confident.samples.areas.data()[i], 2 * plain.samples.areas.data()[i]);
+    ASSERT_FLOAT_EQ(confident.samples.areas.data()[i], (is_long(i) ? 3.0F : 0.5F) * plain.samples.areas.data()[i]);
 }
 
 TEST(Weigh, SplatsAtTheDepthWhoseKernelHoldsEnoughSamples) {
@@ -154,8 +162,8 @@ TEST(Weigh, SplatsAtTheDepthWhoseKernelHoldsEnoughSamples) {
     weigh(tree, {wanted, false});
     // Estimates scatter by the square root of kReliableSamples and by the plane factor's 3/4..3/2: most find the depth.
     int expected = kDepth;
-    for (double samples = per_face * static_cast<double>(poisson::kKernelFaces);
-         samples < wanted && expected > poisson::kCoarsestSplatDepth; samples *= 4)
+    for (double samples = per_face * static_cast<double>(poisson::kKernelFaces); samples < wanted && expected > 2;
+         samples *= 4)
       --expected;
     std::int64_t off = 0;
     for (std::int64_t i = 0; i < kSamples; ++i) {

@@ -65,6 +65,8 @@ std::string human_text(const CheckArgs& args, const MeshReport& r) {
 int run(const CheckArgs& args) {
   check_threads(args.threads);
   const Mesh mesh = read_mesh(args.file, {.shift = std::nullopt, .threads = args.threads});
+  if (mesh.triangles.empty())
+    throw Error(ErrorCode::invalid_input, args.file + ": has no triangles; name a mesh, not a cloud");
   const MeshReport report = measure(mesh, args.threads);
   write_stdout(args.json ? json_text(to_json(args, report)) : human_text(args, report));
   return report.watertight() ? 0 : static_cast<int>(ErrorCode::empty_result);

@@ -1,6 +1,7 @@
 // pointskin reconstruct: oriented clouds in, mesh out.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -42,6 +43,11 @@ void check_files(const ReconstructArgs& args) {
   if (args.report == "-") throw_usage("--report: stdout carries the mesh only; name a file");
   if (std::count(args.inputs.begin(), args.inputs.end(), "-") > 1) throw_usage("stdin (-) can be read only once");
   if (!args.report.empty() && args.report == args.output) throw_usage("--report and -o name the same file");
+  for (const std::string& input : args.inputs) {
+    std::error_code ignored;  // files that do not exist are not the same
+    if (!args.report.empty() && std::filesystem::equivalent(input, args.report, ignored))
+      throw_usage("--report would overwrite the input " + input);
+  }
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
 }
@@ -146,8 +152,10 @@ void settle_options(const ReconstructArgs& args, const Cloud& cloud, Record& rec
   record.other_options = other_options(args);
 }
 
-int run(const ReconstructArgs& args) {
+int run(const ReconstructArgs& given) {
   const Stopwatch watch;
+  ReconstructArgs args = given;
+  args.inputs.insert(args.inputs.end(), args.named_inputs.begin(), args.named_inputs.end());
   Record record;
   record.options = library_options(args);
   parse_shift(args.shift);

@@ -18,7 +18,10 @@ void define_files(CLI::App& command, ReconstructArgs& args) {
   command.add_option("-o,--output", args.output, "mesh: .ply, .obj or .stl; - writes PLY to stdout")
       ->type_name("OUT")
       ->group(group);
-  command.add_option("--report", args.report, "write what was done as JSON")->type_name("FILE")->group(group);
+  command.add_option("--report", args.report, "write what was done as JSON")
+      ->type_name("FILE")
+      ->group(group)
+      ->check([](const std::string& file) { return std::string(file.empty() ? "needs the name of a file" : ""); });
   command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group(group)
@@ -84,7 +87,7 @@ void define_poisson_recon_names(CLI::App& command, ReconstructArgs& args) {
     CLI::Option* option = command.add_option(name, value, "same as " + ours)->type_name(type)->group(group);
     if (ours != "IN") option->excludes(command.get_option(ours));
   };
-  command.add_option("--in", args.inputs, "same as IN")->type_name("FILE")->group(group)->allow_extra_args(false);
+  command.add_option("--in", args.named_inputs, "same as IN")->type_name("FILE")->group(group)->allow_extra_args(false);
   alias("--out", args.output, "--output", "OUT");
   alias("--pointWeight", args.options.screening, "--screening", "W");
   alias("--samplesPerNode", args.options.samples_per_node, "--samples-per-node", "N");

@@ -12,8 +12,9 @@ namespace pointskin::cli {
 
 struct ReconstructArgs {
   std::vector<std::string> inputs;
-  std::string output;  ///< empty: none
-  std::string report;  ///< empty: none
+  std::vector<std::string> named_inputs;  ///< of --in; come after inputs
+  std::string output;                     ///< empty: none
+  std::string report;                     ///< empty: none
   std::string device = "auto";
   std::string shift = "auto";
   std::string max_memory;        ///< empty: no limit

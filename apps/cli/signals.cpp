@@ -36,7 +36,8 @@ void install(int signal) {
 void install_signal_handlers() {
   install(SIGINT);
   install(SIGTERM);
-  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);  // failed writes are errors with a reason, not deaths
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void on_interrupt(OnInterrupt what) { remember_only.store(what == OnInterrupt::remember); }

@@ -120,7 +120,7 @@ Survey survey(exec::Cpu& ex, const PointTable& table, const Roles& roles) {
 Vec3d automatic_shift(const PointTable& table, const Roles& roles, const Box& box) {
   constexpr double kExactEnough = 1000;
   const bool holds_floats = std::all_of(roles.position.begin(), roles.position.end(),
-                                        [&](std::size_t c) { return table.columns[c].declared == Scalar::float32; });
+                                        [&](std::size_t c) { return table.columns[c].stored == Scalar::float32; });
   if (holds_floats) return {0, 0, 0};
   double magnitude = 0;
   double extent = 0;

@@ -22,8 +22,8 @@ inline constexpr double kLargestCoordinate = 1e38;
 /// One value per point at equal distances in memory. Does not own it.
 struct Column {
   std::string name;
-  Scalar declared = Scalar::float64;  ///< type in the file; decides on the shift and on the attribute's type
-  Scalar stored = Scalar::float64;    ///< type in memory
+  Scalar declared = Scalar::float64;  ///< type in the file; decides on the attribute's type
+  Scalar stored = Scalar::float64;    ///< type in memory, double for coordinates in text; decides on the shift
   const char* data = nullptr;
   std::int64_t stride_bytes = 0;
   bool swapped = false;  ///< big endian

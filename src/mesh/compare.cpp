@@ -148,6 +148,8 @@ MeshComparison compare(const Mesh& mesh, const Mesh& reference, const CompareOpt
   check_mesh(ex, mesh, "the mesh");
   MeshComparison result;
   result.reference_diagonal = check_mesh(ex, reference, "the reference").diagonal();
+  if (!(result.reference_diagonal > 0))
+    throw Error(ErrorCode::invalid_input, "the reference has no extent; distances cannot be compared with its size");
   const double threshold = options.tau * result.reference_diagonal;
 
   // Both live in the reference's coordinates; only a difference of origins, taken in double, enters them.

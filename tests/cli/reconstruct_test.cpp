@@ -156,6 +156,19 @@ TEST_F(ReconstructCommand, AcceptsTheNamesOfPoissonRecon) {
   EXPECT_EQ(bytes_with({"--depth", "5", "--confidence", "1"}), bytes_with({"--depth", "5", "--confidence"}));
 }
 
+TEST_F(ReconstructCommand, MergesInputsNamedInBothWays) {
+  EXPECT_EQ(bytes_of({"reconstruct", input_, "--in", input_, "-o", output_, "--depth", "4", "-q"}, output_),
+            bytes_of({"reconstruct", input_, input_, "-o", output_, "--depth", "4", "-q"}, output_));
+  EXPECT_EQ(pointskin_run({"reconstruct", input_, "--in", input_ + ".missing", "-o", output_}).exit_code, 3);
+}
+
+TEST_F(ReconstructCommand, NeverOverwritesAnInputWithTheReport) {
+  EXPECT_EQ(pointskin_run({"reconstruct", input_, "-o", output_, "--report", input_}).exit_code, 2);
+  EXPECT_EQ(pointskin_run({"reconstruct", input_, "-o", output_, "--report", ""}).exit_code, 2);
+  EXPECT_EQ(pointskin_run({"info", input_}).exit_code, 0) << "the input is still there";
+  EXPECT_EQ(pointskin_run({"check", input_}).exit_code, 3) << "a cloud is no mesh";
+}
+
 /// The sphere is 2 wide and the cube 2.2: cells of depth 5 are 0.06875 wide.
 TEST_F(ReconstructCommand, WidthChoosesTheDepthWhoseCellsAreNotWider) {
   const std::string expected = bytes_with({"--depth", "5"});

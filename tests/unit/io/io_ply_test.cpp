@@ -246,6 +246,16 @@ TEST_P(PlyReaderIn, GivesTheSameCloudForAnyNumberOfThreads) {
   EXPECT_EQ(b.dropped, a.dropped);
 }
 
+/// Text is read as double whatever type the header names: only binary floats have lost their digits already.
+TEST(PlyReader, KeepsTheMillimetresOfTextDeclaredFloat) {
+  const Cloud cloud = cloud_of("a.ply",
+                               "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                               "property float z\nend_header\n1000000.003 5 5\n1000000.007 5 5.001\n");
+  ASSERT_EQ(cloud.size(), 2);
+  EXPECT_NEAR(cloud.origin[0] + static_cast<double>(cloud.positions[0].x), 1000000.003, 1e-6);
+  EXPECT_NEAR(cloud.origin[0] + static_cast<double>(cloud.positions[1].x), 1000000.007, 1e-6);
+}
+
 TEST_P(PlyReaderIn, KeepsTheMillimetresOfSurveyCoordinates) {
   Body body(GetParam());
   const std::vector<Vec3d> world{{500000.001, 4649776.002, 12.003}, {500010.004, 4649786.005, 13.006}};

@@ -61,7 +61,7 @@ Mesh Reconstructor::reconstruct(const Cloud& cloud, const Options& options) {
   return field->extract(&impl_->report_);
 }
 
-std::vector<double> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
+std::vector<RunTimes> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
   validate(options);
   require(times > 0, "repeat", "at least 1");
   Impl::check_memory(cloud.size(), options);

@@ -27,7 +27,7 @@ class Engine {
  public:
   virtual ~Engine() = default;
   virtual std::shared_ptr<FieldImpl> solve(const Cloud& cloud, const Options& options, RunReport& report) = 0;
-  virtual std::vector<double> repeat(const Cloud& cloud, const Options& options, int times) = 0;
+  virtual std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) = 0;
 };
 
 std::unique_ptr<Engine> make_cpu_engine(int threads);

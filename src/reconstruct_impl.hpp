@@ -205,18 +205,23 @@ class EngineOn final : public Engine {
     return std::make_shared<FieldOn<Exec>>(ex_, std::move(data), options, cloud.origin);
   }
 
-  std::vector<double> repeat(const Cloud& cloud, const Options& options, int times) override {
+  std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) override {
     ex_->activate();
     const DevicePoints points = upload(*ex_, cloud);
-    std::vector<double> milliseconds;
-    RunReport ignored;
+    std::vector<RunTimes> runs;
     for (int i = 0; i < times; ++i) {
       PhaseClock clock(*ex_);
-      const FieldData data = fit_field(*ex_, points, options, ignored);
+      RunReport report;
+      const FieldData data = fit_field(*ex_, points, options, report);
       const surface::Surface surface = detail::extract(*ex_, data, options);
-      milliseconds.push_back(clock.lap());
+      RunTimes run{report.octree_ms, report.splat_ms, report.solve_ms};
+      run.total_ms = clock.lap();
+      run.extract_ms = run.total_ms - run.octree_ms - run.splat_ms - run.solve_ms;
+      run.vertices = surface.positions.size();
+      run.triangles = surface.triangles.size();
+      runs.push_back(run);
     }
-    return milliseconds;
+    return runs;
   }
 
  private:

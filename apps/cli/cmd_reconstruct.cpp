@@ -132,7 +132,8 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   if (args.repeat > 0) {
     options.residuals = false;  // They cost time and are not part of the job.
     options.progress = [](const Progress&) { return !interrupted(); };
-    record.repeat_ms = reconstructor.repeat(cloud, options, args.repeat);
+    for (const RunTimes& run_times : reconstructor.repeat(cloud, options, args.repeat))
+      record.repeat_ms.push_back(run_times.total_ms);
   }
   return mesh;
 }

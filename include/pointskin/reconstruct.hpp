@@ -66,6 +66,14 @@ struct RunReport {
   std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
 };
 
+/// One of several runs on resident data, in milliseconds of wall clock.
+struct RunTimes {
+  double octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0;
+  double total_ms = 0;         ///< points on the device to mesh on the device
+  std::int64_t vertices = 0;   ///< of the mesh
+  std::int64_t triangles = 0;  ///< of the mesh
+};
+
 /// Owns a device's stream and memory pool, and is reused run after run. Not safe for two threads at once;
 /// several reconstructors may live side by side.
 class Reconstructor {
@@ -90,8 +98,8 @@ class Reconstructor {
 
   /// Runs the in-memory job `times` times on points resident on the device, the mesh staying there too.
   /// report() stays as it was.
-  /// @returns milliseconds of each run (points on the device to mesh on the device)
-  std::vector<double> repeat(const Cloud& cloud, const Options& options, int times);
+  /// @returns the times of each run
+  std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times);
 
   /// Report of the last run.
   [[nodiscard]] const RunReport& report() const;

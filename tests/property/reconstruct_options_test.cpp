@@ -202,9 +202,14 @@ TEST(Options, MemoryEstimatesHold) {
 TEST(Repeat, ReturnsAsManyTimesAsAskedFor) {
   Reconstructor r(Device::cpu(2));
   const Cloud cloud = test::sphere_cloud(2'000, 14);
-  const std::vector<double> times = r.repeat(cloud, {.depth = 5}, 3);
-  EXPECT_EQ(times.size(), 3U);
-  for (const double t : times) EXPECT_GT(t, 0);
+  const std::vector<RunTimes> runs = r.repeat(cloud, {.depth = 5}, 3);
+  EXPECT_EQ(runs.size(), 3U);
+  const std::size_t triangles = r.reconstruct(cloud, {.depth = 5}).triangles.size();
+  for (const RunTimes& run : runs) {
+    EXPECT_GT(run.total_ms, 0);
+    EXPECT_GE(run.total_ms, run.octree_ms + run.splat_ms + run.solve_ms);
+    EXPECT_EQ(run.triangles, static_cast<std::int64_t>(triangles));
+  }
   EXPECT_EQ(error_of([&] { (void)r.repeat(cloud, {.depth = 5}, 0); }), ErrorCode::usage);
 }
 

@@ -47,8 +47,15 @@ struct ReduceLane {
   std::int64_t n, lanes;
   ArrayView<T> out;
   PSK_HD void operator()(std::int64_t lane) const {
+    constexpr int kBatch = 8;  // values fetched before the first is used: the loads overlap
     T sum = f(lane);
-    for (std::int64_t i = lane + lanes; i < n; i += lanes) sum = combine(sum, f(i));
+    std::int64_t i = lane + lanes;
+    for (; i + (kBatch - 1) * lanes < n; i += kBatch * lanes) {
+      T batch[kBatch];
+      PSK_UNROLL for (int k = 0; k < kBatch; ++k) batch[k] = f(i + k * lanes);
+      PSK_UNROLL for (int k = 0; k < kBatch; ++k) sum = combine(sum, batch[k]);
+    }
+    for (; i < n; i += lanes) sum = combine(sum, f(i));
     out[lane] = sum;
   }
 };

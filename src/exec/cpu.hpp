@@ -20,6 +20,9 @@ class Cpu {
   Cpu(const Cpu&) = delete;
   Cpu& operator=(const Cpu&) = delete;
 
+  /// Few threads: neighbouring corners share what one thread has loaded.
+  static constexpr bool kManyThreads = false;
+
   [[nodiscard]] int threads() const noexcept { return threads_; }
   [[nodiscard]] const std::shared_ptr<MemoryPool>& pool() const noexcept { return pool_; }
 

@@ -34,6 +34,12 @@ void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
   });
 }
 
+/// Calls f(round, i) for every i in [0, n) and every round in [0, rounds), rounds one after another.
+template <class F>
+void sweep(Cpu& ex, const char* label, int rounds, std::int64_t n, const F& f) {
+  for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});
+}
+
 /// The indices i in [0, n) with keep(i), ascending. Two passes over keep; O(n).
 template <class Keep>
 Buffer<std::int32_t> select(Cpu& ex, const char* /*label*/, std::int64_t n, const Keep& keep) {
@@ -159,6 +165,11 @@ void copy(Cpu& /*ex*/, ArrayView<const T> from, ArrayView<T> to) {
 template <class T>
 void copy_to_host(Cpu& ex, ArrayView<const T> from, T* to) {
   copy(ex, from, ArrayView<T>{to, from.size});
+}
+
+template <class T>
+void copy_constant_to_device(Cpu& ex, const T* from, ArrayView<T> to) {
+  copy(ex, ArrayView<const T>{from, to.size}, to);
 }
 
 template <class T>

@@ -2,15 +2,19 @@
 
 #include <pointskin/error.hpp>
 
+#include <bit>
 #include <string>
+#include <unordered_map>
+#include <vector>
 
 #include "exec/cuda_check.cuh"
 
 namespace pointskin::exec {
 namespace {
 
-/// Allocates in stream order from a pool of its own whose release threshold is unlimited: memory freed stays for the
-/// next request, so a steady state allocates nothing from the driver.
+/// Allocates in stream order from a driver's pool of its own whose release threshold is unlimited. Blocks up to
+/// kLargestKept bytes do not even go back there when they are freed: asking the driver takes longer than a small kernel.
+/// Work on the one stream is ordered, so a block may be handed out while its last user is still running.
 class CudaPool final : public MemoryPool {
  public:
   CudaPool(int index, cudaStream_t stream) : stream_(stream) {
@@ -24,7 +28,7 @@ class CudaPool final : public MemoryPool {
                "setting up the memory pool");
   }
   ~CudaPool() override {
-    cudaStreamSynchronize(stream_);
+    CudaPool::trim();
     cudaMemPoolDestroy(pool_);
     cudaStreamDestroy(stream_);
   }
@@ -32,14 +36,29 @@ class CudaPool final : public MemoryPool {
   CudaPool& operator=(const CudaPool&) = delete;
 
   void trim() noexcept override {
+    for (auto& [bytes, blocks] : kept_) {
+      for (void* block : blocks) cudaFreeAsync(block, stream_);
+      blocks.clear();
+    }
     cudaStreamSynchronize(stream_);
     cudaMemPoolTrimTo(pool_, 0);
   }
 
  private:
   void* take(std::size_t bytes) override {
+    const std::size_t rounded = size_class(bytes);
+    if (const auto kept = kept_.find(rounded); kept != kept_.end() && !kept->second.empty()) {
+      void* block = kept->second.back();
+      kept->second.pop_back();
+      return block;
+    }
     void* block = nullptr;
-    const cudaError_t status = cudaMallocFromPoolAsync(&block, bytes, pool_, stream_);
+    cudaError_t status = cudaMallocFromPoolAsync(&block, rounded, pool_, stream_);
+    if (status == cudaErrorMemoryAllocation) {
+      cudaGetLastError();
+      trim();
+      status = cudaMallocFromPoolAsync(&block, rounded, pool_, stream_);
+    }
     if (status == cudaErrorMemoryAllocation) {
       cudaGetLastError();
       throw Error(ErrorCode::over_limit, "out of memory on the GPU; while allocating " + std::to_string(bytes) +
@@ -49,8 +68,26 @@ class CudaPool final : public MemoryPool {
     cuda_check(status, "allocating device memory");
     return block;
   }
-  void give_back(void* block, std::size_t /*bytes*/) noexcept override { cudaFreeAsync(block, stream_); }
+  void give_back(void* block, std::size_t bytes) noexcept override {
+    const std::size_t rounded = size_class(bytes);
+    try {
+      if (rounded <= kLargestKept) return kept_[rounded].push_back(block);
+    } catch (...) {  // NOLINT(bugprone-empty-catch): no room to remember the block, so it is freed
+    }
+    cudaFreeAsync(block, stream_);
+  }
 
+  static constexpr std::size_t kLargestKept = std::size_t{32} << 20;
+
+  /// Four classes per octave, so that a block fits later requests of about its size; large blocks as they are.
+  static std::size_t size_class(std::size_t bytes) {
+    if (bytes <= 4096) return 4096;
+    if (bytes > kLargestKept) return bytes;
+    const std::size_t step = std::bit_floor(bytes - 1) / 4;
+    return (bytes + step - 1) / step * step;
+  }
+
+  std::unordered_map<std::size_t, std::vector<void*>> kept_;
   cudaStream_t stream_;
   cudaMemPool_t pool_ = nullptr;
 };
@@ -65,6 +102,9 @@ Cuda::Cuda(int index) : index_(index) {
   cudaStream_t stream = nullptr;
   cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "creating a stream");
   stream_ = stream;
+  int major = 0;
+  cuda_check(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, index), "reading the GPU's properties");
+  has_clusters_ = major >= 9;
   pool_ = std::make_shared<CudaPool>(index, stream);  // owns the stream: buffers may outlive this object
   cuda_check(cudaMallocHost(&staging_, kStagingBytes), "allocating page-locked memory");
 }

@@ -19,6 +19,9 @@ class Cuda {
   Cuda(const Cuda&) = delete;
   Cuda& operator=(const Cuda&) = delete;
 
+  /// Thousands of threads hide each other's waiting: one corner each.
+  static constexpr bool kManyThreads = true;
+
   [[nodiscard]] int index() const noexcept { return index_; }
   /// The stream as a cudaStream_t.
   [[nodiscard]] void* stream() const noexcept { return stream_; }
@@ -31,12 +34,16 @@ class Cuda {
   /// another.
   void activate();
 
+  /// True if blocks of this GPU can form clusters with a barrier of their own (compute capability 9).
+  [[nodiscard]] bool has_clusters() const noexcept { return has_clusters_; }
+
   /// Page-locked host memory for small read-backs, `kStagingBytes` long.
   [[nodiscard]] void* staging() const noexcept { return staging_; }
   static constexpr std::int64_t kStagingBytes = 4096;
 
  private:
   int index_;
+  bool has_clusters_ = false;
   void* stream_ = nullptr;
   void* staging_ = nullptr;
   std::shared_ptr<MemoryPool> pool_;

@@ -37,6 +37,50 @@ void for_each(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   cuda_check(cudaGetLastError(), label);
 }
 
+/// Waits until all threads of the grid, one cluster, have come here; what they wrote before is seen after.
+__device__ inline void synchronize_cluster() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  asm volatile("barrier.cluster.arrive.release.aligned;\n\tbarrier.cluster.wait.acquire.aligned;" ::: "memory");
+#else
+  __syncthreads();  // never launched with more than one block there
+#endif
+}
+
+inline constexpr int kSweepThreads = 1024;
+inline constexpr int kSweepBlocks = 8;  // the largest cluster that every GPU with clusters runs
+
+template <class F>
+__global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n, const F f) {
+  const int first = static_cast<int>(blockIdx.x) * kSweepThreads + static_cast<int>(threadIdx.x);
+  const int stride = static_cast<int>(gridDim.x) * kSweepThreads;
+  for (int round = 0; round < rounds; ++round) {
+    for (int i = first; i < n; i += stride) f(round, i);
+    synchronize_cluster();
+  }
+}
+
+/// Calls f(round, i) for every i in [0, n) and every round in [0, rounds), rounds one after another. Asynchronous.
+/// What one cluster of blocks holds takes one launch, its rounds separated by the cluster's barrier.
+template <class F>
+void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) {
+  const std::int64_t blocks = (n + kSweepThreads - 1) / kSweepThreads;
+  if (n <= 0 || rounds <= 0) return;
+  if (blocks > (ex.has_clusters() ? kSweepBlocks : 1)) {
+    for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});
+    return;
+  }
+  cudaLaunchAttribute cluster{};
+  cluster.id = cudaLaunchAttributeClusterDimension;
+  cluster.val.clusterDim = {static_cast<unsigned>(blocks), 1, 1};
+  cudaLaunchConfig_t config{};
+  config.gridDim = {static_cast<unsigned>(blocks), 1, 1};
+  config.blockDim = {kSweepThreads, 1, 1};
+  config.stream = stream_of(ex);
+  config.attrs = &cluster;
+  config.numAttrs = blocks > 1 ? 1 : 0;
+  cuda_check(cudaLaunchKernelEx(&config, sweep_kernel<F>, rounds, static_cast<int>(n), f), label);
+}
+
 /// Runs a CUB algorithm: once to learn its scratch size, once for real.
 template <class Algorithm>
 void run_cub(Cuda& ex, const char* label, const Algorithm& algorithm) {
@@ -76,6 +120,14 @@ void copy_to_device(Cuda& ex, const T* from, ArrayView<T> to) {
   ex.synchronize();
 }
 
+/// Copies what never changes while the program runs. Asynchronous.
+template <class T>
+void copy_constant_to_device(Cuda& ex, const T* from, ArrayView<T> to) {
+  cuda_check(cudaMemcpyAsync(to.data, from, static_cast<std::size_t>(to.size) * sizeof(T), cudaMemcpyHostToDevice,
+                             stream_of(ex)),
+             "copying to the GPU");
+}
+
 /// 0, 1, 2, ... as an iterator.
 struct CountingIterator {
   using value_type = std::int32_t;
@@ -94,15 +146,25 @@ struct CountingIterator {
   }
 };
 
-/// The indices i in [0, n) with keep(i), ascending. Waits for the count.
+template <class Keep>
+struct FlagKept {
+  Keep keep;
+  std::uint8_t* flags;
+  PSK_HD void operator()(std::int64_t i) const { flags[i] = keep(i) ? 1 : 0; }
+};
+
+/// The indices i in [0, n) with keep(i), ascending. Waits for the count. keep runs in a kernel of its own: CUB calls it
+/// for many indices on few threads, one after another.
 template <class Keep>
 Buffer<std::int32_t> select(Cuda& ex, const char* label, std::int64_t n, const Keep& keep) {
   if (n == 0) return {};
   Buffer<std::int32_t> found(ex.pool(), n);
   Buffer<std::int32_t> count(ex.pool(), 1);
+  Buffer<std::uint8_t> flags(ex.pool(), n);
+  for_each(ex, label, n, FlagKept<Keep>{keep, flags.data()});
   run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceSelect::If(scratch, bytes, CountingIterator{}, found.data(), count.data(), n, keep,
-                                 stream_of(ex));
+    return cub::DeviceSelect::Flagged(scratch, bytes, CountingIterator{}, flags.data(), found.data(), count.data(), n,
+                                      stream_of(ex));
   });
   std::int32_t kept_count = 0;
   copy_to_host(ex, count.cview(), &kept_count);

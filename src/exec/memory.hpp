@@ -10,6 +10,14 @@
 
 namespace pointskin::exec {
 
+/// f of a sweep with its round fixed: what for_each calls.
+template <class F>
+struct SweepRound {
+  F f;
+  int round;
+  PSK_HD void operator()(std::int64_t i) const { f(round, static_cast<int>(i)); }
+};
+
 /// Memory of one space. Freed blocks stay with the pool for the next request; trim() gives them back.
 /// Blocks are aligned to at least 256 bytes. Used from one thread at a time.
 class MemoryPool {

@@ -3,11 +3,13 @@
 // Primitives, found by argument-dependent lookup on the space (exec/cpu_primitives.hpp, exec/cuda_primitives.cuh):
 //
 //   for_each(ex, "label", n, f)                f(i) for every i in [0, n)
+//   sweep(ex, "label", rounds, n, f)           f(round, i) for every i in [0, n), rounds one after another
 //   select(ex, "label", n, keep)               Buffer<int32> of the i in [0, n) with keep(i), ascending
 //   exclusive_scan(ex, "label", in, out)       out[i] = in[0] + ... + in[i-1]; out may have one element more: the total
 //   sort_pairs(ex, "label", keys, values, bits)  stable ascending radix sort by the lowest `bits` bits of uint64 keys
 //   sort_keys(ex, "label", keys, bits)           the same for keys alone
 //   copy_to_host / copy_to_device / copy       checked copies on the space's stream
+//   copy_constant_to_device                    of what never changes: does not wait
 //
 // and, written once over for_each, in exec/algorithms.hpp: fill, gather, iota, reduce, read_element,
 // run_starts (run-length encoding: a run's length is the distance to the next start) and sort_unique.
@@ -24,6 +26,7 @@ namespace pointskin::exec {
 template <class T>
 concept Space = requires(T ex) {
   { ex.pool() } -> std::convertible_to<std::shared_ptr<MemoryPool>>;
+  { T::kManyThreads } -> std::convertible_to<bool>;  // true: the smallest pieces of work run best
   ex.synchronize();
   ex.activate();
 };

@@ -16,7 +16,7 @@ namespace pointskin::octree {
 PSK_HD inline float prolonged(const LevelView& level_above, const float* above, std::int32_t parent, int slot) {
   float sum = 0;
   int count = 0;
-  for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL for (int s = 0; s < 8; ++s) {
     if ((s & ~slot) != 0) continue;
     ++count;
     const std::int32_t corner = level_above.neighbour(parent, slot_x(s), slot_y(s), slot_z(s));
@@ -29,7 +29,7 @@ PSK_HD inline float prolonged(const LevelView& level_above, const float* above, 
 /// prolonged(). Finer corners that do not exist count as zero.
 PSK_HD inline float restricted(const LevelView& level, const LevelView& below, const float* values, std::int32_t n) {
   float sum = 0;
-  for (int s = 0; s < 8; ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
+  PSK_UNROLL for (int s = 0; s < 8; ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
     const int x = slot_x(s);
     const int y = slot_y(s);
     const int z = slot_z(s);
@@ -38,15 +38,18 @@ PSK_HD inline float restricted(const LevelView& level, const LevelView& below, c
     if (brick < 0 || brick >= below.bricks) continue;
     const float* corner = values + std::int64_t{8} * brick;
     // Along an axis, the node's own brick gives offsets 0 and 1, the lower brick only offset -1 (its slot 1).
-    for (int i = x; i < 2; ++i)
-      for (int j = y; j < 2; ++j)
-        for (int k = z; k < 2; ++k) {
+    PSK_UNROLL for (int i = 0; i < 2; ++i) {
+      PSK_UNROLL for (int j = 0; j < 2; ++j) {
+        PSK_UNROLL for (int k = 0; k < 2; ++k) {
+          if (i < x || j < y || k < z) continue;
           const int distance = (i != 0) + (j != 0) + (k != 0);
           sum += corner[slot_of(i, j, k)] * (distance == 0   ? 1.0F
                                              : distance == 1 ? 0.5F
                                              : distance == 2 ? 0.25F
                                                              : 0.125F);
         }
+      }
+    }
   }
   return sum;
 }
@@ -68,7 +71,7 @@ PSK_HD inline Vec3f local_in_cell(const Vec3f& p, const Coordinates& c, int dept
 /// Trilinear interpolation of corner values in a cell.
 PSK_HD inline float interpolated(const LevelView& level, const float* values, std::int32_t cell, const Vec3f& local) {
   float sum = 0;
-  for (int s = 0; s < 8; ++s)
+  PSK_UNROLL for (int s = 0; s < 8; ++s)
     sum += corner_weight(s, local) * values[level.neighbour(cell, slot_x(s), slot_y(s), slot_z(s))];
   return sum;
 }

@@ -52,8 +52,8 @@ struct WeighOptions {
   bool confidence = false;        ///< weight a sample by its normal's length over the mean length
 };
 
-/// Splats every sample's hat at the finest level and restricts the counts to levels depth - 2 .. 0.
-/// O(8 n + 8 nodes), no atomics, deterministic.
+/// Splats every sample's hat at level depth - 2, cell by cell, and restricts the counts to the levels above: hats are
+/// nested, so the finer levels add nothing. O(8 n + 27 nodes of these levels), no atomics, deterministic.
 template <exec::Space Exec>
 Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const Vec3f> positions);
 

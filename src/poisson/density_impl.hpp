@@ -1,35 +1,49 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
 #include "poisson/density.hpp"
-#include "poisson/splat_kernel.hpp"
 
 namespace pointskin::poisson {
 namespace density {
 
-/// Sum of the hats of all samples at the corners of a brick.
-struct SplatCounts {
+/// Hats of a cell's samples at its 8 corners: hats of a level are sums of finer hats, so no finer level is needed.
+struct SumHats {
   octree::LevelView level;
   ArrayView<const Vec3f> positions;
-  ArrayView<float> counts;
-  PSK_HD void operator()(std::int64_t brick) const {
-    const octree::Coordinates origin = brick_origin(level, brick);
-    const auto scale = static_cast<float>(1 << level.depth);
+  ArrayView<float> hats;  // (8 cells) at the corners of each cell
+  PSK_HD void operator()(std::int64_t cell) const {
     float sum[8] = {};
-    for_points_around(level, brick, [&](std::int32_t first, std::int32_t last) {
+    const std::int32_t first = level.point_begin[cell];
+    const std::int32_t last = level.point_begin[cell + 1];
+    if (first < last) {
+      const octree::Coordinates at = octree::decode(level.node_key(static_cast<std::int32_t>(cell)));
       for (std::int32_t i = first; i < last; ++i) {
-        const BrickSample sample(positions[i], origin, scale);
-        if (!sample.reaches<HatKernel>()) continue;
-        float w[8];
-        sample.weights<HatKernel>(w);
-        for (int s = 0; s < 8; ++s) sum[s] += w[s];
+        const Vec3f local = octree::local_in_cell(positions[i], at, level.depth);
+        PSK_UNROLL for (int s = 0; s < 8; ++s) sum[s] += octree::corner_weight(s, local);
       }
-    });
-    for (int s = 0; s < 8; ++s) counts[8 * brick + s] = sum[s];
+    }
+    for (int s = 0; s < 8; ++s) hats[8 * cell + s] = sum[s];
+  }
+};
+
+/// Sum over the 8 cells around a corner.
+struct GatherHats {
+  octree::LevelView level;
+  ArrayView<const float> hats;
+  ArrayView<float> counts;
+  PSK_HD void operator()(std::int64_t n) const {
+    float sum = 0;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      const std::int32_t cell =
+          level.neighbour(static_cast<std::int32_t>(n), -octree::slot_x(s), -octree::slot_y(s), -octree::slot_z(s));
+      if (level.is_cell(cell)) sum += hats[8 * std::int64_t{cell} + s];
+    }
+    counts[n] = sum;
   }
 };
 
@@ -95,12 +109,12 @@ struct Weigh {
   }
 };
 
-struct DepthOf {
+struct DepthBit {
   ArrayView<const std::uint8_t> depths;
-  PSK_HD std::int32_t operator()(std::int64_t i) const { return depths[i]; }
+  PSK_HD std::uint32_t operator()(std::int64_t i) const { return 1U << depths[i]; }
 };
-struct Smaller {
-  PSK_HD std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a < b ? a : b; }
+struct Union {
+  PSK_HD std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const { return a | b; }
 };
 struct EvaluateDensity {
   octree::OctreeView tree;
@@ -120,18 +134,16 @@ Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const 
   const octree::LevelView& counted = view.levels[result.depth];
   result.counts = exec::make_buffer<float>(ex, counted.first_node + counted.nodes());
 
-  auto below = exec::make_buffer<float>(ex, view.finest().nodes());
-  for_each(ex, "density.splat", view.finest().bricks, density::SplatCounts{view.finest(), positions, below.view()});
-  for (int d = view.depth - 1; d >= 0; --d) {
+  auto hats = exec::make_buffer<float>(ex, 8 * counted.cells());
+  for_each(ex, "density.splat", counted.cells(), density::SumHats{counted, positions, hats.view()});
+  for_each(ex, "density.splat", counted.nodes(),
+           density::GatherHats{counted, hats.cview(), result.counts.view().part(counted.first_node, counted.nodes())});
+  for (int d = result.depth - 1; d >= 0; --d) {
     const octree::LevelView& level = view.levels[d];
-    exec::Buffer<float> own;
-    if (d > result.depth) own = exec::make_buffer<float>(ex, level.nodes());
-    const ArrayView<float> counts =
-        d > result.depth ? own.view() : result.counts.view().part(level.first_node, level.nodes());
-    const float* below_counts = d >= result.depth ? below.data() : result.counts.data() + view.levels[d + 1].first_node;
+    const octree::LevelView& below = view.levels[d + 1];
     for_each(ex, "density.restrict", level.nodes(),
-             density::RestrictCounts{level, view.levels[d + 1], below_counts, counts});
-    if (d > result.depth) below = std::move(own);
+             density::RestrictCounts{level, below, result.counts.data() + below.first_node,
+                                     result.counts.view().part(level.first_node, level.nodes())});
   }
   return result;
 }
@@ -157,8 +169,9 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
                           samples.normals.view(),
                           samples.areas.view(),
                           samples.splat_depths.view()});
-  samples.coarsest_splat_depth = exec::reduce<std::int32_t>(
-      ex, "density.coarsest", n, density::DepthOf{samples.splat_depths.cview()}, density::Smaller{});
+  samples.splat_depth_set = exec::reduce<std::uint32_t>(
+      ex, "density.coarsest", n, density::DepthBit{samples.splat_depths.cview()}, density::Union{});
+  samples.coarsest_splat_depth = std::countr_zero(samples.splat_depth_set);
 }
 
 template <exec::Space Exec>

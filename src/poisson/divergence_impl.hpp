@@ -16,6 +16,17 @@ namespace divergence {
 struct Subset {
   ArrayView<const std::int32_t> rank;    // (n + 1) chosen samples before a sample; empty: all samples are chosen
   ArrayView<const std::int32_t> chosen;  // sample of each rank; empty as above
+
+  /// Calls visit(sample) for those of samples [first, last) that are chosen.
+  template <class Visit>
+  PSK_HD void for_chosen(std::int32_t first, std::int32_t last, const Visit& visit) const {
+    if (rank.empty()) {
+      for (std::int32_t i = first; i < last; ++i) visit(i);
+    } else {
+      const std::int32_t end = rank[last];
+      for (std::int32_t i = rank[first]; i < end; ++i) visit(chosen[i]);
+    }
+  }
 };
 
 /// V at the corners of a level in units of 1 / h, one array an axis.
@@ -35,52 +46,96 @@ struct ProlongField {
   }
 };
 
-/// Adds the samples of one splat depth to V at the corners of a brick.
-struct SplatNormals {
+/// Samples to be splatted at one depth.
+struct SplatSource {
   octree::LevelView level;
   SamplesView samples;
   Subset subset;
   float area_scale;  // finest cells^2 -> cells^2 of this level
+
+  /// -area n, what the sample adds to V.
+  [[nodiscard]] PSK_HD Vec3f vector(std::int32_t sample) const {
+    const Vec3f n = samples.normals[sample];
+    const float area = samples.areas[sample] * area_scale;
+    return {-area * n.x, -area * n.y, -area * n.z};
+  }
+};
+
+/// Adds samples to V at the corners of a brick, for spaces with few threads.
+struct SplatToBricks {
+  SplatSource source;
   VectorField field;
 
   PSK_HD void operator()(std::int64_t brick) const {
-    const octree::Coordinates origin = brick_origin(level, brick);
-    const auto scale = static_cast<float>(1 << level.depth);
+    const octree::Coordinates origin = brick_origin(source.level, brick);
+    const auto scale = static_cast<float>(1 << source.level.depth);
     float sum[3][8] = {};
-    for_points_around(level, brick, [&](std::int32_t first, std::int32_t last) {
-      const bool all = subset.rank.empty();
-      const std::int32_t begin = all ? first : subset.rank[first];
-      const std::int32_t end = all ? last : subset.rank[last];
-      for (std::int32_t i = begin; i < end; ++i) add(all ? i : subset.chosen[i], origin, scale, sum);
+    for_points_around(source.level, brick, [&](std::int32_t first, std::int32_t last) {
+      source.subset.for_chosen(first, last, [&](std::int32_t i) { add(i, origin, scale, sum); });
     });
     for (int a = 0; a < 3; ++a)
       for (int s = 0; s < 8; ++s) field.axis[a][8 * brick + s] += sum[a][s];
   }
 
   PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
-    const BrickSample at(samples.positions[sample], origin, scale);
+    const BrickSample at(source.samples.positions[sample], origin, scale);
     if (!at.reaches<QuadraticKernel>()) return;
     float w[8];
     at.weights<QuadraticKernel>(w);
-    const Vec3f n = samples.normals[sample];
-    const float area = samples.areas[sample] * area_scale;
-    const float v[3] = {-area * n.x, -area * n.y, -area * n.z};
-    for (int a = 0; a < 3; ++a)
-      for (int s = 0; s < 8; ++s) sum[a][s] += w[s] * v[a];
+    const Vec3f v = source.vector(sample);
+    for (int s = 0; s < 8; ++s) sum[0][s] += w[s] * v.x;
+    for (int s = 0; s < 8; ++s) sum[1][s] += w[s] * v.y;
+    for (int s = 0; s < 8; ++s) sum[2][s] += w[s] * v.z;
   }
 };
 
-/// Coefficients of the divergence: of a corner whose 8 cells all exist, and of single cells.
+/// The same at one corner, with the same bits, for spaces with many threads.
+struct SplatToCorners {
+  SplatSource source;
+  VectorField field;
+
+  PSK_HD void operator()(std::int64_t n) const {
+    const octree::LevelView& level = source.level;
+    const octree::Coordinates origin = brick_origin(level, n >> 3);
+    const auto scale = static_cast<float>(1 << level.depth);
+    const int slot = static_cast<int>(n & 7);
+    const std::int32_t* bricks = level.neighbours + (n >> 3) * octree::kNeighbours;
+    Vec3f sum{};
+    // The kernel reaches 3/2 cells: bricks above hold nothing for a brick's lower corners.
+    for (int x = -1; x <= octree::slot_x(slot); ++x)
+      for (int y = -1; y <= octree::slot_y(slot); ++y)
+        for (int z = -1; z <= octree::slot_z(slot); ++z) {
+          const std::int32_t brick = bricks[octree::neighbour_index(x, y, z)];
+          if (brick < 0 || brick >= level.cell_bricks) continue;
+          source.subset.for_chosen(level.point_begin[8 * std::int64_t{brick}],
+                                   level.point_begin[8 * std::int64_t{brick} + 8],
+                                   [&](std::int32_t i) { add(i, origin, scale, slot, sum); });
+        }
+    field.axis[0][n] += sum.x;
+    field.axis[1][n] += sum.y;
+    field.axis[2][n] += sum.z;
+  }
+
+  PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, int slot, Vec3f& sum) const {
+    const BrickSample at(source.samples.positions[sample], origin, scale);
+    const float w = at.weight<QuadraticKernel>(slot);
+    if (!(w > 0)) return;
+    const Vec3f v = source.vector(sample);
+    sum.x += w * v.x;
+    sum.y += w * v.y;
+    sum.z += w * v.z;
+  }
+};
+
+/// Coefficients of the divergence over single cells: [axis][corner i][corner j], the integral over a unit cell of
+/// phi_j d phi_i / d axis.
 struct Coefficients {
-  float inside[3][27];     ///< [axis][neighbour index]
-  float element[3][8][8];  ///< [axis][corner i][corner j]: integral over a unit cell of phi_j d phi_i / d axis
+  float element[3][8][8];
 };
 constexpr Coefficients make_coefficients() {
   constexpr double kMass[2][2] = {{2 / 6.0, 1 / 6.0}, {1 / 6.0, 2 / 6.0}};
   Coefficients c{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t j = 0; j < 27; ++j)
-      c.inside[axis][j] = static_cast<float>(divergence_coefficient(axis, {j / 9, j / 3 % 3, j % 3}));
+  for (std::size_t axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 8; ++i)
       for (int j = 0; j < 8; ++j) {
         double product = 1;
@@ -91,11 +146,46 @@ constexpr Coefficients make_coefficients() {
         }
         c.element[axis][i][j] = static_cast<float>(product);
       }
-  }
   return c;
 }
 
-/// Divergence of V over the leaf cells of a level, tested with the hats at a brick's corners.
+/// D M M and its permutations around a corner whose 8 cells are all leaves; v(x, y, z) at offsets -1, 0, 1.
+template <class Values>
+PSK_HD inline float divergence_inside(int axis, const Values& v) {
+  constexpr auto kEnd = static_cast<float>(kAxisRows.mass[0][0]);
+  constexpr auto kMiddle = static_cast<float>(kAxisRows.mass[0][1]);
+  constexpr auto kDerivative = static_cast<float>(kAxisRows.derivative[0][2]);
+  static_assert(kAxisRows.derivative[0][1] == 0 && kAxisRows.derivative[0][0] == -kAxisRows.derivative[0][2]);
+  const auto mass = [](const float (&u)[3]) { return kEnd * (u[0] + u[2]) + kMiddle * u[1]; };
+  float along[3];
+  PSK_UNROLL for (int j = -1; j <= 1; ++j) {
+    float slope[3];
+    PSK_UNROLL for (int k = -1; k <= 1; ++k)
+      slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
+                     : axis == 1 ? v(j, 1, k) - v(j, -1, k)
+                                 : v(j, k, 1) - v(j, k, -1);
+    along[j + 1] = mass(slope);
+  }
+  return kDerivative * mass(along);
+}
+
+/// Sum over the leaf cells around a corner of their element matrices' rows. Bit t of `leaves`: the cell at offset
+/// slot(t) - 1 is a leaf.
+template <class Values>
+PSK_HD inline float divergence_by_cells(int leaves, const float (&element)[8][8], const Values& v) {
+  float sum = 0;
+  PSK_UNROLL for (int t = 0; t < 8; ++t) {
+    if ((leaves >> t & 1) == 0) continue;
+    const int x = octree::slot_x(t) - 1;
+    const int y = octree::slot_y(t) - 1;
+    const int z = octree::slot_z(t) - 1;
+    PSK_UNROLL for (int j = 0; j < 8; ++j)  // the corner is number 7 - t of that cell
+      sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
+  }
+  return sum;
+}
+
+/// Divergence of V over the leaf cells of a level, tested with the hats at its corners.
 struct Divergence {
   octree::LevelView level;
   std::int32_t finer_cell_bricks;  // of the level below; 0 at the finest level, where all cells are leaves
@@ -103,62 +193,68 @@ struct Divergence {
   Coefficients coefficients;
   ArrayView<float> b;
 
-  PSK_HD void operator()(std::int64_t brick) const {
-    // Corners inside the finest level see 8 leaves, so their cells' matrices are summed beforehand.
-    const int inside_corners = finer_cell_bricks == 0 ? level.unknowns[brick] & ~face_corners(brick) : 0;
-    float sum[8] = {};
-    for (int axis = 0; axis < 3; ++axis) {
-      const octree::Neighbourhood v = octree::load_neighbourhood(level, brick, field.axis[axis].data);
-      PSK_UNROLL for (int s = 0; s < 8; ++s) {
-        sum[s] += (inside_corners >> s & 1) != 0 ? inside(v, s, coefficients.inside[axis])
-                                                 : by_cells(brick, v, s, coefficients.element[axis]);
-      }
-    }
-    for (int s = 0; s < 8; ++s) b[8 * brick + s] = sum[s];
-  }
-
-  /// Corners of the brick that lie on a face of the cube: unknowns with fewer than 8 cells.
-  PSK_HD int face_corners(std::int64_t brick) const {
-    const octree::Coordinates c = octree::decode(level.brick_key[brick]);
-    const std::int32_t last = 1 << level.depth;
-    int mask = 0;
-    for (int s = 0; s < 8; ++s) {
-      const std::int32_t x = 2 * c.x + octree::slot_x(s);
-      const std::int32_t y = 2 * c.y + octree::slot_y(s);
-      const std::int32_t z = 2 * c.z + octree::slot_z(s);
-      if (x == 0 || y == 0 || z == 0 || x == last || y == last || z == last) mask |= 1 << s;
-    }
-    return mask;
-  }
-
-  PSK_HD static float inside(const octree::Neighbourhood& v, int s, const float* coefficient) {
-    float sum = 0;
-    PSK_UNROLL for (int dx = -1; dx <= 1; ++dx) PSK_UNROLL for (int dy = -1; dy <= 1; ++dy)
-        PSK_UNROLL for (int dz = -1; dz <= 1; ++dz) sum +=
-        coefficient[octree::neighbour_index(dx, dy, dz)] *
-        v.at(octree::slot_x(s) + dx, octree::slot_y(s) + dy, octree::slot_z(s) + dz);
-    return sum;
-  }
-
-  /// Sum over the leaf cells around corner `s` of their element matrices' rows.
-  PSK_HD float by_cells(std::int64_t brick, const octree::Neighbourhood& v, int s, const float (&element)[8][8]) const {
-    float sum = 0;
-    for (int t = 0; t < 8; ++t) {
-      const int x = octree::slot_x(s) + octree::slot_x(t) - 1;
-      const int y = octree::slot_y(s) + octree::slot_y(t) - 1;
-      const int z = octree::slot_z(s) + octree::slot_z(t) - 1;
-      if (!is_leaf(level.neighbour(static_cast<std::int32_t>(8 * brick), x, y, z))) continue;
-      for (int j = 0; j < 8; ++j)  // the corner is number 7 - t of that cell
-        sum += element[7 - t][j] * v.at(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
-    }
-    return sum;
-  }
-
-  PSK_HD bool is_leaf(std::int32_t node) const {
+  [[nodiscard]] PSK_HD bool is_leaf(std::int32_t node) const {
     if (!level.is_cell(node)) return false;
     if (finer_cell_bricks == 0) return true;
     const std::int32_t brick = level.child_brick[node];
     return brick < 0 || brick >= finer_cell_bricks;
+  }
+
+  [[nodiscard]] PSK_HD int leaves_around(std::int32_t node) const {
+    int leaves = 0;
+    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+      const std::int32_t cell =
+          level.neighbour(node, octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1);
+      if (is_leaf(cell)) leaves |= 1 << t;
+    }
+    return leaves;
+  }
+
+  template <class Values>
+  [[nodiscard]] PSK_HD float along(int axis, int leaves, const Values& v) const {
+    return leaves == 0xff ? divergence_inside(axis, v) : divergence_by_cells(leaves, coefficients.element[axis], v);
+  }
+};
+
+/// A brick at a time, for spaces with few threads.
+struct DivergenceOfBricks : Divergence {
+  PSK_HD void operator()(std::int64_t brick) const {
+    float sum[8] = {};
+    int leaves[8];
+    for (int s = 0; s < 8; ++s) leaves[s] = leaves_around(static_cast<std::int32_t>(8 * brick + s));
+    for (int axis = 0; axis < 3; ++axis) {
+      const octree::Neighbourhood around = octree::load_neighbourhood(level, brick, field.axis[axis].data);
+      PSK_UNROLL for (int s = 0; s < 8; ++s) {
+        const auto v = [&](int x, int y, int z) {
+          return around.at(octree::slot_x(s) + x, octree::slot_y(s) + y, octree::slot_z(s) + z);
+        };
+        sum[s] += along(axis, leaves[s], v);
+      }
+    }
+    for (int s = 0; s < 8; ++s) b[8 * brick + s] = sum[s];
+  }
+};
+
+/// A corner at a time, with the same bits, for spaces with many threads.
+struct DivergenceOfCorners : Divergence {
+  PSK_HD void operator()(std::int64_t n) const {
+    std::int32_t around[27];
+    PSK_UNROLL for (int x = -1; x <= 1; ++x) PSK_UNROLL for (int y = -1; y <= 1; ++y)
+        PSK_UNROLL for (int z = -1; z <= 1; ++z)
+            around[octree::neighbour_index(x, y, z)] = level.neighbour(static_cast<std::int32_t>(n), x, y, z);
+    int leaves = 0;
+    PSK_UNROLL for (int t = 0; t < 8; ++t)
+      if (is_leaf(around[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1)]))
+        leaves |= 1 << t;
+    float sum = 0;
+    if (leaves != 0) {
+      PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+        float value[27];
+        PSK_UNROLL for (int j = 0; j < 27; ++j) value[j] = around[j] < 0 ? 0 : field.axis[axis][around[j]];
+        sum += along(axis, leaves, [&](int x, int y, int z) { return value[octree::neighbour_index(x, y, z)]; });
+      }
+    }
+    b[n] = sum;
   }
 };
 
@@ -174,34 +270,48 @@ struct AddRestriction {
   }
 };
 
-struct IsAtDepth {
+struct FlagDepth {
   ArrayView<const std::uint8_t> depths;
   int depth;
-  PSK_HD bool operator()(std::int64_t i) const { return depths[i] == depth; }
-};
-struct FlagDepth {
-  IsAtDepth is_at;
   ArrayView<std::int32_t> flags;
-  PSK_HD void operator()(std::int64_t i) const { flags[i] = is_at(i) ? 1 : 0; }
+  PSK_HD void operator()(std::int64_t i) const { flags[i] = depths[i] == depth ? 1 : 0; }
+};
+struct ListChosen {
+  ArrayView<const std::int32_t> rank;
+  ArrayView<std::int32_t> chosen;
+  PSK_HD void operator()(std::int64_t i) const {
+    if (rank[i] < rank[i + 1]) chosen[rank[i]] = static_cast<std::int32_t>(i);
+  }
 };
 
 /// The samples whose splat depth is `depth`.
 struct ChosenSamples {
   exec::Buffer<std::int32_t> rank, chosen;
-  bool none = false;
 };
 template <exec::Space Exec>
 ChosenSamples choose_samples(Exec& ex, const SamplesView& samples, int depth) {
-  const IsAtDepth is_at{samples.splat_depths, depth};
-  ChosenSamples result;
-  result.chosen = select(ex, "splat.choose", samples.positions.size, is_at);
-  result.none = result.chosen.empty();
-  if (result.none) return result;
-  auto flags = exec::make_buffer<std::int32_t>(ex, samples.positions.size);
-  for_each(ex, "splat.choose", flags.size(), FlagDepth{is_at, flags.view()});
-  result.rank = exec::make_buffer<std::int32_t>(ex, flags.size() + 1);
-  exclusive_scan(ex, "splat.choose", flags.cview(), result.rank.view());
+  const std::int64_t n = samples.positions.size;
+  ChosenSamples result{exec::make_buffer<std::int32_t>(ex, n + 1), exec::make_buffer<std::int32_t>(ex, n)};
+  for_each(ex, "splat.choose", n, FlagDepth{samples.splat_depths, depth, result.chosen.view()});
+  exclusive_scan(ex, "splat.choose", result.chosen.cview(), result.rank.view());
+  for_each(ex, "splat.choose", n, ListChosen{result.rank.cview(), result.chosen.view()});
   return result;
+}
+
+/// Adds the samples of splat depth `level.depth` to V.
+template <exec::Space Exec>
+void splat_samples(Exec& ex, const octree::OctreeView& tree, const octree::LevelView& level, const SamplesView& samples,
+                   const VectorField& field) {
+  const std::uint32_t own = 1U << level.depth;
+  if ((samples.splat_depth_set & own) == 0) return;
+  ChosenSamples chosen;
+  if (samples.splat_depth_set != own) chosen = choose_samples(ex, samples, level.depth);
+  const float area_scale = 1.0F / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - level.depth));
+  const SplatSource source{level, samples, {chosen.rank.cview(), chosen.chosen.cview()}, area_scale};
+  if constexpr (Exec::kManyThreads)
+    for_each(ex, "splat.normals", level.nodes(), SplatToCorners{source, field});
+  else
+    for_each(ex, "splat.normals", level.bricks, SplatToBricks{source, field});
 }
 
 /// V of one level.
@@ -228,12 +338,7 @@ std::vector<FieldLevel> splat_field(Exec& ex, const octree::OctreeView& tree, co
     else
       for_each(ex, "splat.prolong", level.nodes(),
                ProlongField{level, tree.levels[d - 1], field[static_cast<std::size_t>(d) - 1].view(), own.view()});
-    ChosenSamples subset;
-    if (coarsest < tree.depth) subset = choose_samples(ex, samples, d);
-    if (subset.none) continue;
-    const float area_scale = 1.0F / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - d));
-    for_each(ex, "splat.normals", level.bricks,
-             SplatNormals{level, samples, {subset.rank.cview(), subset.chosen.cview()}, area_scale, own.view()});
+    splat_samples(ex, tree, level, samples, own.view());
   }
   return field;
 }
@@ -252,10 +357,14 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
     const ArrayView<float> own = b.view().part(level.first_node, level.nodes());
     const bool finest = d == view.depth;
     const bool has_field = d >= coarsest;
-    if (has_field)
-      for_each(ex, "splat.divergence", level.bricks,
-               Divergence{level, finest ? 0 : view.levels[d + 1].cell_bricks, field[static_cast<std::size_t>(d)].view(),
-                          make_coefficients(), own});
+    if (has_field) {
+      const Divergence divergence{level, finest ? 0 : view.levels[d + 1].cell_bricks,
+                                  field[static_cast<std::size_t>(d)].view(), make_coefficients(), own};
+      if constexpr (Exec::kManyThreads)
+        for_each(ex, "splat.divergence", level.nodes(), DivergenceOfCorners{divergence});
+      else
+        for_each(ex, "splat.divergence", level.bricks, DivergenceOfBricks{divergence});
+    }
     field[static_cast<std::size_t>(d)] = {};
     if (finest) continue;
     const octree::LevelView& below = view.levels[d + 1];

@@ -1,4 +1,8 @@
-// The matrix-free operator of one level: Laplacian plus screening, for all 8 corners of a brick at once.
+// The matrix-free operator of one level: Laplacian plus screening, for one corner or for all 8 corners of a brick.
+//
+// Both give the same bits. Values and cells around a corner are named by their side along each axis, and every sum is a
+// tree that does not change when the two sides of an axis change places. So a thread that has one corner may call the
+// side away from the corner's brick -1, whichever it is, and keep all it loads in registers.
 #pragma once
 
 #include <cstdint>
@@ -20,27 +24,31 @@ struct LevelSystem {
   AxisRowsF rows{};           ///< for corners on the cube's faces
 };
 
-/// Residual b - A u and a diagonal that bounds A: the diagonal matrix minus A is positive semidefinite, so all
-/// eigenvalues of diagonal^-1 A lie in [0, 1].
-struct BrickResidual {
-  float residual[8];
-  float diagonal[8];
+/// Values at the 27 corners around one corner, in registers; offsets -1, 0, 1 along each axis.
+struct CornerValues {
+  float value[27];
+  PSK_HD float operator()(int x, int y, int z) const { return value[octree::neighbour_index(x, y, z)]; }
+};
+
+/// Values around corner (x, y, z) of a brick.
+struct BrickCornerValues {
+  const octree::Neighbourhood& around;
+  int x, y, z;
+  PSK_HD float operator()(int dx, int dy, int dz) const { return around.at(x + dx, y + dy, z + dz); }
 };
 
 /// Sum of the 12 edge and 8 corner neighbours with their coefficients, and the corner itself.
-PSK_HD inline float laplacian_inside(const octree::Neighbourhood& u, int x, int y, int z) {
+template <class Values>
+PSK_HD inline float laplacian_inside(const Values& u) {
   constexpr auto kCentre = static_cast<float>(InsideLaplacian::kCentre);
   constexpr auto kEdge = static_cast<float>(InsideLaplacian::kEdge);
   constexpr auto kCorner = static_cast<float>(InsideLaplacian::kCorner);
-  const float edges =
-      ((u.at(x - 1, y - 1, z) + u.at(x - 1, y + 1, z)) + (u.at(x + 1, y - 1, z) + u.at(x + 1, y + 1, z))) +
-      ((u.at(x - 1, y, z - 1) + u.at(x - 1, y, z + 1)) + (u.at(x + 1, y, z - 1) + u.at(x + 1, y, z + 1))) +
-      ((u.at(x, y - 1, z - 1) + u.at(x, y - 1, z + 1)) + (u.at(x, y + 1, z - 1) + u.at(x, y + 1, z + 1)));
-  const float corners = ((u.at(x - 1, y - 1, z - 1) + u.at(x - 1, y - 1, z + 1)) +
-                         (u.at(x - 1, y + 1, z - 1) + u.at(x - 1, y + 1, z + 1))) +
-                        ((u.at(x + 1, y - 1, z - 1) + u.at(x + 1, y - 1, z + 1)) +
-                         (u.at(x + 1, y + 1, z - 1) + u.at(x + 1, y + 1, z + 1)));
-  return kCentre * u.at(x, y, z) + kEdge * edges + kCorner * corners;
+  const float edges = ((u(-1, -1, 0) + u(-1, 1, 0)) + (u(1, -1, 0) + u(1, 1, 0))) +
+                      ((u(-1, 0, -1) + u(-1, 0, 1)) + (u(1, 0, -1) + u(1, 0, 1))) +
+                      ((u(0, -1, -1) + u(0, -1, 1)) + (u(0, 1, -1) + u(0, 1, 1)));
+  const float corners = ((u(-1, -1, -1) + u(-1, -1, 1)) + (u(-1, 1, -1) + u(-1, 1, 1))) +
+                        ((u(1, -1, -1) + u(1, -1, 1)) + (u(1, 1, -1) + u(1, 1, 1)));
+  return kCentre * u(0, 0, 0) + kEdge * edges + kCorner * corners;
 }
 
 /// Side of coordinate c of a corner of level `depth`.
@@ -48,25 +56,40 @@ PSK_HD inline int side_of(std::int32_t c, int depth) {
   return static_cast<int>(c == 0 ? AxisSide::lower_face : c == (1 << depth) ? AxisSide::upper_face : AxisSide::inside);
 }
 
-/// The same for a corner on the cube's faces: rows with one cell missing (natural boundary condition).
-PSK_HD inline float laplacian_at_face(const LevelSystem& system, const octree::Neighbourhood& u,
-                                      const octree::Coordinates& corner, int slot) {
-  const int depth = system.level.depth;
-  const int sides[3] = {side_of(corner.x, depth), side_of(corner.y, depth), side_of(corner.z, depth)};
-  const AxisRowsF& rows = system.rows;
-  float sum = 0;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b)
-      for (int c = 0; c < 3; ++c) {
-        const float mx = rows.mass[sides[0]][a];
-        const float my = rows.mass[sides[1]][b];
-        const float mz = rows.mass[sides[2]][c];
-        const float coefficient = rows.stiffness[sides[0]][a] * my * mz + mx * rows.stiffness[sides[1]][b] * mz +
-                                  mx * my * rows.stiffness[sides[2]][c];
-        sum += coefficient *
-               u.at(octree::slot_x(slot) + a - 1, octree::slot_y(slot) + b - 1, octree::slot_z(slot) + c - 1);
-      }
-  return sum;
+/// One-dimensional coefficients of one axis of a corner.
+struct AxisCoefficients {
+  float mass[3], stiffness[3];
+
+  PSK_HD AxisCoefficients(const AxisRowsF& rows, int side, bool mirrored) {
+    for (int i = 0; i < 3; ++i) {
+      mass[i] = rows.mass[side][mirrored ? 2 - i : i];
+      stiffness[i] = rows.stiffness[side][mirrored ? 2 - i : i];
+    }
+  }
+  PSK_HD static float apply(const float (&row)[3], float lower, float middle, float upper) {
+    return (row[0] * lower + row[2] * upper) + row[1] * middle;
+  }
+};
+
+/// The same for a corner on the cube's faces, axis by axis: rows with one cell missing (natural boundary condition).
+template <class Values>
+PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x, const AxisCoefficients& y,
+                                      const AxisCoefficients& z) {
+  const auto along = [](const float (&row)[3], const float (&v)[3]) {
+    return AxisCoefficients::apply(row, v[0], v[1], v[2]);
+  };
+  float mass_mass[3], rest[3];  // along y and z: M M, and K M + M K
+  PSK_UNROLL for (int i = 0; i < 3; ++i) {
+    float mass[3], stiffness[3];  // along z
+    PSK_UNROLL for (int j = 0; j < 3; ++j) {
+      const float row[3] = {u(i - 1, j - 1, -1), u(i - 1, j - 1, 0), u(i - 1, j - 1, 1)};
+      mass[j] = along(z.mass, row);
+      stiffness[j] = along(z.stiffness, row);
+    }
+    mass_mass[i] = along(y.mass, mass);
+    rest[i] = along(y.stiffness, mass) + along(y.mass, stiffness);
+  }
+  return along(x.stiffness, mass_mass) + along(x.mass, rest);
 }
 
 /// True if some corner of the brick may lie on a face of the cube.
@@ -75,67 +98,222 @@ PSK_HD inline bool touches_faces(const octree::Coordinates& brick, int depth) {
   return brick.x == 0 || brick.y == 0 || brick.z == 0 || brick.x == last || brick.y == last || brick.z == last;
 }
 
-/// Adds the collapsed sample of the cell at offset (x, y, z) from the brick's first corner to the brick's corners.
-PSK_HD inline void screen_cell(const CollapsedSample& sample, float scale, const octree::Neighbourhood& u, int x, int y,
-                               int z, BrickResidual& out) {
-  if (!(sample.weight > 0)) return;
-  const float ax[2] = {1 - sample.x, sample.x};
-  const float ay[2] = {1 - sample.y, sample.y};
-  const float az[2] = {1 - sample.z, sample.z};
-  float value = 0;
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
-    const int i = octree::slot_x(s);
-    const int j = octree::slot_y(s);
-    const int k = octree::slot_z(s);
-    value += ax[i] * ay[j] * az[k] * u.at(x + i, y + j, z + k);
-  }
-  const float weight = scale * sample.weight;
-  const float pull = weight * (0.5F - value);
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
-    const int i = octree::slot_x(s) - x;  // corner `slot` of the brick is corner (i, j, k) of the cell
-    const int j = octree::slot_y(s) - y;
-    const int k = octree::slot_z(s) - z;
-    if (i < 0 || i > 1 || j < 0 || j > 1 || k < 0 || k > 1) continue;
-    const float w = ax[i] * ay[j] * az[k];
-    out.residual[s] += w * pull;
-    out.diagonal[s] += w * weight;
-  }
+/// Sum over the 8 cells around a corner; the sides of an axis may change places.
+PSK_HD inline float sum_of_cells(const float (&cell)[8]) {
+  return ((cell[0] + cell[1]) + (cell[2] + cell[3])) + ((cell[4] + cell[5]) + (cell[6] + cell[7]));
 }
 
-/// Adds the screening of all 27 cells around the brick's corners.
-PSK_HD inline void screen_brick(const LevelSystem& system, std::int64_t brick, const octree::Neighbourhood& u,
-                                BrickResidual& out) {
+/// What the collapsed sample of a cell does, seen from one of the cell's corners.
+struct Pull {
+  float residual = 0, diagonal = 0;
+  bool any = false;
+};
+
+/// Trilinear interpolation; weight[a][0] and u(0, ..) belong to this corner, weight[a][1] to the other end of axis a.
+template <class Values>
+PSK_HD inline float value_in_cell(const float (&weight)[3][2], const Values& u, int dx, int dy, int dz) {
+  const auto mix = [](const float (&w)[2], float own, float other) { return w[0] * own + w[1] * other; };
+  const float near = mix(weight[1], mix(weight[2], u(0, 0, 0), u(0, 0, dz)), mix(weight[2], u(0, dy, 0), u(0, dy, dz)));
+  const float far =
+      mix(weight[1], mix(weight[2], u(dx, 0, 0), u(dx, 0, dz)), mix(weight[2], u(dx, dy, 0), u(dx, dy, dz)));
+  return mix(weight[0], near, far);
+}
+
+/// Residual b - A u at a corner and a diagonal that bounds A: the diagonal matrix minus A is positive semidefinite, so
+/// all eigenvalues of diagonal^-1 A lie in [0, 1].
+struct CornerResidual {
+  float residual = 0, diagonal = kLargestEigenvalue;
+
+  PSK_HD void add(const float (&residuals)[8], const float (&diagonals)[8]) {
+    residual += sum_of_cells(residuals);
+    diagonal += sum_of_cells(diagonals);
+  }
+};
+
+/// Residual at one corner, for spaces with many threads. Means nothing for corners that are no unknowns.
+class CornerOperator {
+ public:
+  PSK_HD CornerOperator(const LevelSystem& system, std::int64_t node, const float* u)
+      : system_(system),
+        bricks_(system.level.neighbours + (node >> 3) * octree::kNeighbours),
+        slot_{octree::slot_x(node & 7), octree::slot_y(node & 7), octree::slot_z(node & 7)} {
+    load(u);
+  }
+
+  /// The corner's own value.
+  [[nodiscard]] PSK_HD float value() const { return u_(0, 0, 0); }
+
+  [[nodiscard]] PSK_HD CornerResidual residual(std::int64_t node) const {
+    CornerResidual out;
+    out.residual = system_.b[node] - laplacian(node);
+    if (system_.screening_scale > 0) screen(out);
+    return out;
+  }
+
+ private:
+  /// Step to the brick beyond the corner along an axis: the side that is called -1 here.
+  [[nodiscard]] PSK_HD int outward(int axis) const { return slot_[axis] == 0 ? -1 : 1; }
+
+  PSK_HD void load(const float* u) {
+    const int step[3] = {outward(0), outward(1), outward(2)};
+    const int here = octree::slot_of(slot_[0], slot_[1], slot_[2]);
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {  // the brick itself (0) and the seven beyond the corner
+      const int dx = octree::slot_x(s);
+      const int dy = octree::slot_y(s);
+      const int dz = octree::slot_z(s);
+      const std::int32_t brick = bricks_[octree::neighbour_index(dx * step[0], dy * step[1], dz * step[2])];
+      // Along an axis the brick beyond holds the value at -1, the own brick those at 0 and 1.
+      PSK_UNROLL for (int x = -1; x <= 1; ++x) {
+        PSK_UNROLL for (int y = -1; y <= 1; ++y) {
+          PSK_UNROLL for (int z = -1; z <= 1; ++z) {
+            if ((x == -1) != (dx != 0) || (y == -1) != (dy != 0) || (z == -1) != (dz != 0)) continue;
+            const int other = here ^ octree::slot_of(x != 0 ? 1 : 0, y != 0 ? 1 : 0, z != 0 ? 1 : 0);
+            u_.value[octree::neighbour_index(x, y, z)] = brick < 0 ? 0 : u[std::int64_t{8} * brick + other];
+          }
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] PSK_HD float laplacian(std::int64_t node) const {
+    const int depth = system_.level.depth;
+    const octree::Coordinates at = octree::decode(system_.level.brick_key[node >> 3]);
+    if (!touches_faces(at, depth)) return laplacian_inside(u_);
+    return laplacian_at_face(u_, coefficients(2 * at.x, 0), coefficients(2 * at.y, 1), coefficients(2 * at.z, 2));
+  }
+  [[nodiscard]] PSK_HD AxisCoefficients coefficients(std::int32_t brick_corner, int axis) const {
+    return {system_.rows, side_of(brick_corner + slot_[axis], system_.level.depth), slot_[axis] != 0};
+  }
+
+  /// Cells by side: 0 beyond the corner, 1 on the brick's side.
+  PSK_HD void screen(CornerResidual& out) const {
+    float residuals[8], diagonals[8];
+    bool any = false;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      const Pull pull = pull_of(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+      residuals[s] = pull.residual;
+      diagonals[s] = pull.diagonal;
+      any = any || pull.any;
+    }
+    if (any) out.add(residuals, diagonals);
+  }
+
+  /// A cell belongs to the node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
+  [[nodiscard]] PSK_HD Pull pull_of(int side_x, int side_y, int side_z) const {
+    const int side[3] = {side_x, side_y, side_z};
+    int step[3];
+    PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = side[a] == 0 && slot_[a] == 0 ? -1 : 0;
+    const std::int32_t brick = bricks_[octree::neighbour_index(step[0], step[1], step[2])];
+    const std::int32_t place = brick < 0 ? -1 : system_.screening.brick_index[brick];
+    if (place < 0) return {};
+    const CollapsedSample sample =
+        system_.screening.samples[8 * std::int64_t{place} + octree::slot_of(1 - side_x, 1 - side_y, 1 - side_z)];
+    if (!(sample.weight > 0)) return {};
+    const float local[3] = {sample.x, sample.y, sample.z};
+    float weight[3][2];
+    PSK_UNROLL for (int a = 0; a < 3; ++a) {
+      const bool at_upper_end = (side[a] == 0) == (slot_[a] == 0);  // the corner is its cell's upper end along a
+      weight[a][0] = at_upper_end ? local[a] : 1 - local[a];
+      weight[a][1] = at_upper_end ? 1 - local[a] : local[a];
+    }
+    const float value = value_in_cell(weight, u_, 2 * side_x - 1, 2 * side_y - 1, 2 * side_z - 1);
+    const float total = system_.screening_scale * sample.weight;
+    const float own = weight[0][0] * weight[1][0] * weight[2][0];
+    return {own * (total * (0.5F - value)), own * total, true};
+  }
+
+  const LevelSystem& system_;
+  const std::int32_t* bricks_;
+  int slot_[3];
+  CornerValues u_;
+};
+
+/// Residual and bounding diagonal at the 8 corners of a brick. Entries of corners that are no unknowns mean nothing.
+struct BrickResidual {
+  CornerResidual corner[8];
+};
+
+/// The collapsed samples of the 27 cells around a brick's corners.
+struct BrickPulls {
+  CollapsedSample sample[27];
+  float pull[27];  // weight (1/2 - value)
+};
+
+/// Finds the samples around a brick, and how hard they pull. @returns false if there are none
+PSK_HD inline bool load_pulls(const LevelSystem& system, std::int64_t brick, const octree::Neighbourhood& u,
+                              BrickPulls& out) {
   const std::int32_t* bricks = system.level.neighbours + brick * octree::kNeighbours;
+  bool any = false;
   PSK_UNROLL for (int x = -1; x <= 1; ++x) {
     PSK_UNROLL for (int y = -1; y <= 1; ++y) {
       PSK_UNROLL for (int z = -1; z <= 1; ++z) {
+        const int j = octree::neighbour_index(x, y, z);
+        out.sample[j] = {};
+        out.pull[j] = 0;
         const std::int32_t other =
             bricks[octree::neighbour_index(octree::brick_step(x), octree::brick_step(y), octree::brick_step(z))];
         const std::int32_t place = other < 0 ? -1 : system.screening.brick_index[other];
         if (place < 0) continue;
-        const int slot = octree::slot_of(x & 1, y & 1, z & 1);
-        screen_cell(system.screening.samples[8 * std::int64_t{place} + slot], system.screening_scale, u, x, y, z, out);
+        const CollapsedSample& sample =
+            system.screening.samples[8 * std::int64_t{place} + octree::slot_of(x & 1, y & 1, z & 1)];
+        if (!(sample.weight > 0)) continue;
+        const float weight[3][2] = {{1 - sample.x, sample.x}, {1 - sample.y, sample.y}, {1 - sample.z, sample.z}};
+        const float value = value_in_cell(weight, BrickCornerValues{u, x, y, z}, 1, 1, 1);
+        const float total = system.screening_scale * sample.weight;
+        out.sample[j] = {sample.x, sample.y, sample.z, total};
+        out.pull[j] = total * (0.5F - value);
+        any = true;
       }
     }
   }
+  return any;
 }
 
-/// Residual and bounding diagonal at the 8 corners of a brick. Entries of corners that are no unknowns mean nothing.
+/// Adds the screening of the 8 cells around corner (x, y, z) of the brick.
+PSK_HD inline void screen_corner(const BrickPulls& pulls, int x, int y, int z, CornerResidual& out) {
+  float residuals[8], diagonals[8];
+  bool any = false;
+  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    const int i = octree::slot_x(s);  // the corner is end 1 - i of its cell along x
+    const int j = octree::slot_y(s);
+    const int k = octree::slot_z(s);
+    const int cell = octree::neighbour_index(x + i - 1, y + j - 1, z + k - 1);
+    const CollapsedSample& sample = pulls.sample[cell];
+    residuals[s] = 0;
+    diagonals[s] = 0;
+    if (!(sample.weight > 0)) continue;
+    any = true;
+    const float own =
+        (i == 0 ? sample.x : 1 - sample.x) * (j == 0 ? sample.y : 1 - sample.y) * (k == 0 ? sample.z : 1 - sample.z);
+    residuals[s] = own * pulls.pull[cell];
+    diagonals[s] = own * sample.weight;
+  }
+  if (any) out.add(residuals, diagonals);
+}
+
+/// Residual and bounding diagonal of a whole brick, for spaces with few threads.
 PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64_t brick,
                                            const octree::Neighbourhood& u) {
   BrickResidual out;
   const octree::Coordinates at = octree::decode(system.level.brick_key[brick]);
-  const bool faces = touches_faces(at, system.level.depth);
+  const int depth = system.level.depth;
+  const bool faces = touches_faces(at, depth);
   PSK_UNROLL for (int s = 0; s < 8; ++s) {
     const int x = octree::slot_x(s);
     const int y = octree::slot_y(s);
     const int z = octree::slot_z(s);
-    const float laplacian = faces ? laplacian_at_face(system, u, {2 * at.x + x, 2 * at.y + y, 2 * at.z + z}, s)
-                                  : laplacian_inside(u, x, y, z);
-    out.residual[s] = system.b[8 * brick + s] - laplacian;
-    out.diagonal[s] = kLargestEigenvalue;
+    const BrickCornerValues values{u, x, y, z};
+    const auto coefficients = [&](std::int32_t c) { return AxisCoefficients(system.rows, side_of(c, depth), false); };
+    out.corner[s].residual = system.b[8 * brick + s] -
+                             (faces ? laplacian_at_face(values, coefficients(2 * at.x + x), coefficients(2 * at.y + y),
+                                                        coefficients(2 * at.z + z))
+                                    : laplacian_inside(values));
   }
-  if (system.screening_scale > 0) screen_brick(system, brick, u, out);
+  if (!(system.screening_scale > 0)) return out;
+  BrickPulls pulls;
+  if (!load_pulls(system, brick, u, pulls)) return out;
+  PSK_UNROLL for (int s = 0; s < 8; ++s)
+    screen_corner(pulls, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s), out.corner[s]);
   return out;
 }
 

@@ -18,6 +18,7 @@ struct SamplesView {
                                  ///< normals with confidence
   ArrayView<const std::uint8_t> splat_depths;  ///< depth whose cells hold enough samples to carry the normal
   int coarsest_splat_depth = 0;                ///< smallest of splat_depths
+  std::uint32_t splat_depth_set = ~0U;         ///< bit d: some splat_depths may be d
 };
 
 /// Owns what SamplesView shows.
@@ -27,9 +28,10 @@ struct Samples {
   exec::Buffer<float> areas;
   exec::Buffer<std::uint8_t> splat_depths;
   int coarsest_splat_depth = 0;
+  std::uint32_t splat_depth_set = ~0U;
 
   [[nodiscard]] SamplesView view() const {
-    return {positions.cview(), normals.cview(), areas.cview(), splat_depths.cview(), coarsest_splat_depth};
+    return {positions.cview(), normals.cview(), areas.cview(), splat_depths.cview(), coarsest_splat_depth, splat_depth_set};
   }
 };
 

@@ -21,21 +21,18 @@ struct CollapsedSample {
 
 /// Collapsed samples of one level, kept for bricks that hold samples.
 struct ScreeningView {
-  const std::int32_t* brick_index = nullptr;  ///< (bricks) place among the bricks that hold samples, or -1
-  const CollapsedSample* samples = nullptr;   ///< (8 occupied bricks)
+  const std::int32_t* brick_index = nullptr;  ///< (bricks) place among the bricks of all levels that hold samples, or -1
+  const CollapsedSample* samples = nullptr;   ///< (8 occupied bricks of all levels)
 };
 
 /// Owns the collapsed samples of all levels.
 struct Screening {
-  struct Level {
-    exec::Buffer<std::int32_t> brick_index;
-    exec::Buffer<CollapsedSample> samples;
-  };
-  std::vector<Level> levels;
+  std::vector<std::int64_t> first_brick;  ///< of each level in brick_index
+  exec::Buffer<std::int32_t> brick_index;
+  exec::Buffer<CollapsedSample> samples;
 
   [[nodiscard]] ScreeningView view(int depth) const {
-    const Level& level = levels[static_cast<std::size_t>(depth)];
-    return {level.brick_index.data(), level.samples.data()};
+    return {brick_index.data() + first_brick[static_cast<std::size_t>(depth)], samples.data()};
   }
 };
 

@@ -3,22 +3,29 @@
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
 #include "poisson/screening.hpp"
-#include "poisson/splat_kernel.hpp"
 
 namespace pointskin::poisson {
 namespace screening {
 
-struct HoldsSamples {
-  octree::LevelView level;
-  PSK_HD bool operator()(std::int64_t brick) const {
-    return level.point_begin[8 * brick] < level.point_begin[8 * brick + 8];
+/// 1 for bricks (of all levels) that hold samples.
+struct FlagOccupied {
+  octree::OctreeView tree;
+  ArrayView<std::int32_t> flags;
+  PSK_HD void operator()(std::int64_t brick) const {
+    const octree::LevelView& level = tree.levels[tree.level_of(8 * brick)];
+    const std::int64_t own = brick - level.first_node / 8;
+    const bool occupied = own < level.cell_bricks && level.point_begin[8 * own] < level.point_begin[8 * own + 8];
+    flags[brick] = occupied ? 1 : 0;
   }
 };
 
-struct IndexBricks {
-  ArrayView<const std::int32_t> occupied;
+/// Places of occupied bricks, -1 for others.
+struct PlaceBricks {
+  ArrayView<const std::int32_t> before;  // (bricks + 1) occupied bricks before each
   ArrayView<std::int32_t> brick_index;
-  PSK_HD void operator()(std::int64_t i) const { brick_index[occupied[i]] = static_cast<std::int32_t>(i); }
+  PSK_HD void operator()(std::int64_t brick) const {
+    brick_index[brick] = before[brick] < before[brick + 1] ? before[brick] : -1;
+  }
 };
 
 /// Sums area and area-weighted local position, then divides.
@@ -36,25 +43,21 @@ struct Collapse {
   }
 };
 
-/// The cells of an occupied brick, from their samples. A sample sparser than the cells weighs what it weighed at its
-/// splat depth: its share of the surface there, not more, or isolated noisy samples would pull bubbles out of the
-/// surface.
+/// A cell of an occupied brick, from its samples. A sample sparser than the cells weighs what it weighed at its splat
+/// depth: its share of the surface there, not more, or isolated noisy samples would pull bubbles out of the surface.
 struct CollapsePoints {
   octree::LevelView level;
   SamplesView samples;
-  ArrayView<const std::int32_t> occupied;
-  ArrayView<CollapsedSample> out;
-  PSK_HD void operator()(std::int64_t i) const {
-    const std::int64_t brick = occupied[i];
-    const octree::Coordinates origin = brick_origin(level, brick);
-    for (int s = 0; s < 8; ++s) {
-      const octree::Coordinates cell{origin.x + octree::slot_x(s), origin.y + octree::slot_y(s),
-                                     origin.z + octree::slot_z(s)};
-      Collapse collapse;
-      for (std::int32_t p = level.point_begin[8 * brick + s]; p < level.point_begin[8 * brick + s + 1]; ++p)
-        collapse.add(octree::local_in_cell(samples.positions[p], cell, level.depth), weight(p));
-      out[8 * i + s] = collapse.mean();
-    }
+  const std::int32_t* brick_index;
+  CollapsedSample* out;
+  PSK_HD void operator()(std::int64_t cell) const {
+    const std::int32_t place = brick_index[cell >> 3];
+    if (place < 0) return;
+    const octree::Coordinates at = octree::decode(level.node_key(static_cast<std::int32_t>(cell)));
+    Collapse collapse;
+    for (std::int32_t p = level.point_begin[cell]; p < level.point_begin[cell + 1]; ++p)
+      collapse.add(octree::local_in_cell(samples.positions[p], at, level.depth), weight(p));
+    out[8 * std::int64_t{place} + (cell & 7)] = collapse.mean();
   }
 
   PSK_HD float weight(std::int32_t p) const {
@@ -63,29 +66,27 @@ struct CollapsePoints {
   }
 };
 
-/// Coarser cells of an occupied brick, from the cells below.
+/// A coarser cell of an occupied brick, from the cells below.
 struct CollapseChildren {
   octree::LevelView level;
-  ScreeningView below;
-  ArrayView<const std::int32_t> occupied;
-  ArrayView<CollapsedSample> out;
-  PSK_HD void operator()(std::int64_t i) const {
-    const std::int64_t brick = occupied[i];
-    for (int s = 0; s < 8; ++s) {
-      Collapse collapse;
-      const std::int64_t node = 8 * brick + s;
-      if (level.point_begin[node] < level.point_begin[node + 1]) {
-        const std::int64_t children = 8 * std::int64_t{below.brick_index[level.child_brick[node]]};
-        for (int c = 0; c < 8; ++c) {
-          const CollapsedSample child = below.samples[children + c];
-          collapse.add({0.5F * (static_cast<float>(octree::slot_x(c)) + child.x),
-                        0.5F * (static_cast<float>(octree::slot_y(c)) + child.y),
-                        0.5F * (static_cast<float>(octree::slot_z(c)) + child.z)},
-                       child.weight);
-        }
+  const std::int32_t* brick_index;
+  const std::int32_t* below_brick_index;
+  CollapsedSample* samples;
+  PSK_HD void operator()(std::int64_t cell) const {
+    const std::int32_t place = brick_index[cell >> 3];
+    if (place < 0) return;
+    Collapse collapse;
+    if (level.point_begin[cell] < level.point_begin[cell + 1]) {
+      const CollapsedSample* children = samples + 8 * std::int64_t{below_brick_index[level.child_brick[cell]]};
+      for (int c = 0; c < 8; ++c) {
+        const CollapsedSample child = children[c];
+        collapse.add({0.5F * (static_cast<float>(octree::slot_x(c)) + child.x),
+                      0.5F * (static_cast<float>(octree::slot_y(c)) + child.y),
+                      0.5F * (static_cast<float>(octree::slot_z(c)) + child.z)},
+                     child.weight);
       }
-      out[8 * i + s] = collapse.mean();
     }
+    samples[8 * std::int64_t{place} + (cell & 7)] = collapse.mean();
   }
 };
 
@@ -95,23 +96,26 @@ template <exec::Space Exec>
 Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples) {
   using namespace screening;
   const octree::OctreeView view = tree.view();
+  const std::int64_t bricks = view.nodes / 8;
   Screening result;
-  result.levels.resize(static_cast<std::size_t>(view.depth) + 1);
+  for (int d = 0; d <= view.depth; ++d) result.first_brick.push_back(view.levels[d].first_node / 8);
+  auto flags = exec::make_buffer<std::int32_t>(ex, bricks);
+  for_each(ex, "screening.occupied", bricks, FlagOccupied{view, flags.view()});
+  auto before = exec::make_buffer<std::int32_t>(ex, bricks + 1);
+  exclusive_scan(ex, "screening.occupied", flags.cview(), before.view());
+  result.brick_index = std::move(flags);
+  for_each(ex, "screening.occupied", bricks, PlaceBricks{before.cview(), result.brick_index.view()});
+  result.samples =
+      exec::make_buffer<CollapsedSample>(ex, std::int64_t{8} * exec::read_element(ex, before.cview(), bricks));
   for (int d = view.depth; d >= 0; --d) {
     const octree::LevelView& level = view.levels[d];
-    Screening::Level& own = result.levels[static_cast<std::size_t>(d)];
-    const exec::Buffer<std::int32_t> occupied =
-        select(ex, "screening.occupied", level.cell_bricks, HoldsSamples{level});
-    own.brick_index = exec::make_buffer<std::int32_t>(ex, level.bricks);
-    exec::fill(ex, own.brick_index.view(), std::int32_t{-1});
-    for_each(ex, "screening.index", occupied.size(), IndexBricks{occupied.cview(), own.brick_index.view()});
-    own.samples = exec::make_buffer<CollapsedSample>(ex, 8 * occupied.size());
+    const std::int64_t cells = std::int64_t{8} * level.cell_bricks;
+    const std::int32_t* brick_index = result.view(d).brick_index;
     if (d >= samples.coarsest_splat_depth)
-      for_each(ex, "screening.collapse", occupied.size(),
-               CollapsePoints{level, samples, occupied.cview(), own.samples.view()});
+      for_each(ex, "screening.collapse", cells, CollapsePoints{level, samples, brick_index, result.samples.data()});
     else
-      for_each(ex, "screening.collapse", occupied.size(),
-               CollapseChildren{level, result.view(d + 1), occupied.cview(), own.samples.view()});
+      for_each(ex, "screening.collapse", cells,
+               CollapseChildren{level, brick_index, result.view(d + 1).brick_index, result.samples.data()});
   }
   return result;
 }

@@ -24,9 +24,38 @@ struct Prolong {
 };
 
 /// One Chebyshev iteration:  step = momentum step + gain diagonal^-1 (b - A u);  next = u + step.
-struct Relax {
-  LevelSystem system;
+struct ChebyshevStep {
   float momentum, gain;
+  PSK_HD float change(float residual, float diagonal, const float* last_step) const {
+    const float change = gain * (residual / diagonal);
+    return momentum != 0 ? change + momentum * *last_step : change;
+  }
+};
+
+/// Iterations one corner at a time, for spaces with many threads. Corners that are no unknowns hold the interpolated
+/// value in both arrays.
+struct RelaxCorners {
+  static constexpr int kMostRounds = 64;
+
+  LevelSystem system;
+  float* u[2];  // round k reads the one of its parity
+  float* step;
+  ChebyshevStep steps[kMostRounds];
+
+  PSK_HD void operator()(int round, int n) const {
+    if ((system.level.unknowns[n >> 3] >> (n & 7) & 1) == 0) return;
+    const CornerOperator corner(system, n, u[round & 1]);
+    const CornerResidual r = corner.residual(n);
+    const float change = steps[round].change(r.residual, r.diagonal, step + n);
+    step[n] = change;
+    u[~round & 1][n] = corner.value() + change;
+  }
+};
+
+/// One iteration a brick at a time, for spaces with few threads.
+struct RelaxBricks {
+  LevelSystem system;
+  ChebyshevStep chebyshev;
   const float* u;
   float* step;
   float* next;
@@ -37,9 +66,8 @@ struct Relax {
     const BrickResidual r = brick_residual(system, brick, around);
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
       const std::int64_t n = 8 * brick + s;
-      float change = gain * (r.residual[s] / r.diagonal[s]);
-      if (momentum != 0) change += momentum * step[n];
-      if ((unknowns >> s & 1) == 0) change = 0;
+      const bool unknown = (unknowns >> s & 1) != 0;
+      const float change = unknown ? chebyshev.change(r.corner[s].residual, r.corner[s].diagonal, step + n) : 0;
       step[n] = change;
       next[n] = around.at(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)) + change;
     }
@@ -56,7 +84,7 @@ struct SquaredResidual {
     const BrickResidual r = brick_residual(system, brick, around);
     double sum = 0;
     for (int s = 0; s < 8; ++s)
-      if ((unknowns >> s & 1) != 0) sum += static_cast<double>(r.residual[s]) * r.residual[s];
+      if ((unknowns >> s & 1) != 0) sum += static_cast<double>(r.corner[s].residual) * r.corner[s].residual;
     return sum;
   }
 };
@@ -98,16 +126,13 @@ class Chebyshev {
  public:
   explicit Chebyshev(double lower) : theta_((1 + lower) / 2), delta_((1 - lower) / 2), rho_(delta_ / theta_) {}
 
-  struct Step {
-    float momentum, gain;
-  };
-  Step next() {
+  ChebyshevStep next() {
     if (first_) {
       first_ = false;
       return {0, static_cast<float>(1 / theta_)};
     }
     const double rho = 1 / (2 * theta_ / delta_ - rho_);
-    const Step step{static_cast<float>(rho * rho_), static_cast<float>(2 * rho / delta_)};
+    const ChebyshevStep step{static_cast<float>(rho * rho_), static_cast<float>(2 * rho / delta_)};
     rho_ = rho;
     return step;
   }
@@ -122,6 +147,27 @@ double residual_norm(Exec& ex, const LevelSystem& system, const float* u) {
   return std::sqrt(exec::reduce<double>(ex, "solve.residual", system.level.bricks, SquaredResidual{system, u}, Plus{}));
 }
 
+/// The iterations of a schedule; the result ends in `u`.
+template <exec::Space Exec>
+void iterate(Exec& ex, const LevelSystem& system, const Schedule& schedule, float* step, float* u, float* other) {
+  Chebyshev chebyshev(schedule.lower);
+  float* from = schedule.iterations % 2 == 0 ? u : other;
+  float* to = schedule.iterations % 2 == 0 ? other : u;
+  if constexpr (Exec::kManyThreads) {
+    for (int done = 0; done < schedule.iterations; done += RelaxCorners::kMostRounds) {  // an even number a sweep
+      RelaxCorners relax{system, {from, to}, step, {}};
+      const int rounds = std::min(schedule.iterations - done, RelaxCorners::kMostRounds);
+      std::generate_n(relax.steps, rounds, [&] { return chebyshev.next(); });
+      sweep(ex, "solve.relax", rounds, system.level.nodes(), relax);
+    }
+  } else {
+    for (int k = 0; k < schedule.iterations; ++k) {
+      for_each(ex, "solve.relax", system.level.bricks, RelaxBricks{system, chebyshev.next(), from, step, to});
+      std::swap(from, to);
+    }
+  }
+}
+
 /// Iterates one level; the result ends in `u`. Both arrays hold the interpolated values before.
 template <exec::Space Exec>
 LevelSolve solve_level(Exec& ex, const LevelSystem& system, const SolveOptions& options, float* u, float* other) {
@@ -134,14 +180,7 @@ LevelSolve solve_level(Exec& ex, const LevelSystem& system, const SolveOptions& 
     report.residual_before = residual_norm(ex, system, u);
   }
   auto step = exec::make_buffer<float>(ex, level.nodes());
-  Chebyshev chebyshev(schedule.lower);
-  float* from = schedule.iterations % 2 == 0 ? u : other;
-  float* to = schedule.iterations % 2 == 0 ? other : u;
-  for (int k = 0; k < schedule.iterations; ++k) {
-    const Chebyshev::Step s = chebyshev.next();
-    for_each(ex, "solve.relax", level.bricks, Relax{system, s.momentum, s.gain, from, step.data(), to});
-    std::swap(from, to);
-  }
+  iterate(ex, system, schedule, step.data(), u, other);
   if (options.residuals) report.residual_after = residual_norm(ex, system, u);
   return report;
 }
@@ -154,13 +193,25 @@ struct AddWeighted {
     return {a.sum + b.sum, a.weight + b.weight};
   }
 };
-struct ValueAtSample {
-  octree::OctreeView tree;
+/// The samples of one finest cell: all samples lie in finest cells.
+struct ValuesInCell {
+  octree::LevelView level;
   const float* u;
   SamplesView samples;
-  PSK_HD WeightedValue operator()(std::int64_t i) const {
-    const double area = samples.areas[i];
-    return {area * octree::value_at(tree, u, samples.positions[i], tree.depth), area};
+  PSK_HD WeightedValue operator()(std::int64_t cell) const {
+    const std::int32_t first = level.point_begin[cell];
+    const std::int32_t last = level.point_begin[cell + 1];
+    WeightedValue total;
+    if (first == last) return total;
+    const auto node = static_cast<std::int32_t>(cell);
+    const octree::Coordinates at = octree::decode(level.node_key(node));
+    for (std::int32_t i = first; i < last; ++i) {
+      const double area = samples.areas[i];
+      const Vec3f local = octree::local_in_cell(samples.positions[i], at, level.depth);
+      total.sum += area * octree::interpolated(level, u, node, local);
+      total.weight += area;
+    }
+    return total;
   }
 };
 
@@ -197,9 +248,10 @@ Solution solve_poisson(Exec& ex, const octree::OctreeData& tree, ArrayView<const
 
 template <exec::Space Exec>
 double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> u, const SamplesView& samples) {
-  const auto total =
-      exec::reduce<solve::WeightedValue>(ex, "solve.isovalue", samples.positions.size,
-                                         solve::ValueAtSample{tree.view(), u.data, samples}, solve::AddWeighted{});
+  const octree::LevelView level = tree.view().finest();
+  const auto total = exec::reduce<solve::WeightedValue>(
+      ex, "solve.isovalue", level.cells(), solve::ValuesInCell{level, u.data + level.first_node, samples},
+      solve::AddWeighted{});
   return total.sum / total.weight;
 }
 

@@ -63,6 +63,16 @@ struct BrickSample {
     for (int s = 0; s < 8; ++s)
       w[s] = axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
   }
+
+  /// Weight on one of them; the same bits.
+  template <class Kernel>
+  [[nodiscard]] PSK_HD float weight(int slot) const {
+    const Kernel kernel;
+    const float x = kernel(octree::slot_x(slot) != 0 ? rel[0] - 1 : rel[0]);
+    const float y = kernel(octree::slot_y(slot) != 0 ? rel[1] - 1 : rel[1]);
+    const float z = kernel(octree::slot_z(slot) != 0 ? rel[2] - 1 : rel[2]);
+    return x * y * z;
+  }
 };
 
 /// Coordinates of a brick's first node.

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 
+#include "core/bits.hpp"
 #include "core/host_device.hpp"
 
 namespace pointskin::surface {
@@ -29,9 +30,7 @@ PSK_HD constexpr int crossing_between(int p, int q) {
 class CellTracer {
  public:
   /// @param inside  bit grid_index of every position that exists: inside the surface
-  PSK_HD explicit CellTracer(std::uint32_t inside) : inside_(inside) {
-    for (int i = 0; i < kCrossings; ++i) next_[i] = -1;
-  }
+  PSK_HD explicit CellTracer(std::uint32_t inside) : inside_(inside) {}
 
   /// Adds the polygons of face (axis, side), side 0 or 1: four quarters if it is subdivided, else one polygon that
   /// takes in the middles of its subdivided edges.
@@ -44,19 +43,20 @@ class CellTracer {
     }
   }
 
-  /// Next crossing along the loop, or -1 if `crossing` has none.
+  /// Next crossing along the loop; `crossing` is on one.
   [[nodiscard]] PSK_HD int next(int crossing) const { return next_[crossing]; }
 
   /// Calls visit(first crossing, length) for every loop, by ascending first crossing.
   template <class Visit>
   PSK_HD void for_loops(const Visit& visit) const {
-    std::uint64_t seen[2] = {0, 0};
-    for (int start = 0; start < kCrossings; ++start) {
-      if (next_[start] < 0 || (seen[start >> 6] >> (start & 63) & 1) != 0) continue;
+    std::uint64_t low = crossings_[0];
+    std::uint64_t high = crossings_[1];
+    while ((low | high) != 0) {
+      const int start = low != 0 ? lowest_bit(low) : 64 + lowest_bit(high);
       int length = 0;
       int at = start;
       do {
-        seen[at >> 6] |= std::uint64_t{1} << (at & 63);
+        (at < 64 ? low : high) &= ~(std::uint64_t{1} << (at & 63));
         at = next_[at];
         ++length;
       } while (at != start);
@@ -105,12 +105,14 @@ class CellTracer {
       if (is_inside(i) || !is_inside(i + 1)) continue;  // not an entry
       int exit = i + 1;
       while (is_inside(exit + 1)) ++exit;
-      next_[crossing_between(point(i), point(i + 1))] =
-          static_cast<std::int8_t>(crossing_between(point(exit), point(exit + 1)));
+      const int entry = crossing_between(point(i), point(i + 1));
+      next_[entry] = static_cast<std::int8_t>(crossing_between(point(exit), point(exit + 1)));
+      crossings_[entry >> 6] |= std::uint64_t{1} << (entry & 63);
     }
   }
 
   std::uint32_t inside_;
+  std::uint64_t crossings_[2] = {0, 0};  // bit c: next_[c] is set
   std::int8_t next_[kCrossings];
 };
 

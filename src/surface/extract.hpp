@@ -23,7 +23,8 @@ struct ExtractOptions {
 struct Surface {
   exec::Buffer<Vec3f> positions;     ///< (v) in the unit cube, sorted by Morton key of the cell corner they start at
   exec::Buffer<Vec3f> normals;       ///< (v) unit length, or (0)
-  exec::Buffer<Triangle> triangles;  ///< (t) counter-clockwise from outside, by level and Morton key of their cells
+  exec::Buffer<Triangle> triangles;  ///< (t) counter-clockwise from outside, by level and Morton key of their cells;
+                                     ///< those of cells next to finer ones last
 };
 
 /// Extracts the level set of `f` at its isovalue. Every edge of the mesh has exactly two triangles and every vertex one

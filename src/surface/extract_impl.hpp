@@ -2,11 +2,14 @@
 
 #include <pointskin/error.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "core/bits.hpp"
 #include "exec/algorithms.hpp"
 #include "surface/case_table.hpp"
 #include "surface/edge_vertex.hpp"
@@ -17,27 +20,54 @@
 namespace pointskin::surface {
 namespace extract {
 
-struct HasMark {
+struct IsTraced {
   ArrayView<const std::uint8_t> marks;
-  unsigned wanted;
-  PSK_HD bool operator()(std::int64_t n) const { return (marks[n] & wanted) != 0; }
+  PSK_HD bool operator()(std::int64_t n) const { return (marks[n] & kTracedCell) != 0; }
 };
 
-PSK_HD inline int count_edges(unsigned mark) {
-  return static_cast<int>((mark & 1) + (mark >> 1 & 1) + (mark >> 2 & 1));
+/// The marks of a brick's 8 nodes as one number, the first node in the lowest byte.
+PSK_HD inline std::uint64_t brick_marks(ArrayView<const std::uint8_t> marks, std::int64_t brick) {
+  std::uint64_t all = 0;
+  memcpy(&all, marks.data + 8 * brick, sizeof all);
+  return all;
 }
 
-struct CountEdges {
+/// Two counts that are scanned together.
+PSK_HD constexpr std::uint64_t pack(std::uint64_t low, std::uint64_t high) { return high << 32 | low; }
+PSK_HD constexpr std::int32_t low_count(std::uint64_t packed) { return static_cast<std::int32_t>(packed & 0xffffffff); }
+PSK_HD constexpr std::int32_t high_count(std::uint64_t packed) { return static_cast<std::int32_t>(packed >> 32); }
+
+inline constexpr std::uint64_t kEveryByte = 0x0101010101010101;
+
+/// Crossed edges and table triangles of the marks of up to 8 nodes.
+PSK_HD inline std::uint64_t count_marked(std::uint64_t marks) {
+  const std::uint64_t triangles = (marks >> kTrianglesShift & 7 * kEveryByte) * kEveryByte >> 56;  // sum of the bytes
+  return pack(static_cast<std::uint64_t>(count_bits(marks & kEdges * kEveryByte)), triangles);
+}
+
+struct CountBrick {
   ArrayView<const std::uint8_t> marks;
-  ArrayView<const std::int32_t> nodes;
-  ArrayView<std::int32_t> count;
-  PSK_HD void operator()(std::int64_t i) const { count[i] = count_edges(marks[nodes[i]]); }
+  ArrayView<std::uint64_t> counts;
+  PSK_HD void operator()(std::int64_t brick) const { counts[brick] = count_marked(brick_marks(marks, brick)); }
 };
 
-struct StoreFirst {
-  ArrayView<const std::int32_t> nodes, first;
-  ArrayView<std::int32_t> first_vertex;
-  PSK_HD void operator()(std::int64_t i) const { first_vertex[nodes[i]] = first[i]; }
+/// Where every node's vertices and triangles start.
+struct Numbering {
+  ArrayView<const std::uint8_t> marks;
+  ArrayView<const std::uint64_t> first;  // (bricks + 1) packed: edge vertices and table triangles before each brick
+
+  /// Packed: before node n.
+  PSK_HD std::uint64_t before(std::int64_t n) const {
+    const std::uint64_t earlier = (std::uint64_t{1} << 8 * (n & 7)) - 1;
+    return first[n >> 3] + count_marked(brick_marks(marks, n >> 3) & earlier);
+  }
+
+  /// Vertex on a crossed edge of node n.
+  PSK_HD std::int32_t vertex(std::int64_t n, int axis) const {
+    const std::uint64_t earlier = (std::uint64_t{1} << (8 * (n & 7) + axis)) - 1;
+    const std::uint64_t edges = brick_marks(marks, n >> 3) & kEdges * kEveryByte & earlier;
+    return low_count(first[n >> 3]) + count_bits(edges);
+  }
 };
 
 /// Where a node of the arrays over all levels is.
@@ -64,19 +94,39 @@ struct MeshView {
   ArrayView<Triangle> triangles;
 };
 
-/// Vertices on the crossed edges of one node.
-struct EmitEdges {
+/// Notes for every edge vertex where it lies, and for every table triangle what it is: so that the work that follows is
+/// one thread an item, however few nodes meet the surface.
+struct ListItems {
   field::FieldView f;
-  bool linear_fit;
-  ArrayView<const std::uint8_t> marks;
-  ArrayView<const std::int32_t> nodes, first;
+  Numbering numbering;
   MeshView mesh;
 
-  PSK_HD void operator()(std::int64_t i) const {
-    const Place place = place_of(f.tree, nodes[i]);
-    std::int32_t vertex = first[i];
+  PSK_HD void operator()(std::int64_t n) const {
+    const unsigned mark = numbering.marks[n];
+    if ((mark & (kEdges | kTriangles)) == 0) return;
+    const std::uint64_t before = numbering.before(n);
+    std::int32_t vertex = low_count(before);
     for (int axis = 0; axis < 3; ++axis)
-      if ((marks[nodes[i]] >> axis & 1) != 0) emit({place.level, place.node, axis}, vertex++);
+      if ((mark >> axis & 1) != 0) mesh.keys[vertex++] = static_cast<std::uint64_t>(n) << 2 | static_cast<unsigned>(axis);
+    const int triangles = static_cast<int>((mark & kTriangles) >> kTrianglesShift);
+    if (triangles == 0) return;
+    const Place place = place_of(f.tree, n);
+    const auto signs = static_cast<std::int32_t>(LeafCell(f, place.level, place.node).corner_signs());
+    const std::int32_t first = high_count(before);
+    for (int t = 0; t < triangles; ++t) mesh.triangles[first + t] = {static_cast<std::int32_t>(n), signs, t};
+  }
+};
+
+/// A vertex on an edge that ListItems has noted.
+struct EmitVertex {
+  field::FieldView f;
+  bool linear_fit;
+  MeshView mesh;
+
+  PSK_HD void operator()(std::int64_t vertex) const {
+    const std::uint64_t item = mesh.keys[vertex];
+    const Place place = place_of(f.tree, static_cast<std::int64_t>(item >> 2));
+    emit({place.level, place.node, static_cast<int>(item & 3)}, static_cast<std::int32_t>(vertex));
   }
 
   PSK_HD void emit(const EdgeOwner& owner, std::int32_t vertex) const {
@@ -99,11 +149,26 @@ struct EmitEdges {
 /// Vertex on an edge.
 struct VertexLookup {
   octree::OctreeView tree;
-  ArrayView<const std::uint8_t> marks;
-  ArrayView<const std::int32_t> first_vertex;
+  Numbering numbering;
   PSK_HD std::int32_t operator()(const EdgeOwner& owner) const {
-    const std::int64_t n = tree.levels[owner.level].first_node + owner.node;
-    return first_vertex[n] + count_edges(marks[n] & ((1U << owner.axis) - 1));
+    return numbering.vertex(tree.levels[owner.level].first_node + owner.node, owner.axis);
+  }
+};
+
+/// A triangle of a leaf without finer neighbours that ListItems has noted.
+struct EmitTriangle {
+  field::FieldView f;
+  const Case* cases;
+  VertexLookup vertex_on;
+  ArrayView<Triangle> triangles;
+
+  PSK_HD void operator()(std::int64_t t) const {
+    const std::int32_t* item = triangles[t].data();
+    const Place place = place_of(f.tree, item[0]);
+    const LeafCell cell(f, place.level, place.node);
+    const std::uint8_t* edges = cases[item[1]].edges + 3 * item[2];
+    triangles[t] = {vertex_on(cell.owner_of_edge(edges[0])), vertex_on(cell.owner_of_edge(edges[1])),
+                    vertex_on(cell.owner_of_edge(edges[2]))};
   }
 };
 
@@ -116,52 +181,35 @@ struct CellCounts {
 /// diagonals that a neighbour could share.
 PSK_HD inline CellCounts count_loop(int length) { return length == 3 ? CellCounts{1, 0} : CellCounts{length, 1}; }
 
-struct CountCells {
+/// Packed triangles and centres of the traced cells.
+struct CountTraced {
   field::FieldView f;
-  const Case* cases;
-  ArrayView<const std::uint8_t> marks;
   ArrayView<const std::int32_t> cells;
-  ArrayView<std::int32_t> triangles, centres;
+  ArrayView<std::uint64_t> counts;
   PSK_HD void operator()(std::int64_t i) const {
     const Place place = place_of(f.tree, cells[i]);
-    const LeafCell cell(f, place.level, place.node);
-    CellCounts total;
-    if ((marks[cells[i]] & kTableCell) != 0) {
-      total.triangles = cases[cell.corner_signs()].triangles;
-    } else {
-      cell.trace().for_loops([&](int, int length) {
-        const CellCounts counts = count_loop(length);
-        total.triangles += counts.triangles;
-        total.centres += counts.centres;
-      });
-    }
-    triangles[i] = total.triangles;
-    centres[i] = total.centres;
+    std::uint64_t total = 0;
+    LeafCell(f, place.level, place.node).trace().for_loops([&](int, int length) {
+      const CellCounts counted = count_loop(length);
+      total += pack(static_cast<std::uint64_t>(counted.triangles), static_cast<std::uint64_t>(counted.centres));
+    });
+    counts[i] = total;
   }
 };
 
-struct EmitCells {
+struct EmitTraced {
   field::FieldView f;
-  const Case* cases;
   VertexLookup vertex_on;
   ArrayView<const std::int32_t> cells;
-  ArrayView<const std::int32_t> first_triangle, first_centre;
-  std::int32_t edge_vertices;
+  ArrayView<const std::uint64_t> first;  // packed, as counted
+  std::int32_t edge_vertices, table_triangles;
   MeshView mesh;
 
   PSK_HD void operator()(std::int64_t i) const {
     const Place place = place_of(f.tree, cells[i]);
     const LeafCell cell(f, place.level, place.node);
-    std::int32_t triangle = first_triangle[i];
-    if ((vertex_on.marks[cells[i]] & kTableCell) != 0) {
-      const Case& c = cases[cell.corner_signs()];
-      for (int t = 0; t < c.triangles; ++t)
-        mesh.triangles[triangle++] = {vertex_on(cell.owner_of_edge(c.edges[3 * t])),
-                                      vertex_on(cell.owner_of_edge(c.edges[3 * t + 1])),
-                                      vertex_on(cell.owner_of_edge(c.edges[3 * t + 2]))};
-      return;
-    }
-    std::int32_t centre = edge_vertices + first_centre[i];
+    std::int32_t triangle = table_triangles + low_count(first[i]);
+    std::int32_t centre = edge_vertices + high_count(first[i]);
     const CellTracer tracer = cell.trace();
     tracer.for_loops([&](int start, int length) {
       const auto vertex = [&](int crossing) { return vertex_on(cell.owner_of(crossing)); };
@@ -172,13 +220,16 @@ struct EmitCells {
       }
       Vec3f position{};
       Vec3f normal{};
-      int at = start;
+      int at = tracer.next(start);
+      const std::int32_t first_vertex = vertex(start);
+      std::int32_t here = first_vertex;
       for (int k = 0; k < length; ++k) {
-        const std::int32_t here = vertex(at);
+        const std::int32_t there = k + 1 < length ? vertex(at) : first_vertex;
         at = tracer.next(at);
-        mesh.triangles[triangle++] = {here, vertex(at), centre};
+        mesh.triangles[triangle++] = {here, there, centre};
         add(position, mesh.positions[here]);
         if (!mesh.normals.empty()) add(normal, mesh.normals[here]);
+        here = there;
       }
       const float share = 1.0F / static_cast<float>(length);
       mesh.positions[centre] = {position.x * share, position.y * share, position.z * share};
@@ -216,16 +267,26 @@ inline void check_size(const char* what, std::int64_t count) {
                                            ", more than 32-bit ids reach; choose a smaller depth");
 }
 
-/// Exclusive scan with the total on the host.
-/// @throws Error over_limit if the total does not fit into 32 bits
+struct LowCount {
+  ArrayView<const std::uint64_t> packed;
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return low_count(packed[i]); }
+};
+struct AddCounts {
+  PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
+};
+
+/// Exclusive scan of packed counts with the total on the host.
+/// @param most_per_entry  bound of the low counts, which must not spill into the high ones
+/// @throws Error over_limit if a total does not fit into 32 bits
 template <exec::Space Exec>
-std::int32_t scan_counts(Exec& ex, const exec::Buffer<std::int32_t>& count, exec::Buffer<std::int32_t>& first) {
-  constexpr std::int64_t kMostPerEntry = 64;  // a traced cell has at most 48 segments, so no more triangles
-  if (count.size() > std::numeric_limits<std::int32_t>::max() / kMostPerEntry)
-    check_size("elements", exec::sum_counts(ex, "extract.scan", count.cview()));
-  first = exec::make_buffer<std::int32_t>(ex, count.size() + 1);
-  exclusive_scan(ex, "extract.scan", count.cview(), first.view());
-  return exec::read_element(ex, first.cview(), count.size());
+std::uint64_t scan_counts(Exec& ex, const exec::Buffer<std::uint64_t>& counts, exec::Buffer<std::uint64_t>& first,
+                          std::int64_t most_per_entry) {
+  if (counts.size() > std::numeric_limits<std::int32_t>::max() / most_per_entry)
+    check_size("elements",
+               exec::reduce<std::int64_t>(ex, "extract.scan", counts.size(), LowCount{counts.cview()}, AddCounts{}));
+  first = exec::make_buffer<std::uint64_t>(ex, counts.size() + 1);
+  exclusive_scan(ex, "extract.scan", counts.cview(), first.view());
+  return exec::read_element(ex, first.cview(), counts.size());
 }
 
 /// Vertices in the order of their keys, triangles renumbered.
@@ -244,22 +305,10 @@ Surface sort_vertices(Exec& ex, Surface unsorted, exec::Buffer<std::uint64_t> ke
   return sorted;
 }
 
-/// The crossed edges of all levels and the vertex each node's edges start with.
-struct EdgeSet {
-  exec::Buffer<std::int32_t> nodes, first, first_vertex;
-  std::int32_t vertices = 0;
-};
-template <exec::Space Exec>
-EdgeSet number_edges(Exec& ex, ArrayView<const std::uint8_t> marks) {
-  EdgeSet edges;
-  edges.nodes = select(ex, "extract.edges", marks.size, HasMark{marks, kEdges});
-  auto count = exec::make_buffer<std::int32_t>(ex, edges.nodes.size());
-  for_each(ex, "extract.edges", count.size(), CountEdges{marks, edges.nodes.cview(), count.view()});
-  edges.vertices = scan_counts(ex, count, edges.first);
-  edges.first_vertex = exec::make_buffer<std::int32_t>(ex, marks.size);
-  for_each(ex, "extract.edges", count.size(),
-           StoreFirst{edges.nodes.cview(), edges.first.cview(), edges.first_vertex.view()});
-  return edges;
+inline TriangleCounts count_triangles(const std::array<Case, 256>& cases) {
+  TriangleCounts counts;
+  std::transform(cases.begin(), cases.end(), counts.of_case, [](const Case& c) { return c.triangles; });
+  return counts;
 }
 
 }  // namespace extract
@@ -267,40 +316,46 @@ EdgeSet number_edges(Exec& ex, ArrayView<const std::uint8_t> marks) {
 template <exec::Space Exec>
 Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOptions& options) {
   using namespace extract;
+  constexpr std::int64_t kMostEdgesPerBrick = 24;
+  constexpr std::int64_t kMostTrianglesPerCell = 64;  // a traced cell has at most 48 segments, so no more triangles
+  static const std::array<Case, 256> kCases = make_case_table();
   check_size("nodes", f.tree.nodes);
-  auto marks = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
-  for_each(ex, "extract.mark", f.tree.nodes / 8, MarkBrick{f, marks.view()});
-  const EdgeSet edges = number_edges(ex, marks.cview());
-
-  const exec::Buffer<std::int32_t> cells = select(ex, "extract.cells", f.tree.nodes, HasMark{marks.cview(), kCells});
-  const std::array<Case, 256> table = make_case_table();
   auto cases = exec::make_buffer<Case>(ex, 256);
-  copy_to_device(ex, table.data(), cases.view());
-  auto triangle_count = exec::make_buffer<std::int32_t>(ex, cells.size());
-  auto centre_count = exec::make_buffer<std::int32_t>(ex, cells.size());
-  for_each(ex, "extract.cells", cells.size(),
-           CountCells{f, cases.data(), marks.cview(), cells.cview(), triangle_count.view(), centre_count.view()});
-  exec::Buffer<std::int32_t> first_triangle;
-  exec::Buffer<std::int32_t> first_centre;
-  const std::int32_t triangles = scan_counts(ex, triangle_count, first_triangle);
-  const std::int64_t vertices = std::int64_t{edges.vertices} + scan_counts(ex, centre_count, first_centre);
+  copy_constant_to_device(ex, kCases.data(), cases.view());
+  auto marks = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
+  const Marker marker{f, count_triangles(kCases), marks.view()};
+  if constexpr (Exec::kManyThreads)
+    for_each(ex, "extract.mark", f.tree.nodes, MarkNode{marker});
+  else
+    for_each(ex, "extract.mark", f.tree.nodes / 8, MarkBrick{marker});
+
+  auto counts = exec::make_buffer<std::uint64_t>(ex, f.tree.nodes / 8);
+  for_each(ex, "extract.count", counts.size(), CountBrick{marks.cview(), counts.view()});
+  exec::Buffer<std::uint64_t> first;
+  const std::uint64_t table = scan_counts(ex, counts, first, kMostEdgesPerBrick);
+  counts.reset();
+  const exec::Buffer<std::int32_t> traced = select(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()});
+  auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
+  for_each(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
+  exec::Buffer<std::uint64_t> first_traced;
+  const std::uint64_t more =
+      traced.empty() ? 0 : scan_counts(ex, traced_counts, first_traced, kMostTrianglesPerCell);
+  const std::int64_t vertices = std::int64_t{low_count(table)} + high_count(more);
+  const std::int64_t triangles = std::int64_t{high_count(table)} + low_count(more);
   check_size("vertices", vertices);
+  check_size("triangles", triangles);
 
   Surface surface{exec::make_buffer<Vec3f>(ex, vertices), exec::make_buffer<Vec3f>(ex, options.normals ? vertices : 0),
                   exec::make_buffer<Triangle>(ex, triangles)};
   auto keys = exec::make_buffer<std::uint64_t>(ex, vertices);
   const MeshView mesh{surface.positions.view(), surface.normals.view(), keys.view(), surface.triangles.view()};
-  for_each(ex, "extract.vertices", edges.nodes.size(),
-           EmitEdges{f, options.linear_fit, marks.cview(), edges.nodes.cview(), edges.first.cview(), mesh});
-  for_each(ex, "extract.triangles", cells.size(),
-           EmitCells{f,
-                     cases.data(),
-                     {f.tree, marks.cview(), edges.first_vertex.cview()},
-                     cells.cview(),
-                     first_triangle.cview(),
-                     first_centre.cview(),
-                     edges.vertices,
-                     mesh});
+  const Numbering numbering{marks.cview(), first.cview()};
+  const VertexLookup vertex_on{f.tree, numbering};
+  for_each(ex, "extract.list", f.tree.nodes, ListItems{f, numbering, mesh});
+  for_each(ex, "extract.vertices", low_count(table), EmitVertex{f, options.linear_fit, mesh});
+  for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh.triangles});
+  for_each(ex, "extract.traced", traced.size(),
+           EmitTraced{f, vertex_on, traced.cview(), first_traced.cview(), low_count(table), high_count(table), mesh});
   return sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth);
 }
 

@@ -25,7 +25,7 @@ class LeafCell {
   /// Inside bits of the 8 corners, bit = slot.
   [[nodiscard]] PSK_HD unsigned corner_signs() const {
     unsigned signs = 0;
-    for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
       const int x = octree::slot_x(s);
       const int y = octree::slot_y(s);
       const int z = octree::slot_z(s);
@@ -35,19 +35,17 @@ class LeafCell {
     return signs;
   }
 
-  /// True if the cell next to this one at the given offset has children.
-  [[nodiscard]] PSK_HD bool is_split_at(int dx, int dy, int dz) const {
-    return f_.tree.is_split(level_, f_.tree.levels[level_].neighbour(node_, dx, dy, dz));
-  }
-
-  /// True if a neighbour across a face or an edge is finer.
-  [[nodiscard]] PSK_HD bool has_finer_neighbour() const {
-    for (int j = 0; j < octree::kNeighbours; ++j) {
+  /// Bit neighbour_index(dx, dy, dz): the cell there has children. Cells across corners alone do not matter and are
+  /// left out.
+  [[nodiscard]] PSK_HD std::uint32_t finer_neighbours() const {
+    std::uint32_t finer = 0;
+    PSK_UNROLL for (int j = 0; j < octree::kNeighbours; ++j) {
       const int d[3] = {j / 9 - 1, j / 3 % 3 - 1, j % 3 - 1};
       const int distance = (d[0] != 0) + (d[1] != 0) + (d[2] != 0);
-      if (distance != 0 && distance != 3 && is_split_at(d[0], d[1], d[2])) return true;
+      if (distance == 0 || distance == 3) continue;
+      if (f_.tree.is_split(level_, f_.tree.levels[level_].neighbour(node_, d[0], d[1], d[2]))) finer |= 1U << j;
     }
-    return false;
+    return finer;
   }
 
   /// True if the cell touches a face of the cube, where signs do not follow the interpolated values.
@@ -58,14 +56,16 @@ class LeafCell {
 
   /// The loops around this cell with its finer neighbours' faces and edges.
   [[nodiscard]] PSK_HD CellTracer trace() const {
+    const std::uint32_t finer = finer_neighbours();
     std::uint32_t split_edges = 0;
     for (int e = 0; e < 12; ++e)
-      if (edge_is_split(e / 4, e / 2 & 1, e & 1)) split_edges |= CellTracer::edge_bit(e / 4, e / 2 & 1, e & 1);
+      if (edge_is_split(finer, e / 4, e / 2 & 1, e & 1)) split_edges |= CellTracer::edge_bit(e / 4, e / 2 & 1, e & 1);
     CellTracer tracer(grid_signs(split_edges != 0));
     for (int face = 0; face < 6; ++face) {
       int d[3] = {0, 0, 0};
       d[face / 2] = face % 2 == 0 ? -1 : 1;
-      tracer.add_face(face / 2, face % 2, is_split_at(d[0], d[1], d[2]), split_edges);
+      const bool subdivided = (finer >> octree::neighbour_index(d[0], d[1], d[2]) & 1) != 0;
+      tracer.add_face(face / 2, face % 2, subdivided, split_edges);
     }
     return tracer;
   }
@@ -91,13 +91,15 @@ class LeafCell {
 
  private:
   /// True if one of the three other cells around an edge has children.
-  [[nodiscard]] PSK_HD bool edge_is_split(int axis, int side_b, int side_c) const {
+  PSK_HD static bool edge_is_split(std::uint32_t finer, int axis, int side_b, int side_c) {
     int b[3] = {0, 0, 0};
     int c[3] = {0, 0, 0};
     b[(axis + 1) % 3] = side_b == 0 ? -1 : 1;
     c[(axis + 2) % 3] = side_c == 0 ? -1 : 1;
-    return is_split_at(b[0], b[1], b[2]) || is_split_at(c[0], c[1], c[2]) ||
-           is_split_at(b[0] + c[0], b[1] + c[1], b[2] + c[2]);
+    const std::uint32_t around = 1U << octree::neighbour_index(b[0], b[1], b[2]) |
+                                 1U << octree::neighbour_index(c[0], c[1], c[2]) |
+                                 1U << octree::neighbour_index(b[0] + c[0], b[1] + c[1], b[2] + c[2]);
+    return (finer & around) != 0;
   }
 
   /// Node of the finer level at grid position (x, y, z) of this cell, or -1.

@@ -10,17 +10,73 @@
 
 namespace pointskin::surface::extract {
 
-/// What a node adds to the mesh: bits 0-2 its crossed edges by axis, then how its cell is triangulated.
+/// What a node adds to the mesh, in one byte: bits 0-2 its crossed edges by axis, bit 3 that its cell closes loops with
+/// finer neighbours' edges, bits 4-6 the triangles of its cell if it is a leaf without finer neighbours.
 inline constexpr unsigned kEdges = 7;
-inline constexpr unsigned kTableCell = 8;    ///< a leaf without finer neighbours
-inline constexpr unsigned kTracedCell = 16;  ///< a leaf that closes loops with finer neighbours' edges
-inline constexpr unsigned kCells = kTableCell | kTracedCell;
+inline constexpr unsigned kTracedCell = 8;
+inline constexpr int kTrianglesShift = 4;
+inline constexpr unsigned kTriangles = 7U << kTrianglesShift;
 
-/// Marks the nodes of one brick; most bricks do not meet the surface and are done after a look at their 27 corners.
-struct MarkBrick {
+/// Number of triangles of each of the 256 cases; small enough to travel as an argument.
+struct TriangleCounts {
+  std::uint8_t of_case[256];
+};
+
+/// Marks nodes from the signs at their cells' corners.
+struct Marker {
   field::FieldView f;
+  TriangleCounts counts;
   ArrayView<std::uint8_t> marks;
 
+  /// True if cells of the brick touch a face of the cube.
+  PSK_HD static bool is_near_face(const octree::LevelView& l, std::int64_t brick) {
+    const octree::Coordinates b = octree::decode(l.brick_key[brick]);
+    const std::int32_t last = l.depth == 0 ? 0 : (1 << (l.depth - 1)) - 1;
+    return b.x == 0 || b.y == 0 || b.z == 0 || b.x >= last || b.y >= last || b.z >= last;
+  }
+
+  /// @param signs  inside bits of the cell's corners, bit = slot
+  PSK_HD unsigned mark_node(int level, std::int32_t node, unsigned signs, bool near_face) const {
+    const bool uniform = signs == 0 || signs == 0xff;
+    if (uniform && !(f.closed && near_face)) return 0;
+    unsigned mark = 0;
+    PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+      const unsigned end = signs >> (4 >> axis);  // the corner one step along the axis
+      if (((signs ^ end) & 1) != 0 && is_finest_edge(level, node, axis)) mark |= 1U << axis;
+    }
+    return mark | mark_cell(level, node, signs, uniform);
+  }
+
+  PSK_HD unsigned mark_cell(int level, std::int32_t node, unsigned signs, bool uniform) const {
+    if (!f.tree.levels[level].is_cell(node) || f.tree.is_split(level, node)) return 0;
+    const LeafCell cell(f, level, node);
+    // Middles are interpolated between corners, so equal corners mean no crossing, except where a corner on the cube's
+    // face was made outside.
+    if (uniform && !(f.closed && cell.touches_cube_face())) return 0;
+    if (cell.finer_neighbours() != 0) return kTracedCell;
+    return static_cast<unsigned>(counts.of_case[signs]) << kTrianglesShift;
+  }
+
+  /// True if some cell around the edge is a leaf of this level and none is split.
+  PSK_HD bool is_finest_edge(int level, std::int32_t node, int axis) const {
+    const octree::LevelView& l = f.tree.levels[level];
+    bool any_leaf = false;
+    for (int i = 0; i < 4; ++i) {
+      int d[3] = {0, 0, 0};
+      d[(axis + 1) % 3] = -(i >> 1);
+      d[(axis + 2) % 3] = -(i & 1);
+      const std::int32_t cell = l.neighbour(node, d[0], d[1], d[2]);
+      if (!l.is_cell(cell)) continue;
+      if (f.tree.is_split(level, cell)) return false;
+      any_leaf = true;
+    }
+    return any_leaf;
+  }
+};
+
+/// A brick at a time, for spaces with few threads: most bricks do not meet the surface and are done after a look at
+/// their 27 corners.
+struct MarkBrick : Marker {
   PSK_HD void operator()(std::int64_t global_brick) const {
     const int level = f.tree.level_of(8 * global_brick);
     const octree::LevelView& l = f.tree.levels[level];
@@ -30,17 +86,22 @@ struct MarkBrick {
     constexpr std::uint32_t kAll = (1U << 27) - 1;
     const bool uniform = signs == 0 || signs == kAll;
     for (int s = 0; s < 8; ++s) {
-      const auto node = static_cast<std::int32_t>(8 * brick + s);
-      const unsigned mark = uniform && !(f.closed && near_face) ? 0 : mark_node(level, node, signs, uniform);
+      unsigned mark = 0;
+      if (!uniform || (f.closed && near_face))
+        mark = mark_node(level, static_cast<std::int32_t>(8 * brick + s), signs_of_cell(signs, s), near_face);
       marks[8 * global_brick + s] = static_cast<std::uint8_t>(mark);
     }
   }
 
-  /// True if cells of the brick touch a face of the cube.
-  PSK_HD static bool is_near_face(const octree::LevelView& l, std::int64_t brick) {
-    const octree::Coordinates b = octree::decode(l.brick_key[brick]);
-    const std::int32_t last = l.depth == 0 ? 0 : (1 << (l.depth - 1)) - 1;
-    return b.x == 0 || b.y == 0 || b.z == 0 || b.x >= last || b.y >= last || b.z >= last;
+  /// Signs of one cell's corners out of the brick's.
+  PSK_HD static unsigned signs_of_cell(std::uint32_t signs, int slot) {
+    unsigned corners = 0;
+    for (int s = 0; s < 8; ++s)
+      corners |= (signs >> grid_index(octree::slot_x(slot) + octree::slot_x(s), octree::slot_y(slot) + octree::slot_y(s),
+                                      octree::slot_z(slot) + octree::slot_z(s)) &
+                  1)
+                 << s;
+    return corners;
   }
 
   /// Inside bits of the 3 x 3 x 3 corners from the brick's first one, bit = grid_index.
@@ -63,48 +124,42 @@ struct MarkBrick {
     return signs;
   }
 
-  PSK_HD unsigned mark_node(int level, std::int32_t node, std::uint32_t signs, bool uniform) const {
-    const int x = octree::slot_x(node & 7);
-    const int y = octree::slot_y(node & 7);
-    const int z = octree::slot_z(node & 7);
-    const auto sign = [&](int dx, int dy, int dz) { return signs >> grid_index(x + dx, y + dy, z + dz) & 1; };
-    unsigned mark = 0;
-    if (!uniform) {
-      const unsigned own = sign(0, 0, 0);
-      if (own != sign(1, 0, 0) && is_finest_edge(level, node, 0)) mark |= 1;
-      if (own != sign(0, 1, 0) && is_finest_edge(level, node, 1)) mark |= 2;
-      if (own != sign(0, 0, 1) && is_finest_edge(level, node, 2)) mark |= 4;
-    }
-    unsigned corners = 0;
-    for (int s = 0; s < 8; ++s) corners |= sign(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)) << s;
-    return mark | mark_cell(level, node, corners == 0 || corners == 0xff);
+};
+
+/// A node at a time, for spaces with many threads.
+struct MarkNode : Marker {
+  PSK_HD void operator()(std::int64_t index) const {
+    const int level = f.tree.level_of(index);
+    const octree::LevelView& l = f.tree.levels[level];
+    const auto node = static_cast<std::int32_t>(index - l.first_node);
+    const bool near_face = is_near_face(l, node >> 3);
+    marks[index] = static_cast<std::uint8_t>(mark_node(level, node, corner_signs(l, node, near_face), near_face));
   }
 
-  PSK_HD unsigned mark_cell(int level, std::int32_t node, bool uniform) const {
-    const octree::LevelView& l = f.tree.levels[level];
-    if (!l.is_cell(node) || f.tree.is_split(level, node)) return 0;
-    const LeafCell cell(f, level, node);
-    // Middles are interpolated between corners, so equal corners mean no crossing, except where a corner on the cube's
-    // face was made outside.
-    if (uniform && !(f.closed && cell.touches_cube_face())) return 0;
-    if (cell.has_finer_neighbour()) return kTracedCell;
-    return uniform ? 0 : kTableCell;
+  PSK_HD unsigned corner_signs(const octree::LevelView& l, std::int32_t node, bool near_face) const {
+    std::int32_t corner[8];
+    PSK_UNROLL for (int s = 0; s < 8; ++s)
+      corner[s] = l.neighbour(node, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+    unsigned signs = 0;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      const float value = corner[s] < 0 ? 0 : f.value(l.depth, corner[s]);
+      if (value >= f.isovalue) signs |= 1U << s;
+    }
+    return near_face && signs != 0 ? allowed(l, node, corner, signs) : signs;
   }
 
-  /// True if some cell around the edge is a leaf of this level and none is split.
-  PSK_HD bool is_finest_edge(int level, std::int32_t node, int axis) const {
-    const octree::LevelView& l = f.tree.levels[level];
-    bool any_leaf = false;
-    for (int i = 0; i < 4; ++i) {
-      int d[3] = {0, 0, 0};
-      d[(axis + 1) % 3] = -(i >> 1);
-      d[(axis + 2) % 3] = -(i & 1);
-      const std::int32_t cell = l.neighbour(node, d[0], d[1], d[2]);
-      if (!l.is_cell(cell)) continue;
-      if (f.tree.is_split(level, cell)) return false;
-      any_leaf = true;
+  /// Near the cube's faces values alone do not decide.
+  PSK_HD unsigned allowed(const octree::LevelView& l, std::int32_t node, const std::int32_t (&corner)[8],
+                          unsigned signs) const {
+    const octree::Coordinates c = octree::decode(l.node_key(node));
+    unsigned result = 0;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      const bool inside =
+          (signs >> s & 1) != 0 && corner[s] >= 0 &&
+          f.inside(l.depth, corner[s], {c.x + octree::slot_x(s), c.y + octree::slot_y(s), c.z + octree::slot_z(s)});
+      if (inside) result |= 1U << s;
     }
-    return any_leaf;
+    return result;
   }
 };
 

@@ -41,7 +41,7 @@ void add_column(const poisson::LevelSystem& system, std::int64_t n, std::vector<
     const auto r = poisson::brick_residual(system, brick, octree::load_neighbourhood(system.level, brick, u.data()));
     for (int s = 0; s < 8; ++s) {
       const Eigen::Index row = row_of[static_cast<std::size_t>(8 * std::int64_t{brick} + s)];
-      if (row >= 0) out.rows(row, n) = out.pull[row] - static_cast<double>(r.residual[s]);
+      if (row >= 0) out.rows(row, n) = out.pull[row] - static_cast<double>(r.corner[s].residual);
     }
   }
   u[static_cast<std::size_t>(n)] = 0;
@@ -66,8 +66,8 @@ Assembled assemble_by_unit_vectors(const poisson::LevelSystem& system) {
     for (int s = 0; s < 8; ++s) {
       const Eigen::Index row = row_of[static_cast<std::size_t>(8 * std::int64_t{brick} + s)];
       if (row < 0) continue;
-      out.diagonal[row] = r.diagonal[s];
-      out.pull[row] = r.residual[s];
+      out.diagonal[row] = r.corner[s].diagonal;
+      out.pull[row] = r.corner[s].residual;
     }
   }
   for (std::int64_t n = 0; n < nodes; ++n) add_column(system, n, u, row_of, out);
@@ -105,6 +105,26 @@ TEST(Operator, EqualsTheMatrixAssembledCellByCell) {
       const auto row = static_cast<Eigen::Index>(i);
       ASSERT_LT((a.rows.row(row) - dense.row(a.unknowns[i])).cwiseAbs().maxCoeff(), tolerance);
       ASSERT_NEAR(a.pull[row], reference.pull[a.unknowns[i]], tolerance);
+    }
+  });
+}
+
+TEST(Operator, OfOneCornerHasTheBitsOfItsBrick) {
+  for_all_systems([](const Assembled&, const poisson::LevelSystem& system, SmallTree&) {
+    test::Random random(31);
+    std::vector<float> u(static_cast<std::size_t>(system.level.nodes()));
+    for (float& value : u) value = static_cast<float>(random.in(-1, 1));
+    for (std::int32_t brick = 0; brick < system.level.bricks; ++brick) {
+      const auto r = poisson::brick_residual(system, brick, octree::load_neighbourhood(system.level, brick, u.data()));
+      for (int s = 0; s < 8; ++s) {
+        const std::int64_t node = 8 * std::int64_t{brick} + s;
+        if (!test::is_unknown(system.level, node)) continue;
+        const poisson::CornerOperator corner(system, node, u.data());
+        const poisson::CornerResidual one = corner.residual(node);
+        ASSERT_EQ(corner.value(), u[static_cast<std::size_t>(node)]);
+        ASSERT_EQ(one.residual, r.corner[s].residual) << "node " << node;
+        ASSERT_EQ(one.diagonal, r.corner[s].diagonal) << "node " << node;
+      }
     }
   });
 }
@@ -148,7 +168,7 @@ TEST(Operator,
           poisson::brick_residual(system, brick, octree::load_neighbourhood(system.level, brick, half.data()));
       for (int s = 0; s < 8; ++s) {
         if (!test::is_unknown(system.level, 8 * std::int64_t{brick} + s)) continue;
-        ASSERT_NEAR(r.residual[s], 0, tolerance);
+        ASSERT_NEAR(r.corner[s].residual, 0, tolerance);
       }
     }
   });
@@ -171,7 +191,7 @@ TEST(Operator, AnnihilatesLinearFunctionsAwayFromTheCubesFaces) {
     for (int s = 0; s < 8; ++s) {
       if (!test::is_unknown(level, 8 * std::int64_t{brick} + s)) continue;
       ++tested;
-      ASSERT_NEAR(r.residual[s], 0, 2e-6);
+      ASSERT_NEAR(r.corner[s].residual, 0, 2e-6);
     }
   }
   EXPECT_GT(tested, 100);

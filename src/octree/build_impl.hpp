@@ -13,6 +13,8 @@
 
 #include "exec/algorithms.hpp"
 #include "exec/space.hpp"
+#include "octree/brick_sets.hpp"
+#include "octree/complete_levels.hpp"
 #include "octree/octree_data.hpp"
 #include "octree/tables.hpp"
 
@@ -36,45 +38,6 @@ struct RepeatsKey {
 
 struct Larger {
   PSK_HD std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a > b ? a : b; }
-};
-
-struct ToCellKey {
-  ArrayView<const std::uint64_t> point_keys;
-  ArrayView<const std::int32_t> first_points;
-  int depth;
-  ArrayView<std::uint64_t> cells;
-  PSK_HD void operator()(std::int64_t i) const { cells[i] = cell_key(point_keys[first_points[i]], depth); }
-};
-
-/// Keeps the first point of every occupied cell.
-struct StartsCell {
-  ArrayView<const std::uint64_t> point_keys;
-  int depth;
-  PSK_HD bool operator()(std::int64_t i) const {
-    return i == 0 || cell_key(point_keys[i], depth) != cell_key(point_keys[i - 1], depth);
-  }
-};
-
-/// The up to 8 bricks that the 27-neighbourhood of cell i touches; candidates outside of the cube repeat an inner one.
-struct TouchedBricks {
-  ArrayView<const std::uint64_t> cells;
-  std::int32_t bricks_per_axis;
-  ArrayView<std::uint64_t> touched;
-
-  PSK_HD std::int32_t brick(std::int32_t cell, int side) const {
-    const std::int32_t b = (cell + (side == 0 ? -1 : 1)) >> 1;
-    return b < 0 ? 0 : b >= bricks_per_axis ? bricks_per_axis - 1 : b;
-  }
-  PSK_HD void operator()(std::int64_t i) const {
-    const Coordinates c = decode(cells[i]);
-    for (int s = 0; s < 8; ++s)
-      touched[8 * i + s] = encode({brick(c.x, slot_x(s)), brick(c.y, slot_y(s)), brick(c.z, slot_z(s))});
-  }
-};
-
-struct AllBricks {
-  ArrayView<std::uint64_t> keys;
-  PSK_HD void operator()(std::int64_t i) const { keys[i] = static_cast<std::uint64_t>(i); }
 };
 
 /// Node with this key among the nodes of bricks with sorted keys; it must exist. O(log bricks).
@@ -140,14 +103,26 @@ struct FindNeighbours {
   NeighbourTables tables;
   ArrayView<const std::int32_t> parent;
   ArrayView<std::int32_t> neighbours;
-  PSK_HD void operator()(std::int64_t b) const {
-    const std::int32_t node = parent[b];
+
+  PSK_HD std::int32_t find(std::int32_t node, int j) const {
     const std::int64_t around = std::int64_t{node >> 3} * kNeighbours;
     const int slot = node & 7;
-    for (int j = 0; j < kNeighbours; ++j) {
-      const std::int32_t brick = above.neighbours[around + tables.parent[slot][j]];
-      neighbours[b * kNeighbours + j] = brick < 0 ? -1 : above.child_brick[brick * 8 + tables.child[slot][j]];
-    }
+    const std::int32_t brick = above.neighbours[around + tables.parent[slot][j]];
+    return brick < 0 ? -1 : above.child_brick[brick * 8 + tables.child[slot][j]];
+  }
+};
+/// One brick, for spaces with few threads.
+struct FindNeighboursOfBrick : FindNeighbours {
+  PSK_HD void operator()(std::int64_t b) const {
+    const std::int32_t node = parent[b];
+    for (int j = 0; j < kNeighbours; ++j) neighbours[b * kNeighbours + j] = find(node, j);
+  }
+};
+/// One entry, for spaces with many.
+struct FindNeighbour : FindNeighbours {
+  PSK_HD void operator()(std::int64_t i) const {
+    const std::int64_t b = i / kNeighbours;
+    neighbours[i] = find(parent[b], static_cast<int>(i - b * kNeighbours));
   }
 };
 
@@ -156,96 +131,76 @@ struct FindUnknowns {
   LevelView level;
   ArrayView<std::uint8_t> unknowns;
 
-  /// Cells of the cube around coordinate c of an axis: bit 0 the lower one, bit 1 the upper one.
-  PSK_HD int in_cube(std::int32_t c) const { return (c > 0 ? 1 : 0) | (c < (1 << level.depth) ? 2 : 0); }
-
-  PSK_HD bool is_unknown(std::int32_t node) const {
-    const Coordinates c = decode(level.node_key(node));
-    const std::int32_t last = 1 << level.depth;
-    if (c.x > last || c.y > last || c.z > last) return false;
-    const int sides[3] = {in_cube(c.x), in_cube(c.y), in_cube(c.z)};
-    for (int s = 0; s < 8; ++s) {
-      const int d[3] = {slot_x(s), slot_y(s), slot_z(s)};
-      if (((sides[0] >> d[0]) & (sides[1] >> d[1]) & (sides[2] >> d[2]) & 1) == 0) continue;
-      if (!level.is_cell(level.neighbour(node, d[0] - 1, d[1] - 1, d[2] - 1))) return false;
-    }
-    return true;
-  }
   PSK_HD void operator()(std::int64_t b) const {
+    const Coordinates c = decode(level.brick_key[b]);
+    const std::int32_t bricks_per_axis = 1 << (level.depth - 1);
+    unsigned missing = 0;  // bricks in the cube whose nodes are no cells of this level, by neighbour index
+    PSK_UNROLL for (int j = 0; j < kNeighbours; ++j) {
+      const std::int32_t brick = level.neighbours[b * kNeighbours + j];
+      const std::int32_t x = c.x + j / 9 - 1;
+      const std::int32_t y = c.y + j / 3 % 3 - 1;
+      const std::int32_t z = c.z + j % 3 - 1;
+      const bool in_cube = x >= 0 && y >= 0 && z >= 0 && x < bricks_per_axis && y < bricks_per_axis && z < bricks_per_axis;
+      if (in_cube && (brick < 0 || brick >= level.cell_bricks)) missing |= 1U << j;
+    }
+    const std::int32_t last = 1 << level.depth;
     int mask = 0;
-    for (int s = 0; s < 8; ++s) mask |= is_unknown(static_cast<std::int32_t>(8 * b + s)) ? 1 << s : 0;
+    for (int s = 0; s < 8; ++s) {
+      const bool in_grid = 2 * c.x + slot_x(s) <= last && 2 * c.y + slot_y(s) <= last && 2 * c.z + slot_z(s) <= last;
+      if (in_grid && (missing & bricks_of_cells_around(s)) == 0) mask |= 1 << s;
+    }
     unknowns[b] = static_cast<std::uint8_t>(mask);
   }
-};
 
-/// Number of points of the finest cells, from the occupied ones.
-struct CountPoints {
-  ArrayView<const std::int32_t> first_points;  // of the occupied cells
-  ArrayView<const std::uint64_t> cells;        // their keys
-  ArrayView<const std::uint64_t> brick_keys;   // of the cell bricks
-  std::int64_t points;
-  ArrayView<std::int32_t> count;  // zero before
-  PSK_HD void operator()(std::int64_t i) const {
-    const std::int64_t end = i + 1 < first_points.size ? first_points[i + 1] : points;
-    count[find_node(brick_keys, cells[i])] = static_cast<std::int32_t>(end - first_points[i]);
+  /// Bricks that the 8 cells around corner `slot` of a brick belong to: itself and, on lower sides, those before it.
+  PSK_HD static unsigned bricks_of_cells_around(int slot) {
+    unsigned bricks = 0;
+    for (int s = 0; s < 8; ++s)
+      if ((s & slot) == 0) bricks |= 1U << neighbour_index(-slot_x(s), -slot_y(s), -slot_z(s));
+    return bricks;
   }
 };
 
-/// Number of points of cells above the finest level: that of their children.
-struct SumPoints {
+/// First point of the cells of a brick, found in the range of the cell it divides.
+struct FindPoints {
   LevelView level;
-  const std::int32_t* below_begin;
-  std::int32_t below_cell_bricks;
-  ArrayView<std::int32_t> count;
-  PSK_HD void operator()(std::int64_t node) const {
-    const std::int32_t brick = level.child_brick[node];
-    const bool split = brick >= 0 && brick < below_cell_bricks;
-    count[node] = split ? below_begin[8 * std::int64_t{brick} + 8] - below_begin[8 * std::int64_t{brick}] : 0;
+  const std::int32_t* above_begin;
+  ArrayView<const std::uint64_t> point_keys;
+  ArrayView<std::int32_t> point_begin;
+
+  PSK_HD void operator()(std::int64_t b) const {
+    if (b == level.cell_bricks) {
+      point_begin[8 * b] = static_cast<std::int32_t>(point_keys.size);
+      return;
+    }
+    const std::int32_t node = level.parent[b];
+    std::int32_t first = above_begin[node];
+    const std::int32_t last = above_begin[node + 1];
+    for (int s = 0; s < 8; ++s) {
+      point_begin[8 * b + s] = first;
+      if (s < 7) first = end_of_cell(level.brick_key[b] << 3 | static_cast<unsigned>(s), first, last);
+    }
+  }
+
+  /// First of the sorted points [first, last) beyond a cell.
+  PSK_HD std::int32_t end_of_cell(std::uint64_t cell, std::int32_t first, std::int32_t last) const {
+    while (first < last) {
+      const std::int32_t middle = first + (last - first) / 2;
+      if (cell_key(point_keys[middle], level.depth) <= cell)
+        first = middle + 1;
+      else
+        last = middle;
+    }
+    return first;
   }
 };
 
-inline void check_limit(std::int64_t bricks, int depth) {
-  if (bricks > std::numeric_limits<std::int32_t>::max() / 8)
-    throw Error(ErrorCode::over_limit, "level " + std::to_string(depth) + " of the octree needs " +
-                                           std::to_string(bricks) +
-                                           " bricks, more than 32-bit node ids reach; "
-                                           "choose a smaller depth");
-}
-
-/// Keys of the cell bricks of level `depth`, given the sorted keys of the cells that they must surround.
-template <exec::Space Exec>
-exec::Buffer<std::uint64_t> cell_bricks_around(Exec& ex, ArrayView<const std::uint64_t> cells, int depth) {
-  check_limit(cells.size, depth);  // eight candidates a cell are counted with 32 bits
-  auto touched = exec::make_buffer<std::uint64_t>(ex, 8 * cells.size);
-  for_each(ex, "octree.touch", cells.size, TouchedBricks{cells, 1 << (depth - 1), touched.view()});
-  exec::Buffer<std::uint64_t> bricks = exec::sort_unique(ex, "octree.bricks", std::move(touched), 3 * (depth - 1));
-  check_limit(bricks.size(), depth);
-  return bricks;
-}
-
-/// Keys of all bricks of a complete level.
-template <exec::Space Exec>
-exec::Buffer<std::uint64_t> complete_bricks(Exec& ex, int depth) {
-  auto keys = exec::make_buffer<std::uint64_t>(ex, depth == 0 ? 1 : std::int64_t{1} << 3 * (depth - 1));
-  for_each(ex, "octree.complete", keys.size(), AllBricks{keys.view()});
-  return keys;
-}
-
-/// The finest level's cells that hold points.
-struct OccupiedCells {
-  exec::Buffer<std::int32_t> first_points;
-  exec::Buffer<std::uint64_t> keys;
+/// The root cell holds all points.
+struct RootPoints {
+  std::int32_t points;
+  ArrayView<std::int32_t> point_begin;
+  PSK_HD void operator()(std::int64_t i) const { point_begin[i] = i == 0 ? 0 : points; }
 };
-
-template <exec::Space Exec>
-OccupiedCells find_occupied(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth) {
-  OccupiedCells occupied;
-  occupied.first_points = select(ex, "octree.occupied", point_keys.size, StartsCell{point_keys, depth});
-  occupied.keys = exec::make_buffer<std::uint64_t>(ex, occupied.first_points.size());
-  for_each(ex, "octree.occupied", occupied.keys.size(),
-           ToCellKey{point_keys, occupied.first_points.cview(), depth, occupied.keys.view()});
-  return occupied;
-}
 
 /// Ghost bricks, ids, neighbours and unknowns of level `d`, whose cell brick keys are given. Levels above are complete.
 template <exec::Space Exec>
@@ -275,46 +230,28 @@ void link_level(Exec& ex, OctreeData& tree, int d, const exec::Buffer<std::uint6
                     above.child_brick.view()});
 
   level.neighbours = exec::make_buffer<std::int32_t>(ex, std::int64_t{kNeighbours} * level.bricks);
-  for_each(ex, "octree.neighbours", level.bricks,
-           FindNeighbours{above_view, kNeighbourTables, level.parent.cview(), level.neighbours.view()});
+  const FindNeighbours find{above_view, kNeighbourTables, level.parent.cview(), level.neighbours.view()};
+  if constexpr (Exec::kManyThreads)
+    for_each(ex, "octree.neighbours", level.neighbours.size(), FindNeighbour{find});
+  else
+    for_each(ex, "octree.neighbours", level.bricks, FindNeighboursOfBrick{find});
   level.unknowns = exec::make_buffer<std::uint8_t>(ex, level.bricks);
   for_each(ex, "octree.unknowns", level.bricks, FindUnknowns{tree.view().levels[d], level.unknowns.view()});
 }
 
-/// Level 0: the root cell, and the owners of the cube's other corners.
+/// Point ranges of all cells, coarsest level first.
 template <exec::Space Exec>
-void make_root(Exec& ex, LevelData& root) {
-  root.cell_bricks = 1;
-  root.bricks = 1;
-  root.brick_key = complete_bricks(ex, 0);
-  root.parent = exec::make_buffer<std::int32_t>(ex, 1);
-  exec::fill(ex, root.parent.view(), std::int32_t{-1});
-  root.neighbours = exec::make_buffer<std::int32_t>(ex, kNeighbours);
-  exec::fill(ex, root.neighbours.view(), std::int32_t{-1});
-  exec::fill(ex, root.neighbours.view().part(kSelf, 1), std::int32_t{0});
-  root.unknowns = exec::make_buffer<std::uint8_t>(ex, 1);
-  exec::fill(ex, root.unknowns.view(), std::uint8_t{0xff});
-}
-
-/// Point ranges of all cells, finest level first.
-template <exec::Space Exec>
-void assign_points(Exec& ex, OctreeData& tree, const OccupiedCells& occupied, std::int64_t points) {
-  for (int d = tree.depth; d >= 0; --d) {
+void assign_points(Exec& ex, OctreeData& tree, ArrayView<const std::uint64_t> point_keys) {
+  for (int d = 0; d <= tree.depth; ++d) {
     LevelData& level = tree.levels[static_cast<std::size_t>(d)];
-    const std::int64_t cells = std::int64_t{8} * level.cell_bricks;
-    auto count = exec::make_buffer<std::int32_t>(ex, cells);
-    if (d == tree.depth) {
-      exec::fill(ex, count.view(), std::int32_t{0});
-      for_each(ex, "octree.points", occupied.keys.size(),
-               CountPoints{occupied.first_points.cview(), occupied.keys.cview(),
-                           level.brick_key.cview().part(0, level.cell_bricks), points, count.view()});
-    } else {
-      const LevelData& below = tree.levels[static_cast<std::size_t>(d) + 1];
-      for_each(ex, "octree.points", cells,
-               SumPoints{tree.view().levels[d], below.point_begin.data(), below.cell_bricks, count.view()});
-    }
-    level.point_begin = exec::make_buffer<std::int32_t>(ex, cells + 1);
-    exclusive_scan(ex, "octree.points", count.cview(), level.point_begin.view());
+    level.point_begin = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * level.cell_bricks + 1);
+    if (d == 0)
+      for_each(ex, "octree.points", level.point_begin.size(),
+               RootPoints{static_cast<std::int32_t>(point_keys.size), level.point_begin.view()});
+    else
+      for_each(ex, "octree.points", std::int64_t{level.cell_bricks} + 1,
+               FindPoints{tree.view().levels[d], tree.levels[static_cast<std::size_t>(d) - 1].point_begin.data(),
+                          point_keys, level.point_begin.view()});
   }
 }
 
@@ -351,28 +288,18 @@ OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int
   tree.levels.resize(static_cast<std::size_t>(depth) + 1);
 
   // Reverse level order (Listing 1): which bricks exist.
-  const OccupiedCells occupied = find_occupied(ex, point_keys, depth);
-  std::vector<exec::Buffer<std::uint64_t>> cell_keys(static_cast<std::size_t>(depth) + 1);
-  for (int d = depth; d > 0; --d) {
-    auto& keys = cell_keys[static_cast<std::size_t>(d)];
-    if (d <= kCompleteDepth)
-      keys = complete_bricks(ex, d);
-    else if (d == depth)
-      keys = cell_bricks_around(ex, occupied.keys.cview(), d);
-    else  // the key of a brick is the key of its parent cell, which has children
-      keys = cell_bricks_around(ex, cell_keys[static_cast<std::size_t>(d) + 1].cview(), d);
-  }
+  BrickKeys cell_keys = find_brick_keys(ex, point_keys, depth);
 
   // Level order (Listing 2): who is whose neighbour.
-  make_root(ex, tree.levels[0]);
-  for (int d = 1; d <= depth; ++d) {
+  build_complete_levels(ex, tree, std::min(depth, kCompleteDepth));
+  for (int d = kCompleteDepth + 1; d <= depth; ++d) {
     link_level(ex, tree, d, cell_keys[static_cast<std::size_t>(d)]);
     cell_keys[static_cast<std::size_t>(d)].reset();
   }
   LevelData& finest = tree.levels.back();
   finest.child_brick = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * finest.bricks);
   exec::fill(ex, finest.child_brick.view(), std::int32_t{-1});
-  assign_points(ex, tree, occupied, point_keys.size);
+  assign_points(ex, tree, point_keys);
   return tree;
 }
 

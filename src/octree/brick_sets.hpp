@@ -1,0 +1,245 @@
+// Which bricks every level needs, as sets of Morton keys.
+//
+// Sets are bitmaps over all possible bricks of a level while those are not many more than the points: marking a brick is
+// one atomic OR, and counting the bits before a word sorts and numbers the keys at once. Levels too fine for that sort
+// the keys of eight candidates a cell.
+#pragma once
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/bits.hpp"
+#include "exec/algorithms.hpp"
+#include "exec/atomic.hpp"
+#include "octree/octree_data.hpp"
+
+namespace pointskin::octree {
+namespace build {
+
+inline void check_limit(std::int64_t bricks, int depth) {
+  if (bricks > std::numeric_limits<std::int32_t>::max() / 8)
+    throw Error(ErrorCode::over_limit, "level " + std::to_string(depth) + " of the octree needs " +
+                                           std::to_string(bricks) +
+                                           " bricks, more than 32-bit node ids reach; "
+                                           "choose a smaller depth");
+}
+
+/// Keeps the first point of every occupied cell.
+struct StartsCell {
+  ArrayView<const std::uint64_t> point_keys;
+  int depth;
+  PSK_HD bool operator()(std::int64_t i) const {
+    return i == 0 || cell_key(point_keys[i], depth) != cell_key(point_keys[i - 1], depth);
+  }
+};
+
+/// The up to 8 bricks that the 27-neighbourhood of a cell touches; those outside of the cube repeat an inner one.
+struct TouchedBricks {
+  std::int32_t bricks_per_axis;
+
+  PSK_HD std::int32_t brick(std::int32_t cell, int side) const {
+    const std::int32_t b = (cell + (side == 0 ? -1 : 1)) >> 1;
+    return b < 0 ? 0 : b >= bricks_per_axis ? bricks_per_axis - 1 : b;
+  }
+  template <class Visit>
+  PSK_HD void operator()(std::uint64_t cell, const Visit& visit) const {
+    const Coordinates c = decode(cell);
+    for (int s = 0; s < 8; ++s) visit(s, encode({brick(c.x, slot_x(s)), brick(c.y, slot_y(s)), brick(c.z, slot_z(s))}));
+  }
+};
+
+/// Sorting: the bricks around one cell each.
+struct ListTouched {
+  TouchedBricks bricks_around;
+  ArrayView<const std::uint64_t> cells;
+  ArrayView<std::uint64_t> touched;
+  PSK_HD void operator()(std::int64_t i) const {
+    bricks_around(cells[i], [&](int s, std::uint64_t brick) { touched[8 * i + s] = brick; });
+  }
+};
+
+struct OccupiedCellKey {
+  ArrayView<const std::uint64_t> point_keys;
+  ArrayView<const std::int32_t> first_points;
+  int depth;
+  ArrayView<std::uint64_t> cells;
+  PSK_HD void operator()(std::int64_t i) const { cells[i] = cell_key(point_keys[first_points[i]], depth); }
+};
+
+inline constexpr int kWordBits = 32;
+
+/// Bitmap of a level's bricks.
+struct BrickBits {
+  std::uint32_t* words;
+  PSK_HD void insert(std::uint64_t brick) const {
+    exec::set_bits(words + brick / kWordBits, 1U << (brick % kWordBits));
+  }
+};
+
+/// The bricks around the cells of the finest level that hold points.
+struct MarkAroundPoints {
+  ArrayView<const std::uint64_t> point_keys;
+  int depth;
+  TouchedBricks bricks_around;
+  BrickBits bits;
+  PSK_HD void operator()(std::int64_t i) const {
+    if (!StartsCell{point_keys, depth}(i)) return;
+    bricks_around(cell_key(point_keys[i], depth), [&](int, std::uint64_t brick) { bits.insert(brick); });
+  }
+};
+
+/// The bricks around cells given by their keys.
+struct MarkAroundKeys {
+  ArrayView<const std::uint64_t> cells;
+  TouchedBricks bricks_around;
+  BrickBits bits;
+  PSK_HD void operator()(std::int64_t i) const {
+    bricks_around(cells[i], [&](int, std::uint64_t brick) { bits.insert(brick); });
+  }
+};
+
+/// The bricks around the cells that have children: a brick's key is that of the cell it divides.
+struct MarkAroundBits {
+  const std::uint32_t* below;
+  TouchedBricks bricks_around;
+  BrickBits bits;
+  PSK_HD void operator()(std::int64_t word) const {
+    for (std::uint32_t rest = below[word]; rest != 0; rest &= rest - 1) {
+      const auto cell = static_cast<std::uint64_t>(word) * kWordBits + static_cast<unsigned>(lowest_bit(rest));
+      bricks_around(cell, [&](int, std::uint64_t brick) { bits.insert(brick); });
+    }
+  }
+};
+
+struct CountWord {
+  ArrayView<const std::uint32_t> words;
+  ArrayView<std::int32_t> counts;  // one more, 0
+  PSK_HD void operator()(std::int64_t i) const { counts[i] = i < words.size ? count_bits(words[i]) : 0; }
+};
+
+/// Number of bricks before every level.
+struct PickBorders {
+  ArrayView<const std::int32_t> before;
+  std::int64_t first_word[kMaxDepth + 2];
+  ArrayView<std::int32_t> borders;
+  PSK_HD void operator()(std::int64_t i) const { borders[i] = before[first_word[i]]; }
+};
+
+/// Writes the keys of the bits of one level's words.
+struct ListKeys {
+  const std::uint32_t* words;
+  const std::int32_t* before;
+  std::int32_t first;  // bricks before the level
+  ArrayView<std::uint64_t> keys;
+  PSK_HD void operator()(std::int64_t word) const {
+    std::int32_t at = before[word] - first;
+    for (std::uint32_t rest = words[word]; rest != 0; rest &= rest - 1)
+      keys[at++] = static_cast<std::uint64_t>(word) * kWordBits + static_cast<unsigned>(lowest_bit(rest));
+  }
+};
+
+/// Words of the bitmap of level d > kCompleteDepth.
+constexpr std::int64_t bitmap_words(int d) { return (std::int64_t{1} << 3 * (d - 1)) / kWordBits; }
+
+/// Deepest level whose bitmap is worth its memory, 12 bytes a word for a while.
+inline int deepest_bitmap(std::int64_t points, int depth) {
+  constexpr std::int64_t kMostWordsPerPoint = 16;
+  constexpr std::int64_t kSmall = 1 << 16;
+  int d = kCompleteDepth;
+  while (d < depth && d < 13 && bitmap_words(d + 1) <= std::max(kSmall, kMostWordsPerPoint * points)) ++d;
+  return d;
+}
+
+/// Sorted keys of the cell bricks of every level; none for the complete ones.
+using BrickKeys = std::vector<exec::Buffer<std::uint64_t>>;
+
+/// Keys of the cell bricks of level `depth`, given the sorted keys of the cells that they must surround.
+template <exec::Space Exec>
+exec::Buffer<std::uint64_t> sort_bricks_around(Exec& ex, ArrayView<const std::uint64_t> cells, int depth) {
+  check_limit(cells.size, depth);  // eight candidates a cell are counted with 32 bits
+  auto touched = exec::make_buffer<std::uint64_t>(ex, 8 * cells.size);
+  for_each(ex, "octree.touch", cells.size, ListTouched{{1 << (depth - 1)}, cells, touched.view()});
+  exec::Buffer<std::uint64_t> bricks = exec::sort_unique(ex, "octree.bricks", std::move(touched), 3 * (depth - 1));
+  check_limit(bricks.size(), depth);
+  return bricks;
+}
+
+/// Levels depth..last + 1, by sorting.
+template <exec::Space Exec>
+void sort_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth, int last, BrickKeys& keys) {
+  for (int d = depth; d > last; --d) {
+    auto& own = keys[static_cast<std::size_t>(d)];
+    if (d < depth) {  // the key of a brick is the key of its parent cell, which has children
+      own = sort_bricks_around(ex, keys[static_cast<std::size_t>(d) + 1].cview(), d);
+      continue;
+    }
+    const auto first_points = select(ex, "octree.occupied", point_keys.size, StartsCell{point_keys, depth});
+    auto cells = exec::make_buffer<std::uint64_t>(ex, first_points.size());
+    for_each(ex, "octree.occupied", cells.size(), OccupiedCellKey{point_keys, first_points.cview(), depth, cells.view()});
+    own = sort_bricks_around(ex, cells.cview(), d);
+  }
+}
+
+/// Levels last..kCompleteDepth + 1, by bitmaps: all marked, counted and numbered with one round trip.
+template <exec::Space Exec>
+void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth, int last, BrickKeys& keys) {
+  constexpr int kFirst = kCompleteDepth + 1;
+  if (last < kFirst) return;
+  PickBorders pick{};
+  for (int d = kFirst; d <= last; ++d) pick.first_word[d - kFirst + 1] = pick.first_word[d - kFirst] + bitmap_words(d);
+  const int levels = last - kFirst + 1;
+  const std::int64_t words = pick.first_word[levels];
+
+  auto bits = exec::make_buffer<std::uint32_t>(ex, words);
+  exec::fill(ex, bits.view(), 0U);
+  const auto words_of = [&](int d) { return bits.data() + pick.first_word[d - kFirst]; };
+  for (int d = last; d >= kFirst; --d) {
+    const TouchedBricks around{1 << (d - 1)};
+    const BrickBits own{words_of(d)};
+    if (d == depth)
+      for_each(ex, "octree.mark", point_keys.size, MarkAroundPoints{point_keys, depth, around, own});
+    else if (d == last)
+      for_each(ex, "octree.mark", keys[static_cast<std::size_t>(d) + 1].size(),
+               MarkAroundKeys{keys[static_cast<std::size_t>(d) + 1].cview(), around, own});
+    else
+      for_each(ex, "octree.mark", bitmap_words(d + 1), MarkAroundBits{words_of(d + 1), around, own});
+  }
+
+  auto before = exec::make_buffer<std::int32_t>(ex, words + 1);
+  for_each(ex, "octree.count", words + 1, CountWord{bits.cview(), before.view()});
+  exclusive_scan(ex, "octree.count", before.cview(), before.view());
+  auto borders = exec::make_buffer<std::int32_t>(ex, levels + 1);
+  pick.before = before.cview();
+  pick.borders = borders.view();
+  for_each(ex, "octree.count", levels + 1, pick);
+  std::int32_t first[kMaxDepth + 2];
+  copy_to_host(ex, borders.cview(), first);
+  for (int d = kFirst; d <= last; ++d) {
+    const std::int32_t begin = first[d - kFirst];
+    auto& own = keys[static_cast<std::size_t>(d)];
+    own = exec::make_buffer<std::uint64_t>(ex, first[d - kFirst + 1] - begin);
+    check_limit(own.size(), d);
+    for_each(ex, "octree.keys", bitmap_words(d),
+             ListKeys{words_of(d), before.data() + pick.first_word[d - kFirst], begin, own.view()});
+  }
+}
+
+}  // namespace build
+
+/// Sorted keys of the cell bricks of levels kCompleteDepth + 1..depth: those touched by the 27-neighbourhoods of
+/// occupied cells at the finest level, of cells that have children above it.
+template <exec::Space Exec>
+build::BrickKeys find_brick_keys(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth) {
+  build::BrickKeys keys(static_cast<std::size_t>(depth) + 2);
+  const int last = build::deepest_bitmap(point_keys.size, depth);
+  build::sort_levels(ex, point_keys, depth, last, keys);
+  build::mark_levels(ex, point_keys, depth, last, keys);
+  return keys;
+}
+
+}  // namespace pointskin::octree

@@ -8,6 +8,7 @@
 
 #include "core/array_view.hpp"
 #include "exec/memory.hpp"
+#include "exec/reduce_order.hpp"
 #include "exec/space.hpp"
 
 namespace pointskin::exec {
@@ -39,31 +40,13 @@ struct StartsRun {
   PSK_HD bool operator()(std::int64_t i) const { return i == 0 || keys[i] != keys[i - 1]; }
 };
 
-/// Lane l combines f(l), f(l + lanes), f(l + 2 lanes), ...: neighbouring lanes touch neighbouring memory.
 template <class T, class F, class Combine>
 struct ReduceLane {
   F f;
   Combine combine;
   std::int64_t n, lanes;
   ArrayView<T> out;
-  PSK_HD void operator()(std::int64_t lane) const {
-    constexpr int kBatch = 8;  // values fetched before the first is used: the loads overlap
-    T sum = f(lane);
-    std::int64_t i = lane + lanes;
-    for (; i + (kBatch - 1) * lanes < n; i += kBatch * lanes) {
-      T batch[kBatch];
-      PSK_UNROLL for (int k = 0; k < kBatch; ++k) batch[k] = f(i + k * lanes);
-      PSK_UNROLL for (int k = 0; k < kBatch; ++k) sum = combine(sum, batch[k]);
-    }
-    for (; i < n; i += lanes) sum = combine(sum, f(i));
-    out[lane] = sum;
-  }
-};
-
-template <class T>
-struct Load {
-  ArrayView<const T> in;
-  PSK_HD T operator()(std::int64_t i) const { return in[i]; }
+  PSK_HD void operator()(std::int64_t lane) const { out[lane] = combine_lane(f, combine, n, lanes, lane); }
 };
 
 struct Plus {
@@ -92,30 +75,32 @@ T read_element(Exec& ex, ArrayView<const T> from, std::int64_t i) {
   return value;
 }
 
-/// combine over f(0), ..., f(n-1) for n > 0. The tree of combinations depends on n alone, so floating-point sums have
-/// the same bits in every space and for every number of threads. About n calls of f; O(log n) launches; waits.
+/// combine over f(0), ..., f(n-1) for n > 0, in the order of exec/reduce_order.hpp, which depends on n alone: the same
+/// bits in every space and for every number of threads. About n calls of f; O(log n) launches; waits.
 template <class T, Space Exec, class F, class Combine>
 T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
-  constexpr std::int64_t kPerLane = 64;
-  std::int64_t lanes = std::max<std::int64_t>(1, n / kPerLane);
+  std::int64_t lanes = reduce_lanes(n);
   Buffer<T> sums = make_buffer<T>(ex, lanes);
   for_each(ex, label, lanes, detail::ReduceLane<T, F, Combine>{f, combine, n, lanes, sums.view()});
-  while (lanes > 1) {
-    const std::int64_t fewer = std::max<std::int64_t>(1, lanes / kPerLane);
+  while (lanes > kReduceTail) {
+    const std::int64_t fewer = reduce_lanes(lanes);
     Buffer<T> next = make_buffer<T>(ex, fewer);
     for_each(ex, label, fewer,
-             detail::ReduceLane<T, detail::Load<T>, Combine>{{sums.cview()}, combine, lanes, fewer, next.view()});
+             detail::ReduceLane<T, LoadValue<T>, Combine>{{sums.cview()}, combine, lanes, fewer, next.view()});
     sums = std::move(next);
     lanes = fewer;
   }
-  return read_element(ex, sums.cview(), 0);
+  if (lanes == 1) return read_element(ex, sums.cview(), 0);
+  Buffer<T> total = make_buffer<T>(ex, 1);
+  reduce_tail(ex, label, sums.cview(), total.view(), combine);
+  return read_element(ex, total.cview(), 0);
 }
 
 /// Sum of counts, in 64 bits. Waits.
 template <Space Exec>
 std::int64_t sum_counts(Exec& ex, const char* label, ArrayView<const std::int32_t> counts) {
   if (counts.empty()) return 0;
-  return reduce<std::int64_t>(ex, label, counts.size, detail::Load<std::int32_t>{counts}, detail::Plus{});
+  return reduce<std::int64_t>(ex, label, counts.size, LoadValue<std::int32_t>{counts}, detail::Plus{});
 }
 
 /// 0, 1, ..., n-1.

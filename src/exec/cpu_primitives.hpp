@@ -11,6 +11,7 @@
 #include "core/array_view.hpp"
 #include "exec/cpu.hpp"
 #include "exec/memory.hpp"
+#include "exec/reduce_order.hpp"
 
 namespace pointskin::exec {
 
@@ -38,6 +39,22 @@ void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
 template <class F>
 void sweep(Cpu& ex, const char* label, int rounds, std::int64_t n, const F& f) {
   for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});
+}
+
+/// out[0] = the combination of at most kReduceTail values, in the order of exec::reduce.
+template <class T, class Combine>
+void reduce_tail(Cpu& /*ex*/, const char* /*label*/, ArrayView<const T> values, ArrayView<T> out,
+                 const Combine& combine) {
+  std::vector<T> sums(values.begin(), values.end());
+  while (sums.size() > 1) {
+    const auto n = static_cast<std::int64_t>(sums.size());
+    std::vector<T> fewer(static_cast<std::size_t>(reduce_lanes(n)));
+    for (std::size_t lane = 0; lane < fewer.size(); ++lane)
+      fewer[lane] = combine_lane(LoadValue<T>{{sums.data(), n}}, combine, n, static_cast<std::int64_t>(fewer.size()),
+                                 static_cast<std::int64_t>(lane));
+    sums = std::move(fewer);
+  }
+  out[0] = sums.front();
 }
 
 /// The indices i in [0, n) with keep(i), ascending. Two passes over keep; O(n).

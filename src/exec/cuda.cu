@@ -102,9 +102,8 @@ Cuda::Cuda(int index) : index_(index) {
   cudaStream_t stream = nullptr;
   cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "creating a stream");
   stream_ = stream;
-  int major = 0;
-  cuda_check(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, index), "reading the GPU's properties");
-  has_clusters_ = major >= 9;
+  cuda_check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, index),
+             "reading the GPU's properties");
   pool_ = std::make_shared<CudaPool>(index, stream);  // owns the stream: buffers may outlive this object
   cuda_check(cudaMallocHost(&staging_, kStagingBytes), "allocating page-locked memory");
 }

@@ -34,8 +34,7 @@ class Cuda {
   /// another.
   void activate();
 
-  /// True if blocks of this GPU can form clusters with a barrier of their own (compute capability 9).
-  [[nodiscard]] bool has_clusters() const noexcept { return has_clusters_; }
+  [[nodiscard]] int multiprocessors() const noexcept { return multiprocessors_; }
 
   /// Page-locked host memory for small read-backs, `kStagingBytes` long.
   [[nodiscard]] void* staging() const noexcept { return staging_; }
@@ -43,7 +42,7 @@ class Cuda {
 
  private:
   int index_;
-  bool has_clusters_ = false;
+  int multiprocessors_ = 0;
   void* stream_ = nullptr;
   void* staging_ = nullptr;
   std::shared_ptr<MemoryPool> pool_;

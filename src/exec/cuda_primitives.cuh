@@ -1,6 +1,7 @@
 // The data-parallel primitives on the GPU, on CUB. See exec/space.hpp for the contract.
 #pragma once
 
+#include <cooperative_groups.h>
 #include <cuda_runtime.h>
 
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include "exec/cuda.hpp"
 #include "exec/cuda_check.cuh"
 #include "exec/memory.hpp"
+#include "exec/reduce_order.hpp"
 
 namespace pointskin::exec {
 
@@ -37,48 +39,67 @@ void for_each(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   cuda_check(cudaGetLastError(), label);
 }
 
-/// Waits until all threads of the grid, one cluster, have come here; what they wrote before is seen after.
-__device__ inline void synchronize_cluster() {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
-  asm volatile("barrier.cluster.arrive.release.aligned;\n\tbarrier.cluster.wait.acquire.aligned;" ::: "memory");
-#else
-  __syncthreads();  // never launched with more than one block there
-#endif
-}
-
-inline constexpr int kSweepThreads = 1024;
-inline constexpr int kSweepBlocks = 8;  // the largest cluster that every GPU with clusters runs
+inline constexpr int kSweepThreads = 256;
 
 template <class F>
 __global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n, const F f) {
-  const int first = static_cast<int>(blockIdx.x) * kSweepThreads + static_cast<int>(threadIdx.x);
-  const int stride = static_cast<int>(gridDim.x) * kSweepThreads;
+  const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   for (int round = 0; round < rounds; ++round) {
-    for (int i = first; i < n; i += stride) f(round, i);
-    synchronize_cluster();
+    if (i < n) f(round, i);
+    cooperative_groups::this_grid().sync();
   }
 }
 
 /// Calls f(round, i) for every i in [0, n) and every round in [0, rounds), rounds one after another. Asynchronous.
-/// What one cluster of blocks holds takes one launch, its rounds separated by the cluster's barrier.
+/// What fits onto the GPU at one block a multiprocessor takes one cooperative launch, a barrier between rounds.
 template <class F>
 void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) {
-  const std::int64_t blocks = (n + kSweepThreads - 1) / kSweepThreads;
   if (n <= 0 || rounds <= 0) return;
-  if (blocks > (ex.has_clusters() ? kSweepBlocks : 1)) {
+  const std::int64_t threads = n <= std::int64_t{ex.multiprocessors()} * kThreadsPerBlock ? kThreadsPerBlock : kSweepThreads;
+  const std::int64_t blocks = (n + threads - 1) / threads;
+  if (blocks > ex.multiprocessors()) {
     for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});
     return;
   }
-  cudaLaunchAttribute cluster{};
-  cluster.id = cudaLaunchAttributeClusterDimension;
-  cluster.val.clusterDim = {static_cast<unsigned>(blocks), 1, 1};
+  cudaLaunchAttribute cooperative{};
+  cooperative.id = cudaLaunchAttributeCooperative;
+  cooperative.val.cooperative = 1;
   cudaLaunchConfig_t config{};
   config.gridDim = {static_cast<unsigned>(blocks), 1, 1};
-  config.blockDim = {kSweepThreads, 1, 1};
+  config.blockDim = {static_cast<unsigned>(threads), 1, 1};
   config.stream = stream_of(ex);
-  config.attrs = &cluster;
-  config.numAttrs = blocks > 1 ? 1 : 0;
+  config.attrs = &cooperative;
+  config.numAttrs = 1;
   cuda_check(cudaLaunchKernelEx(&config, sweep_kernel<F>, rounds, static_cast<int>(n), f), label);
+}
+
+/// One block combines up to kReduceTail values as exec::reduce documents: 64 a lane, until one is left.
+template <class T, class Combine>
+__global__ void __launch_bounds__(kReduceTail / kReduceLane)
+    reduce_tail_kernel(ArrayView<const T> values, ArrayView<T> out, const Combine combine) {
+  __shared__ alignas(16) unsigned char memory[sizeof(T) * (kReduceTail / kReduceLane)];
+  T* const sums = reinterpret_cast<T*>(memory);
+  const int lane = static_cast<int>(threadIdx.x);
+  auto lanes = static_cast<int>(reduce_lanes(values.size));
+  if (lane < lanes) sums[lane] = combine_lane(LoadValue<T>{values}, combine, values.size, lanes, lane);
+  __syncthreads();
+  while (lanes > 1) {
+    const auto fewer = static_cast<int>(reduce_lanes(lanes));
+    T sum;
+    if (lane < fewer) sum = combine_lane(LoadValue<T>{{sums, lanes}}, combine, lanes, fewer, lane);
+    __syncthreads();
+    if (lane < fewer) sums[lane] = sum;
+    __syncthreads();
+    lanes = fewer;
+  }
+  if (lane == 0) out[0] = sums[0];
+}
+
+/// out[0] = the combination of at most kReduceTail values, in the order of exec::reduce. Asynchronous.
+template <class T, class Combine>
+void reduce_tail(Cuda& ex, const char* label, ArrayView<const T> values, ArrayView<T> out, const Combine& combine) {
+  reduce_tail_kernel<<<1, kReduceTail / kReduceLane, 0, stream_of(ex)>>>(values, out, combine);
+  cuda_check(cudaGetLastError(), label);
 }
 
 /// Runs a CUB algorithm: once to learn its scratch size, once for real.

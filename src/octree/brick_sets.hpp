@@ -103,15 +103,29 @@ struct MarkAroundKeys {
   }
 };
 
-/// The bricks around the cells that have children: a brick's key is that of the cell it divides.
+/// The bricks around the cells that have children: a brick's key is that of the cell it divides. A byte of the level
+/// below holds the 8 cells of one brick.
 struct MarkAroundBits {
   const std::uint32_t* below;
-  TouchedBricks bricks_around;
+  std::int32_t bricks_per_axis;
   BrickBits bits;
-  PSK_HD void operator()(std::int64_t word) const {
-    for (std::uint32_t rest = below[word]; rest != 0; rest &= rest - 1) {
-      const auto cell = static_cast<std::uint64_t>(word) * kWordBits + static_cast<unsigned>(lowest_bit(rest));
-      bricks_around(cell, [&](int, std::uint64_t brick) { bits.insert(brick); });
+  PSK_HD void operator()(std::int64_t brick) const {
+    const std::uint32_t cells = below[brick >> 2] >> 8 * (brick & 3) & 0xff;
+    if (cells == 0) return;
+    std::uint32_t touched = 0;  // by neighbour index
+    for (int slot = 0; slot < 8; ++slot) {
+      if ((cells >> slot & 1) == 0) continue;
+      for (int s = 0; s < 8; ++s)  // a step of -1 from lower cells, of 1 from upper ones, or none
+        touched |= 1U << neighbour_index(slot_x(s) * (2 * slot_x(slot) - 1), slot_y(s) * (2 * slot_y(slot) - 1),
+                                         slot_z(s) * (2 * slot_z(slot) - 1));
+    }
+    const Coordinates c = decode(static_cast<std::uint64_t>(brick));
+    for (; touched != 0; touched &= touched - 1) {
+      const int j = lowest_bit(touched);
+      const Coordinates other{c.x + j / 9 - 1, c.y + j / 3 % 3 - 1, c.z + j % 3 - 1};
+      const bool in_cube = other.x >= 0 && other.y >= 0 && other.z >= 0 && other.x < bricks_per_axis &&
+                           other.y < bricks_per_axis && other.z < bricks_per_axis;
+      if (in_cube) bits.insert(encode(other));
     }
   }
 };
@@ -207,7 +221,7 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
       for_each(ex, "octree.mark", keys[static_cast<std::size_t>(d) + 1].size(),
                MarkAroundKeys{keys[static_cast<std::size_t>(d) + 1].cview(), around, own});
     else
-      for_each(ex, "octree.mark", bitmap_words(d + 1), MarkAroundBits{words_of(d + 1), around, own});
+      for_each(ex, "octree.mark", 4 * bitmap_words(d + 1), MarkAroundBits{words_of(d + 1), 1 << (d - 1), own});
   }
 
   auto before = exec::make_buffer<std::int32_t>(ex, words + 1);

@@ -100,29 +100,31 @@ struct AddGhost {
 /// Listing 2 of the paper, on bricks.
 struct FindNeighbours {
   LevelView above;  // complete
-  NeighbourTables tables;
   ArrayView<const std::int32_t> parent;
   ArrayView<std::int32_t> neighbours;
-
-  PSK_HD std::int32_t find(std::int32_t node, int j) const {
-    const std::int64_t around = std::int64_t{node >> 3} * kNeighbours;
-    const int slot = node & 7;
-    const std::int32_t brick = above.neighbours[around + tables.parent[slot][j]];
-    return brick < 0 ? -1 : above.child_brick[brick * 8 + tables.child[slot][j]];
-  }
 };
-/// One brick, for spaces with few threads.
+/// One brick, for spaces with few threads: by the paper's tables.
 struct FindNeighboursOfBrick : FindNeighbours {
+  NeighbourTables tables;
+
   PSK_HD void operator()(std::int64_t b) const {
     const std::int32_t node = parent[b];
-    for (int j = 0; j < kNeighbours; ++j) neighbours[b * kNeighbours + j] = find(node, j);
+    const std::int64_t around = std::int64_t{node >> 3} * kNeighbours;
+    const int slot = node & 7;
+    for (int j = 0; j < kNeighbours; ++j) {
+      const std::int32_t brick = above.neighbours[around + tables.parent[slot][j]];
+      neighbours[b * kNeighbours + j] = brick < 0 ? -1 : above.child_brick[brick * 8 + tables.child[slot][j]];
+    }
   }
 };
-/// One entry, for spaces with many.
+/// One entry, for spaces with many: threads that look up different entries of a table in constant memory wait for each
+/// other, so the entries are computed.
 struct FindNeighbour : FindNeighbours {
   PSK_HD void operator()(std::int64_t i) const {
-    const std::int64_t b = i / kNeighbours;
-    neighbours[i] = find(parent[b], static_cast<int>(i - b * kNeighbours));
+    const auto b = static_cast<std::int32_t>(i / kNeighbours);
+    const auto j = static_cast<int>(i - std::int64_t{b} * kNeighbours);
+    const std::int32_t node = above.neighbour(parent[b], j / 9 - 1, j / 3 % 3 - 1, j % 3 - 1);
+    neighbours[i] = node < 0 ? -1 : above.child_brick[node];
   }
 };
 
@@ -161,7 +163,42 @@ struct FindUnknowns {
   }
 };
 
-/// First point of the cells of a brick, found in the range of the cell it divides.
+/// First of the sorted points [first, last) beyond a cell. O(log(last - first)).
+PSK_HD inline std::int32_t end_of_cell(ArrayView<const std::uint64_t> point_keys, std::uint64_t cell, int depth,
+                                       std::int32_t first, std::int32_t last) {
+  while (first < last) {
+    const std::int32_t middle = first + (last - first) / 2;
+    if (cell_key(point_keys[middle], depth) <= cell)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  return first;
+}
+
+/// First points of the cells of all levels at once, for spaces with many threads.
+struct FindAllPoints {
+  OctreeView tree;
+  std::int32_t* point_begin[kMaxDepth + 1];
+  ArrayView<const std::uint64_t> point_keys;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    int depth = tree.depth;  // most cells are there; entries are counted from the finest level
+    std::int64_t cell = i;
+    while (cell > 8 * std::int64_t{tree.levels[depth].cell_bricks})
+      cell -= 8 * std::int64_t{tree.levels[depth--].cell_bricks} + 1;
+    const LevelView& level = tree.levels[depth];
+    const auto points = static_cast<std::int32_t>(point_keys.size);
+    std::int32_t first = points;
+    if (cell < level.cells()) {
+      const std::uint64_t key = level.node_key(static_cast<std::int32_t>(cell));
+      first = key == 0 ? 0 : end_of_cell(point_keys, key - 1, depth, 0, points);
+    }
+    point_begin[depth][cell] = first;
+  }
+};
+
+/// First points of the cells of a brick, found in the range of the cell it divides, for spaces with few threads.
 struct FindPoints {
   LevelView level;
   const std::int32_t* above_begin;
@@ -178,20 +215,9 @@ struct FindPoints {
     const std::int32_t last = above_begin[node + 1];
     for (int s = 0; s < 8; ++s) {
       point_begin[8 * b + s] = first;
-      if (s < 7) first = end_of_cell(level.brick_key[b] << 3 | static_cast<unsigned>(s), first, last);
+      if (s == 7) return;
+      first = end_of_cell(point_keys, level.brick_key[b] << 3 | static_cast<unsigned>(s), level.depth, first, last);
     }
-  }
-
-  /// First of the sorted points [first, last) beyond a cell.
-  PSK_HD std::int32_t end_of_cell(std::uint64_t cell, std::int32_t first, std::int32_t last) const {
-    while (first < last) {
-      const std::int32_t middle = first + (last - first) / 2;
-      if (cell_key(point_keys[middle], level.depth) <= cell)
-        first = middle + 1;
-      else
-        last = middle;
-    }
-    return first;
   }
 };
 
@@ -230,28 +256,38 @@ void link_level(Exec& ex, OctreeData& tree, int d, const exec::Buffer<std::uint6
                     above.child_brick.view()});
 
   level.neighbours = exec::make_buffer<std::int32_t>(ex, std::int64_t{kNeighbours} * level.bricks);
-  const FindNeighbours find{above_view, kNeighbourTables, level.parent.cview(), level.neighbours.view()};
+  const FindNeighbours find{above_view, level.parent.cview(), level.neighbours.view()};
   if constexpr (Exec::kManyThreads)
     for_each(ex, "octree.neighbours", level.neighbours.size(), FindNeighbour{find});
   else
-    for_each(ex, "octree.neighbours", level.bricks, FindNeighboursOfBrick{find});
+    for_each(ex, "octree.neighbours", level.bricks, FindNeighboursOfBrick{find, kNeighbourTables});
   level.unknowns = exec::make_buffer<std::uint8_t>(ex, level.bricks);
   for_each(ex, "octree.unknowns", level.bricks, FindUnknowns{tree.view().levels[d], level.unknowns.view()});
 }
 
-/// Point ranges of all cells, coarsest level first.
+/// Point ranges of all cells.
 template <exec::Space Exec>
 void assign_points(Exec& ex, OctreeData& tree, ArrayView<const std::uint64_t> point_keys) {
+  FindAllPoints find{tree.view(), {}, point_keys};
+  std::int64_t entries = 0;
   for (int d = 0; d <= tree.depth; ++d) {
     LevelData& level = tree.levels[static_cast<std::size_t>(d)];
     level.point_begin = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * level.cell_bricks + 1);
-    if (d == 0)
-      for_each(ex, "octree.points", level.point_begin.size(),
-               RootPoints{static_cast<std::int32_t>(point_keys.size), level.point_begin.view()});
-    else
+    find.point_begin[d] = level.point_begin.data();
+    entries += level.point_begin.size();
+  }
+  if constexpr (Exec::kManyThreads) {
+    for_each(ex, "octree.points", entries, find);
+  } else {
+    const LevelData& root = tree.levels.front();
+    for_each(ex, "octree.points", root.point_begin.size(),
+             RootPoints{static_cast<std::int32_t>(point_keys.size), root.point_begin.view()});
+    for (int d = 1; d <= tree.depth; ++d) {
+      const LevelData& level = tree.levels[static_cast<std::size_t>(d)];
       for_each(ex, "octree.points", std::int64_t{level.cell_bricks} + 1,
                FindPoints{tree.view().levels[d], tree.levels[static_cast<std::size_t>(d) - 1].point_begin.data(),
                           point_keys, level.point_begin.view()});
+    }
   }
 }
 

@@ -61,7 +61,7 @@ struct SplatSource {
   }
 };
 
-/// Adds samples to V at the corners of a brick, for spaces with few threads.
+/// Adds samples to V at the corners of a brick. A GPU has a kernel of its own for it (splat_kernel.cuh).
 struct SplatToBricks {
   SplatSource source;
   VectorField field;
@@ -70,9 +70,14 @@ struct SplatToBricks {
     const octree::Coordinates origin = brick_origin(source.level, brick);
     const auto scale = static_cast<float>(1 << source.level.depth);
     float sum[3][8] = {};
+    bool any = false;
     for_points_around(source.level, brick, [&](std::int32_t first, std::int32_t last) {
-      source.subset.for_chosen(first, last, [&](std::int32_t i) { add(i, origin, scale, sum); });
+      source.subset.for_chosen(first, last, [&](std::int32_t i) {
+        add(i, origin, scale, sum);
+        any = true;
+      });
     });
+    if (!any) return;
     for (int a = 0; a < 3; ++a)
       for (int s = 0; s < 8; ++s) field.axis[a][8 * brick + s] += sum[a][s];
   }
@@ -86,44 +91,6 @@ struct SplatToBricks {
     for (int s = 0; s < 8; ++s) sum[0][s] += w[s] * v.x;
     for (int s = 0; s < 8; ++s) sum[1][s] += w[s] * v.y;
     for (int s = 0; s < 8; ++s) sum[2][s] += w[s] * v.z;
-  }
-};
-
-/// The same at one corner, with the same bits, for spaces with many threads.
-struct SplatToCorners {
-  SplatSource source;
-  VectorField field;
-
-  PSK_HD void operator()(std::int64_t n) const {
-    const octree::LevelView& level = source.level;
-    const octree::Coordinates origin = brick_origin(level, n >> 3);
-    const auto scale = static_cast<float>(1 << level.depth);
-    const int slot = static_cast<int>(n & 7);
-    const std::int32_t* bricks = level.neighbours + (n >> 3) * octree::kNeighbours;
-    Vec3f sum{};
-    // The kernel reaches 3/2 cells: bricks above hold nothing for a brick's lower corners.
-    for (int x = -1; x <= octree::slot_x(slot); ++x)
-      for (int y = -1; y <= octree::slot_y(slot); ++y)
-        for (int z = -1; z <= octree::slot_z(slot); ++z) {
-          const std::int32_t brick = bricks[octree::neighbour_index(x, y, z)];
-          if (brick < 0 || brick >= level.cell_bricks) continue;
-          source.subset.for_chosen(level.point_begin[8 * std::int64_t{brick}],
-                                   level.point_begin[8 * std::int64_t{brick} + 8],
-                                   [&](std::int32_t i) { add(i, origin, scale, slot, sum); });
-        }
-    field.axis[0][n] += sum.x;
-    field.axis[1][n] += sum.y;
-    field.axis[2][n] += sum.z;
-  }
-
-  PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, int slot, Vec3f& sum) const {
-    const BrickSample at(source.samples.positions[sample], origin, scale);
-    const float w = at.weight<QuadraticKernel>(slot);
-    if (!(w > 0)) return;
-    const Vec3f v = source.vector(sample);
-    sum.x += w * v.x;
-    sum.y += w * v.y;
-    sum.z += w * v.z;
   }
 };
 
@@ -298,6 +265,11 @@ ChosenSamples choose_samples(Exec& ex, const SamplesView& samples, int depth) {
   return result;
 }
 
+template <exec::Space Exec>
+void splat_to_bricks(Exec& ex, const SplatSource& source, const VectorField& field) {
+  for_each(ex, "splat.normals", source.level.bricks, SplatToBricks{source, field});
+}
+
 /// Adds the samples of splat depth `level.depth` to V.
 template <exec::Space Exec>
 void splat_samples(Exec& ex, const octree::OctreeView& tree, const octree::LevelView& level, const SamplesView& samples,
@@ -308,10 +280,7 @@ void splat_samples(Exec& ex, const octree::OctreeView& tree, const octree::Level
   if (samples.splat_depth_set != own) chosen = choose_samples(ex, samples, level.depth);
   const float area_scale = 1.0F / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - level.depth));
   const SplatSource source{level, samples, {chosen.rank.cview(), chosen.chosen.cview()}, area_scale};
-  if constexpr (Exec::kManyThreads)
-    for_each(ex, "splat.normals", level.nodes(), SplatToCorners{source, field});
-  else
-    for_each(ex, "splat.normals", level.bricks, SplatToBricks{source, field});
+  splat_to_bricks(ex, source, field);
 }
 
 /// V of one level.

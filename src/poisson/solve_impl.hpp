@@ -198,7 +198,10 @@ struct ValuesInCell {
   octree::LevelView level;
   const float* u;
   SamplesView samples;
-  PSK_HD WeightedValue operator()(std::int64_t cell) const {
+  ArrayView<WeightedValue> out;
+  PSK_HD void operator()(std::int64_t cell) const { out[cell] = total_of(cell); }
+
+  [[nodiscard]] PSK_HD WeightedValue total_of(std::int64_t cell) const {
     const std::int32_t first = level.point_begin[cell];
     const std::int32_t last = level.point_begin[cell + 1];
     WeightedValue total;
@@ -249,9 +252,12 @@ Solution solve_poisson(Exec& ex, const octree::OctreeData& tree, ArrayView<const
 template <exec::Space Exec>
 double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> u, const SamplesView& samples) {
   const octree::LevelView level = tree.view().finest();
-  const auto total = exec::reduce<solve::WeightedValue>(
-      ex, "solve.isovalue", level.cells(), solve::ValuesInCell{level, u.data + level.first_node, samples},
-      solve::AddWeighted{});
+  auto cells = exec::make_buffer<solve::WeightedValue>(ex, level.cells());
+  for_each(ex, "solve.isovalue", level.cells(),
+           solve::ValuesInCell{level, u.data + level.first_node, samples, cells.view()});
+  const auto total =
+      exec::reduce<solve::WeightedValue>(ex, "solve.isovalue", cells.size(),
+                                         exec::LoadValue<solve::WeightedValue>{cells.cview()}, solve::AddWeighted{});
   return total.sum / total.weight;
 }
 

@@ -51,27 +51,23 @@ struct BrickSample {
            rel[2] < kUpper;
   }
 
-  /// Weights on the brick's 8 corners.
+  /// Weights along every axis on the brick's lower and upper corners.
   template <class Kernel>
-  PSK_HD void weights(float (&w)[8]) const {
+  PSK_HD void weights_by_axis(float (&axis)[3][2]) const {
     const Kernel kernel;
-    float axis[3][2];
     for (int a = 0; a < 3; ++a) {
       axis[a][0] = kernel(rel[a]);
       axis[a][1] = kernel(rel[a] - 1);
     }
-    for (int s = 0; s < 8; ++s)
-      w[s] = axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
   }
 
-  /// Weight on one of them; the same bits.
+  /// Weights on the brick's 8 corners.
   template <class Kernel>
-  [[nodiscard]] PSK_HD float weight(int slot) const {
-    const Kernel kernel;
-    const float x = kernel(octree::slot_x(slot) != 0 ? rel[0] - 1 : rel[0]);
-    const float y = kernel(octree::slot_y(slot) != 0 ? rel[1] - 1 : rel[1]);
-    const float z = kernel(octree::slot_z(slot) != 0 ? rel[2] - 1 : rel[2]);
-    return x * y * z;
+  PSK_HD void weights(float (&w)[8]) const {
+    float axis[3][2];
+    weights_by_axis<Kernel>(axis);
+    for (int s = 0; s < 8; ++s)
+      w[s] = axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
   }
 };
 

@@ -35,7 +35,8 @@ void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
   });
 }
 
-/// Calls f(round, i) for every i in [0, n) and every round in [0, rounds), rounds one after another.
+/// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds one
+/// after another.
 template <class F>
 void sweep(Cpu& ex, const char* label, int rounds, std::int64_t n, const F& f) {
   for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});

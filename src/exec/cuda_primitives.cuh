@@ -44,14 +44,17 @@ inline constexpr int kSweepThreads = 256;
 template <class F>
 __global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n, const F f) {
   const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const bool takes_part = i < n && f.takes_part(i);
+  const auto prepared = f.prepare(takes_part ? i : 0);
   for (int round = 0; round < rounds; ++round) {
-    if (i < n) f(round, i);
+    if (takes_part) f(round, i, prepared);
     cooperative_groups::this_grid().sync();
   }
 }
 
-/// Calls f(round, i) for every i in [0, n) and every round in [0, rounds), rounds one after another. Asynchronous.
-/// What fits onto the GPU at one block a multiprocessor takes one cooperative launch, a barrier between rounds.
+/// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds one
+/// after another. Asynchronous. What fits onto the GPU at one block a multiprocessor takes one cooperative launch, with
+/// a barrier between rounds and one call of prepare, whose result stays in registers.
 template <class F>
 void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) {
   if (n <= 0 || rounds <= 0) return;

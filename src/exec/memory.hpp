@@ -10,12 +10,15 @@
 
 namespace pointskin::exec {
 
-/// f of a sweep with its round fixed: what for_each calls.
+/// One round of a sweep: what for_each calls.
 template <class F>
 struct SweepRound {
   F f;
   int round;
-  PSK_HD void operator()(std::int64_t i) const { f(round, static_cast<int>(i)); }
+  PSK_HD void operator()(std::int64_t index) const {
+    const int i = static_cast<int>(index);
+    if (f.takes_part(i)) f(round, i, f.prepare(i));
+  }
 };
 
 /// Memory of one space. Freed blocks stay with the pool for the next request; trim() gives them back.

@@ -34,6 +34,9 @@ PSK_HD constexpr std::uint64_t spread_bits(std::uint64_t v) {
   return v;
 }
 
+/// The bits that spread_bits fills.
+inline constexpr std::uint64_t kEveryThirdBit = 0x1249249249249249;
+
 /// Inverse of spread_bits; other bits are ignored.
 PSK_HD constexpr std::uint64_t gather_bits(std::uint64_t v) {
   v &= 0x1249249249249249;

@@ -12,20 +12,16 @@
 namespace pointskin::poisson {
 namespace divergence {
 
-/// Samples of one splat depth: positions among all samples (`rank`) and the samples themselves (`chosen`).
+/// Samples of one splat depth: positions among all samples (`rank`) and the samples themselves (`chosen`). Where most
+/// samples are wanted both are empty, and samples of other depths are passed over.
 struct Subset {
-  ArrayView<const std::int32_t> rank;    // (n + 1) chosen samples before a sample; empty: all samples are chosen
-  ArrayView<const std::int32_t> chosen;  // sample of each rank; empty as above
+  ArrayView<const std::int32_t> rank;    // (n + 1) chosen samples before a sample
+  ArrayView<const std::int32_t> chosen;  // sample of each rank
 
-  /// Calls visit(sample) for those of samples [first, last) that are chosen.
-  template <class Visit>
-  PSK_HD void for_chosen(std::int32_t first, std::int32_t last, const Visit& visit) const {
-    if (rank.empty()) {
-      for (std::int32_t i = first; i < last; ++i) visit(i);
-    } else {
-      const std::int32_t end = rank[last];
-      for (std::int32_t i = rank[first]; i < end; ++i) visit(chosen[i]);
-    }
+  [[nodiscard]] PSK_HD bool is_list() const { return !rank.empty(); }
+  [[nodiscard]] PSK_HD std::int32_t rank_of(std::int32_t sample) const { return is_list() ? rank[sample] : sample; }
+  [[nodiscard]] PSK_HD std::int32_t sample_of(std::int32_t rank_in_list) const {
+    return is_list() ? chosen[rank_in_list] : rank_in_list;
   }
 };
 
@@ -53,6 +49,10 @@ struct SplatSource {
   Subset subset;
   float area_scale;  // finest cells^2 -> cells^2 of this level
 
+  [[nodiscard]] PSK_HD bool is_splatted(std::int32_t sample) const {
+    return subset.is_list() || samples.splat_depths[sample] == level.depth;
+  }
+
   /// -area n, what the sample adds to V.
   [[nodiscard]] PSK_HD Vec3f vector(std::int32_t sample) const {
     const Vec3f n = samples.normals[sample];
@@ -72,10 +72,11 @@ struct SplatToBricks {
     float sum[3][8] = {};
     bool any = false;
     for_points_around(source.level, brick, [&](std::int32_t first, std::int32_t last) {
-      source.subset.for_chosen(first, last, [&](std::int32_t i) {
-        add(i, origin, scale, sum);
+      const std::int32_t end = source.subset.rank_of(last);
+      for (std::int32_t rank = source.subset.rank_of(first); rank < end; ++rank) {
+        add(source.subset.sample_of(rank), origin, scale, sum);
         any = true;
-      });
+      }
     });
     if (!any) return;
     for (int a = 0; a < 3; ++a)
@@ -83,6 +84,7 @@ struct SplatToBricks {
   }
 
   PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
+    if (!source.is_splatted(sample)) return;
     const BrickSample at(source.samples.positions[sample], origin, scale);
     if (!at.reaches<QuadraticKernel>()) return;
     float w[8];
@@ -274,10 +276,9 @@ void splat_to_bricks(Exec& ex, const SplatSource& source, const VectorField& fie
 template <exec::Space Exec>
 void splat_samples(Exec& ex, const octree::OctreeView& tree, const octree::LevelView& level, const SamplesView& samples,
                    const VectorField& field) {
-  const std::uint32_t own = 1U << level.depth;
-  if ((samples.splat_depth_set & own) == 0) return;
+  if ((samples.splat_depth_set >> level.depth & 1) == 0) return;
   ChosenSamples chosen;
-  if (samples.splat_depth_set != own) chosen = choose_samples(ex, samples, level.depth);
+  if (level.depth < tree.depth) chosen = choose_samples(ex, samples, level.depth);
   const float area_scale = 1.0F / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - level.depth));
   const SplatSource source{level, samples, {chosen.rank.cview(), chosen.chosen.cview()}, area_scale};
   splat_to_bricks(ex, source, field);

@@ -92,10 +92,15 @@ PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x
   return along(x.stiffness, mass_mass) + along(x.mass, rest);
 }
 
-/// True if some corner of the brick may lie on a face of the cube.
-PSK_HD inline bool touches_faces(const octree::Coordinates& brick, int depth) {
-  const std::int32_t last = depth == 0 ? 0 : 1 << (depth - 1);
-  return brick.x == 0 || brick.y == 0 || brick.z == 0 || brick.x == last || brick.y == last || brick.z == last;
+/// True if some corner of the brick may lie on a face of the cube: a coordinate is 0 or 2^(depth - 1). Read off the key,
+/// without decoding it.
+PSK_HD inline bool touches_faces(std::uint64_t brick_key, int depth) {
+  bool touches = depth == 0;
+  PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+    const std::uint64_t coordinate = brick_key >> axis & octree::kEveryThirdBit;
+    touches = touches || coordinate == 0 || coordinate == std::uint64_t{1} << 3 * (depth - 1);
+  }
+  return touches;
 }
 
 /// Sum over the 8 cells around a corner; the sides of an axis may change places.
@@ -106,7 +111,6 @@ PSK_HD inline float sum_of_cells(const float (&cell)[8]) {
 /// What the collapsed sample of a cell does, seen from one of the cell's corners.
 struct Pull {
   float residual = 0, diagonal = 0;
-  bool any = false;
 };
 
 /// Trilinear interpolation; weight[a][0] and u(0, ..) belong to this corner, weight[a][1] to the other end of axis a.
@@ -130,85 +134,106 @@ struct CornerResidual {
   }
 };
 
-/// Residual at one corner, for spaces with many threads. Means nothing for corners that are no unknowns.
+/// The operator at one unknown corner, for spaces with many threads. What does not change from iteration to iteration is
+/// looked up once.
 class CornerOperator {
  public:
-  PSK_HD CornerOperator(const LevelSystem& system, std::int64_t node, const float* u)
+  PSK_HD CornerOperator(const LevelSystem& system, std::int64_t node)
       : system_(system),
-        bricks_(system.level.neighbours + (node >> 3) * octree::kNeighbours),
-        slot_{octree::slot_x(node & 7), octree::slot_y(node & 7), octree::slot_z(node & 7)} {
-    load(u);
+        slot_{octree::slot_x(node & 7), octree::slot_y(node & 7), octree::slot_z(node & 7)},
+        b_(system.b[node]),
+        brick_key_(system.level.brick_key[node >> 3]) {
+    const std::int32_t* bricks = system.level.neighbours + (node >> 3) * octree::kNeighbours;
+    find_bricks(bricks, static_cast<std::int32_t>(node >> 3));
+    if (system.screening_scale > 0) find_samples(bricks);
   }
 
-  /// The corner's own value.
-  [[nodiscard]] PSK_HD float value() const { return u_(0, 0, 0); }
-
-  [[nodiscard]] PSK_HD CornerResidual residual(std::int64_t node) const {
+  /// @param value  receives the corner's own value
+  [[nodiscard]] PSK_HD CornerResidual residual(const float* u, float& value) const {
+    const CornerValues values = load(u);
+    value = values(0, 0, 0);
     CornerResidual out;
-    out.residual = system_.b[node] - laplacian(node);
-    if (system_.screening_scale > 0) screen(out);
+    out.residual = b_ - laplacian(values);
+    if (any_samples_) screen(values, out);
     return out;
   }
 
  private:
-  /// Step to the brick beyond the corner along an axis: the side that is called -1 here.
-  [[nodiscard]] PSK_HD int outward(int axis) const { return slot_[axis] == 0 ? -1 : 1; }
+  /// Bricks that hold the values around: the corner's own (0) and the seven beyond the corner. The side away from the
+  /// own brick is called -1 here. Beyond the cube there is none: the own one stands in, its values will count zero.
+  PSK_HD void find_bricks(const std::int32_t* bricks, std::int32_t own) {
+    int step[3];
+    PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = slot_[a] == 0 ? -1 : 1;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      const std::int32_t brick = bricks[octree::neighbour_index(octree::slot_x(s) * step[0], octree::slot_y(s) * step[1],
+                                                                octree::slot_z(s) * step[2])];
+      brick_[s] = brick < 0 ? own : brick;
+    }
+  }
 
-  PSK_HD void load(const float* u) {
-    const int step[3] = {outward(0), outward(1), outward(2)};
+  [[nodiscard]] PSK_HD CornerValues load(const float* u) const {
+    CornerValues values;
     const int here = octree::slot_of(slot_[0], slot_[1], slot_[2]);
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {  // the brick itself (0) and the seven beyond the corner
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
       const int dx = octree::slot_x(s);
       const int dy = octree::slot_y(s);
       const int dz = octree::slot_z(s);
-      const std::int32_t brick = bricks_[octree::neighbour_index(dx * step[0], dy * step[1], dz * step[2])];
+      const float* corners = u + std::int64_t{8} * brick_[s];
       // Along an axis the brick beyond holds the value at -1, the own brick those at 0 and 1.
       PSK_UNROLL for (int x = -1; x <= 1; ++x) {
         PSK_UNROLL for (int y = -1; y <= 1; ++y) {
           PSK_UNROLL for (int z = -1; z <= 1; ++z) {
             if ((x == -1) != (dx != 0) || (y == -1) != (dy != 0) || (z == -1) != (dz != 0)) continue;
             const int other = here ^ octree::slot_of(x != 0 ? 1 : 0, y != 0 ? 1 : 0, z != 0 ? 1 : 0);
-            u_.value[octree::neighbour_index(x, y, z)] = brick < 0 ? 0 : u[std::int64_t{8} * brick + other];
+            values.value[octree::neighbour_index(x, y, z)] = corners[other];
           }
         }
       }
     }
+    return values;
   }
 
-  [[nodiscard]] PSK_HD float laplacian(std::int64_t node) const {
-    const int depth = system_.level.depth;
-    const octree::Coordinates at = octree::decode(system_.level.brick_key[node >> 3]);
-    if (!touches_faces(at, depth)) return laplacian_inside(u_);
-    return laplacian_at_face(u_, coefficients(2 * at.x, 0), coefficients(2 * at.y, 1), coefficients(2 * at.z, 2));
+  [[nodiscard]] PSK_HD float laplacian(const CornerValues& u) const {
+    if (!touches_faces(brick_key_, system_.level.depth)) return laplacian_inside(u);
+    const octree::Coordinates at = octree::decode(brick_key_);
+    return laplacian_at_face(u, coefficients(2 * at.x, 0), coefficients(2 * at.y, 1), coefficients(2 * at.z, 2));
   }
   [[nodiscard]] PSK_HD AxisCoefficients coefficients(std::int32_t brick_corner, int axis) const {
     return {system_.rows, side_of(brick_corner + slot_[axis], system_.level.depth), slot_[axis] != 0};
   }
 
-  /// Cells by side: 0 beyond the corner, 1 on the brick's side.
-  PSK_HD void screen(CornerResidual& out) const {
-    float residuals[8], diagonals[8];
-    bool any = false;
+  /// Collapsed samples of the 8 cells around, by side: 0 beyond the corner, 1 on the brick's side. A cell belongs to the
+  /// node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
+  PSK_HD void find_samples(const std::int32_t* bricks) {
+    std::int32_t place[8];
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const Pull pull = pull_of(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
-      residuals[s] = pull.residual;
-      diagonals[s] = pull.diagonal;
-      any = any || pull.any;
+      const int side[3] = {octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)};
+      int step[3];
+      PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = side[a] == 0 && slot_[a] == 0 ? -1 : 0;
+      const std::int32_t brick = bricks[octree::neighbour_index(step[0], step[1], step[2])];
+      place[s] = brick < 0 ? -1 : system_.screening.brick_index[brick];
     }
-    if (any) out.add(residuals, diagonals);
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      sample_[s].weight = 0;
+      if (place[s] >= 0) sample_[s] = system_.screening.samples[8 * std::int64_t{place[s]} + (7 - s)];
+      any_samples_ = any_samples_ || sample_[s].weight > 0;
+    }
   }
 
-  /// A cell belongs to the node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
-  [[nodiscard]] PSK_HD Pull pull_of(int side_x, int side_y, int side_z) const {
-    const int side[3] = {side_x, side_y, side_z};
-    int step[3];
-    PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = side[a] == 0 && slot_[a] == 0 ? -1 : 0;
-    const std::int32_t brick = bricks_[octree::neighbour_index(step[0], step[1], step[2])];
-    const std::int32_t place = brick < 0 ? -1 : system_.screening.brick_index[brick];
-    if (place < 0) return {};
-    const CollapsedSample sample =
-        system_.screening.samples[8 * std::int64_t{place} + octree::slot_of(1 - side_x, 1 - side_y, 1 - side_z)];
+  PSK_HD void screen(const CornerValues& u, CornerResidual& out) const {
+    float residuals[8], diagonals[8];
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      const Pull pull = pull_of(sample_[s], octree::slot_x(s), octree::slot_y(s), octree::slot_z(s), u);
+      residuals[s] = pull.residual;
+      diagonals[s] = pull.diagonal;
+    }
+    out.add(residuals, diagonals);
+  }
+
+  [[nodiscard]] PSK_HD Pull pull_of(const CollapsedSample& sample, int side_x, int side_y, int side_z,
+                                    const CornerValues& u) const {
     if (!(sample.weight > 0)) return {};
+    const int side[3] = {side_x, side_y, side_z};
     const float local[3] = {sample.x, sample.y, sample.z};
     float weight[3][2];
     PSK_UNROLL for (int a = 0; a < 3; ++a) {
@@ -216,16 +241,19 @@ class CornerOperator {
       weight[a][0] = at_upper_end ? local[a] : 1 - local[a];
       weight[a][1] = at_upper_end ? 1 - local[a] : local[a];
     }
-    const float value = value_in_cell(weight, u_, 2 * side_x - 1, 2 * side_y - 1, 2 * side_z - 1);
+    const float value = value_in_cell(weight, u, 2 * side_x - 1, 2 * side_y - 1, 2 * side_z - 1);
     const float total = system_.screening_scale * sample.weight;
     const float own = weight[0][0] * weight[1][0] * weight[2][0];
-    return {own * (total * (0.5F - value)), own * total, true};
+    return {own * (total * (0.5F - value)), own * total};
   }
 
   const LevelSystem& system_;
-  const std::int32_t* bricks_;
   int slot_[3];
-  CornerValues u_;
+  float b_;
+  std::uint64_t brick_key_;
+  std::int32_t brick_[8];
+  CollapsedSample sample_[8];
+  bool any_samples_ = false;
 };
 
 /// Residual and bounding diagonal at the 8 corners of a brick. Entries of corners that are no unknowns mean nothing.
@@ -297,7 +325,7 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
   BrickResidual out;
   const octree::Coordinates at = octree::decode(system.level.brick_key[brick]);
   const int depth = system.level.depth;
-  const bool faces = touches_faces(at, depth);
+  const bool faces = touches_faces(system.level.brick_key[brick], depth);
   PSK_UNROLL for (int s = 0; s < 8; ++s) {
     const int x = octree::slot_x(s);
     const int y = octree::slot_y(s);

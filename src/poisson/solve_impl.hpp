@@ -42,13 +42,17 @@ struct RelaxCorners {
   float* step;
   ChebyshevStep steps[kMostRounds];
 
-  PSK_HD void operator()(int round, int n) const {
-    if ((system.level.unknowns[n >> 3] >> (n & 7) & 1) == 0) return;
-    const CornerOperator corner(system, n, u[round & 1]);
-    const CornerResidual r = corner.residual(n);
+  [[nodiscard]] PSK_HD bool takes_part(int n) const {
+    return (system.level.unknowns[n >> 3] >> (n & 7) & 1) != 0;
+  }
+  [[nodiscard]] PSK_HD CornerOperator prepare(int n) const { return {system, n}; }
+
+  PSK_HD void operator()(int round, int n, const CornerOperator& corner) const {
+    float value;
+    const CornerResidual r = corner.residual(u[round & 1], value);
     const float change = steps[round].change(r.residual, r.diagonal, step + n);
     step[n] = change;
-    u[~round & 1][n] = corner.value() + change;
+    u[~round & 1][n] = value + change;
   }
 };
 

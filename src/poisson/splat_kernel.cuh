@@ -44,13 +44,8 @@ __device__ inline std::int32_t list_samples(const SplatSource& source, std::int6
     const octree::LevelView& level = source.level;
     const std::int32_t other = level.neighbours[brick * octree::kNeighbours + lane];
     if (other >= 0 && other < level.cell_bricks) {
-      first = level.point_begin[8 * std::int64_t{other}];
-      std::int32_t last = level.point_begin[8 * std::int64_t{other} + 8];
-      if (!source.subset.rank.empty()) {
-        first = source.subset.rank[first];
-        last = source.subset.rank[last];
-      }
-      count = last - first;
+      first = source.subset.rank_of(level.point_begin[8 * std::int64_t{other}]);
+      count = source.subset.rank_of(level.point_begin[8 * std::int64_t{other} + 8]) - first;
     }
   }
   std::int32_t sum = count;
@@ -71,9 +66,9 @@ __device__ inline int stage(const SplatSource& source, std::int32_t rank, bool e
   BrickSample at({}, origin, scale);
   bool reaches = false;
   if (exists) {
-    sample = source.subset.rank.empty() ? rank : source.subset.chosen[rank];
+    sample = source.subset.sample_of(rank);
     at = BrickSample(source.samples.positions[sample], origin, scale);
-    reaches = at.reaches<QuadraticKernel>();
+    reaches = at.reaches<QuadraticKernel>() && source.is_splatted(sample);
   }
   const unsigned lanes = __ballot_sync(~0U, reaches);
   if (reaches) {

@@ -99,14 +99,17 @@ class CellTracer {
 
   /// Cuts off every run of inside points. `reversed`: the points run clockwise.
   PSK_HD void add_polygon(const int* points, int count, bool reversed) {
-    const auto point = [&](int i) { return points[reversed ? count - 1 - i % count : i % count]; };
-    const auto is_inside = [&](int i) { return (inside_ >> point(i) & 1) != 0; };
+    unsigned inside = 0;
+    for (int i = 0; i < count; ++i) inside |= (inside_ >> points[i] & 1) << i;
+    if (inside == 0 || inside == (1U << count) - 1) return;
+    const auto after = [&](int i) { return reversed ? (i == 0 ? count - 1 : i - 1) : (i + 1 == count ? 0 : i + 1); };
+    const auto is_inside = [&](int i) { return (inside >> i & 1) != 0; };
     for (int i = 0; i < count; ++i) {
-      if (is_inside(i) || !is_inside(i + 1)) continue;  // not an entry
-      int exit = i + 1;
-      while (is_inside(exit + 1)) ++exit;
-      const int entry = crossing_between(point(i), point(i + 1));
-      next_[entry] = static_cast<std::int8_t>(crossing_between(point(exit), point(exit + 1)));
+      if (is_inside(i) || !is_inside(after(i))) continue;  // not an entry
+      int exit = after(i);
+      while (is_inside(after(exit))) exit = after(exit);
+      const int entry = crossing_between(points[i], points[after(i)]);
+      next_[entry] = static_cast<std::int8_t>(crossing_between(points[exit], points[after(exit)]));
       crossings_[entry >> 6] |= std::uint64_t{1} << (entry & 63);
     }
   }

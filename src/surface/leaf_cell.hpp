@@ -39,6 +39,7 @@ class LeafCell {
   /// left out.
   [[nodiscard]] PSK_HD std::uint32_t finer_neighbours() const {
     std::uint32_t finer = 0;
+    if (level_ == f_.tree.depth) return finer;
     PSK_UNROLL for (int j = 0; j < octree::kNeighbours; ++j) {
       const int d[3] = {j / 9 - 1, j / 3 % 3 - 1, j % 3 - 1};
       const int distance = (d[0] != 0) + (d[1] != 0) + (d[2] != 0);

@@ -145,7 +145,8 @@ class CornerOperator {
         brick_key_(system.level.brick_key[node >> 3]) {
     const std::int32_t* bricks = system.level.neighbours + (node >> 3) * octree::kNeighbours;
     find_bricks(bricks, static_cast<std::int32_t>(node >> 3));
-    if (system.screening_scale > 0) find_samples(bricks);
+    if (system.screening_scale > 0) any_samples_ = (system.screening.corners[node >> 3] >> (node & 7) & 1) != 0;
+    if (any_samples_) find_samples(bricks);
   }
 
   /// @param value  receives the corner's own value
@@ -216,7 +217,6 @@ class CornerOperator {
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
       sample_[s].weight = 0;
       if (place[s] >= 0) sample_[s] = system_.screening.samples[8 * std::int64_t{place[s]} + (7 - s)];
-      any_samples_ = any_samples_ || sample_[s].weight > 0;
     }
   }
 
@@ -267,11 +267,10 @@ struct BrickPulls {
   float pull[27];  // weight (1/2 - value)
 };
 
-/// Finds the samples around a brick, and how hard they pull. @returns false if there are none
-PSK_HD inline bool load_pulls(const LevelSystem& system, std::int64_t brick, const octree::Neighbourhood& u,
+/// Finds the samples around a brick, and how hard they pull.
+PSK_HD inline void load_pulls(const LevelSystem& system, std::int64_t brick, const octree::Neighbourhood& u,
                               BrickPulls& out) {
   const std::int32_t* bricks = system.level.neighbours + brick * octree::kNeighbours;
-  bool any = false;
   PSK_UNROLL for (int x = -1; x <= 1; ++x) {
     PSK_UNROLL for (int y = -1; y <= 1; ++y) {
       PSK_UNROLL for (int z = -1; z <= 1; ++z) {
@@ -290,17 +289,14 @@ PSK_HD inline bool load_pulls(const LevelSystem& system, std::int64_t brick, con
         const float total = system.screening_scale * sample.weight;
         out.sample[j] = {sample.x, sample.y, sample.z, total};
         out.pull[j] = total * (0.5F - value);
-        any = true;
       }
     }
   }
-  return any;
 }
 
 /// Adds the screening of the 8 cells around corner (x, y, z) of the brick.
 PSK_HD inline void screen_corner(const BrickPulls& pulls, int x, int y, int z, CornerResidual& out) {
   float residuals[8], diagonals[8];
-  bool any = false;
   PSK_UNROLL for (int s = 0; s < 8; ++s) {
     const int i = octree::slot_x(s);  // the corner is end 1 - i of its cell along x
     const int j = octree::slot_y(s);
@@ -310,13 +306,12 @@ PSK_HD inline void screen_corner(const BrickPulls& pulls, int x, int y, int z, C
     residuals[s] = 0;
     diagonals[s] = 0;
     if (!(sample.weight > 0)) continue;
-    any = true;
     const float own =
         (i == 0 ? sample.x : 1 - sample.x) * (j == 0 ? sample.y : 1 - sample.y) * (k == 0 ? sample.z : 1 - sample.z);
     residuals[s] = own * pulls.pull[cell];
     diagonals[s] = own * sample.weight;
   }
-  if (any) out.add(residuals, diagonals);
+  out.add(residuals, diagonals);
 }
 
 /// Residual and bounding diagonal of a whole brick, for spaces with few threads.
@@ -337,11 +332,13 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
                                                         coefficients(2 * at.z + z))
                                     : laplacian_inside(values));
   }
-  if (!(system.screening_scale > 0)) return out;
+  if (!(system.screening_scale > 0) || system.screening.corners[brick] == 0) return out;
   BrickPulls pulls;
-  if (!load_pulls(system, brick, u, pulls)) return out;
-  PSK_UNROLL for (int s = 0; s < 8; ++s)
-    screen_corner(pulls, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s), out.corner[s]);
+  load_pulls(system, brick, u, pulls);
+  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    if ((system.screening.corners[brick] >> s & 1) != 0)
+      screen_corner(pulls, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s), out.corner[s]);
+  }
   return out;
 }
 

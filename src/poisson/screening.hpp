@@ -23,6 +23,7 @@ struct CollapsedSample {
 struct ScreeningView {
   const std::int32_t* brick_index = nullptr;  ///< (bricks) place among the bricks of all levels that hold samples, or -1
   const CollapsedSample* samples = nullptr;   ///< (8 occupied bricks of all levels)
+  const std::uint8_t* corners = nullptr;      ///< (bricks) bit s: some cell around corner s holds a sample with weight
 };
 
 /// Owns the collapsed samples of all levels.
@@ -30,9 +31,11 @@ struct Screening {
   std::vector<std::int64_t> first_brick;  ///< of each level in brick_index
   exec::Buffer<std::int32_t> brick_index;
   exec::Buffer<CollapsedSample> samples;
+  exec::Buffer<std::uint8_t> corners;
 
   [[nodiscard]] ScreeningView view(int depth) const {
-    return {brick_index.data() + first_brick[static_cast<std::size_t>(depth)], samples.data()};
+    const std::int64_t first = first_brick[static_cast<std::size_t>(depth)];
+    return {brick_index.data() + first, samples.data(), corners.data() + first};
   }
 };
 

@@ -90,6 +90,46 @@ struct CollapseChildren {
   }
 };
 
+/// Which corners of a brick (of all levels) the screening touches.
+struct MarkCorners {
+  octree::OctreeView tree;
+  const std::int32_t* brick_index;
+  const CollapsedSample* samples;
+  ArrayView<std::uint8_t> corners;
+
+  PSK_HD void operator()(std::int64_t brick) const {
+    const octree::LevelView& level = tree.levels[tree.level_of(8 * brick)];
+    const std::int64_t first = level.first_node / 8;
+    const std::int32_t* bricks = level.neighbours + (brick - first) * octree::kNeighbours;
+    // Corners look at cells of their own brick and of those before it.
+    unsigned touched = 0;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      const int before[3] = {octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)};
+      const std::int32_t other = bricks[octree::neighbour_index(-before[0], -before[1], -before[2])];
+      const std::int32_t place = other < 0 ? -1 : brick_index[first + other];
+      if (place < 0) continue;
+      PSK_UNROLL for (int cell = 0; cell < 8; ++cell) {
+        if ((~cell & s) != 0) continue;  // of a brick before this one, only the cells next to it
+        if (samples[8 * std::int64_t{place} + cell].weight > 0) touched |= corners_of(cell, s);
+      }
+    }
+    corners[brick] = static_cast<std::uint8_t>(touched);
+  }
+
+  /// Corners of the brick that a cell touches. Along an axis, the last cell of the brick before touches corner 0, cell 0
+  /// both corners, cell 1 corner 1.
+  PSK_HD static constexpr unsigned corners_of(int cell, int before) {
+    unsigned touched = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int lower = ~corner & 7;  // axes on which the corner is a lower one
+      const bool beyond = (before & ~lower) != 0;           // the brick before does not reach upper corners
+      const bool past = (cell & ~before & lower) != 0;      // cell 1 does not reach lower corners
+      if (!beyond && !past) touched |= 1U << corner;
+    }
+    return touched;
+  }
+};
+
 }  // namespace screening
 
 template <exec::Space Exec>
@@ -117,6 +157,9 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
       for_each(ex, "screening.collapse", cells,
                CollapseChildren{level, brick_index, result.view(d + 1).brick_index, result.samples.data()});
   }
+  result.corners = exec::make_buffer<std::uint8_t>(ex, bricks);
+  for_each(ex, "screening.corners", bricks,
+           MarkCorners{view, result.brick_index.data(), result.samples.data(), result.corners.view()});
   return result;
 }
 

@@ -55,7 +55,7 @@ struct BrickSample {
   template <class Kernel>
   PSK_HD void weights_by_axis(float (&axis)[3][2]) const {
     const Kernel kernel;
-    for (int a = 0; a < 3; ++a) {
+    PSK_UNROLL for (int a = 0; a < 3; ++a) {
       axis[a][0] = kernel(rel[a]);
       axis[a][1] = kernel(rel[a] - 1);
     }

@@ -59,7 +59,7 @@ class LeafCell {
   [[nodiscard]] PSK_HD CellTracer trace() const {
     const std::uint32_t finer = finer_neighbours();
     std::uint32_t split_edges = 0;
-    for (int e = 0; e < 12; ++e)
+    PSK_UNROLL for (int e = 0; e < 12; ++e)
       if (edge_is_split(finer, e / 4, e / 2 & 1, e & 1)) split_edges |= CellTracer::edge_bit(e / 4, e / 2 & 1, e & 1);
     CellTracer tracer(grid_signs(split_edges != 0));
     for (int face = 0; face < 6; ++face) {
@@ -111,8 +111,36 @@ class LeafCell {
     return brick < 0 ? -1 : 8 * brick + octree::slot_of(x & 1, y & 1, z & 1);
   }
 
+  /// True if the cell or one next to it touches a face of the cube: rules of the faces reach that far.
+  [[nodiscard]] PSK_HD bool is_near_cube_face() const {
+    const std::int32_t last = (1 << level_) - 2;
+    return at_.x <= 1 || at_.y <= 1 || at_.z <= 1 || at_.x >= last || at_.y >= last || at_.z >= last;
+  }
+
   /// Inside bits over the 3 x 3 x 3 grid; positions that do not exist count as outside and are never used.
   [[nodiscard]] PSK_HD std::uint32_t grid_signs(bool with_middles) const {
+    return f_.closed && is_near_cube_face() ? grid_signs_at_face(with_middles) : grid_signs_inside(with_middles);
+  }
+
+  /// By values alone: all looked up at once.
+  [[nodiscard]] PSK_HD std::uint32_t grid_signs_inside(bool with_middles) const {
+    std::uint32_t signs = 0;
+    PSK_UNROLL for (int i = 0; i < 27; ++i) {
+      const int x = i / 9;
+      const int y = i / 3 % 3;
+      const int z = i % 3;
+      const bool is_corner = ((x | y | z) & 1) == 0;
+      const std::int32_t node = is_corner      ? f_.tree.levels[level_].neighbour(node_, x / 2, y / 2, z / 2)
+                                : with_middles ? fine_node(x, y, z)
+                                               : -1;
+      const bool inside = node >= 0 && f_.value(is_corner ? level_ : level_ + 1, node) >= f_.isovalue;
+      if (inside) signs |= 1U << grid_index(x, y, z);
+    }
+    return signs;
+  }
+
+  /// The rules of a closed cube's faces as well.
+  [[nodiscard]] PSK_HD std::uint32_t grid_signs_at_face(bool with_middles) const {
     std::uint32_t signs = 0;
     for (int x = 0; x < 3; ++x)
       for (int y = 0; y < 3; ++y)

@@ -124,5 +124,70 @@ TEST(CpuPool, AlignsEveryBlock) {
   }
 }
 
+/// Buffers of random sizes, small and large, taken and freed in random order; each keeps its bytes while it lives.
+TEST(CpuPool, NeverHandsOutMemoryThatIsInUse) {
+  exec::Cpu ex(1);
+  std::vector<exec::Buffer<std::uint64_t>> live;
+  for (std::uint64_t step = 0; step < 2000; ++step) {
+    const std::uint64_t dice = hash(step);
+    if (live.size() > 20 || (dice % 3 == 0 && !live.empty())) {
+      exec::Buffer<std::uint64_t>& victim = live[(dice >> 8) % live.size()];
+      const std::uint64_t mark = victim.data()[0];
+      for (std::int64_t i = 0; i < victim.size(); i += 256) ASSERT_EQ(victim.data()[i], mark) << "step " << step;
+      ASSERT_EQ(victim.data()[victim.size() - 1], mark) << "step " << step;
+      victim.swap(live.back());
+      live.pop_back();
+      continue;
+    }
+    const auto size = static_cast<std::int64_t>(1 + (dice >> 20) % (std::uint64_t{1} << (4 + (dice >> 8) % 17)));
+    auto block = exec::make_buffer<std::uint64_t>(ex, size);
+    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(block.data()) % 256, 0U);
+    for (std::int64_t i = 0; i < size; i += 256) block.data()[i] = step;
+    block.data()[size - 1] = step;
+    live.push_back(std::move(block));
+  }
+}
+
+TEST(CpuPool, CutsBlocksFromAFreedLargerOneAndMergesThemAgain) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "blocks are not cut under the address sanitizer";
+#endif
+  constexpr std::int64_t kLarge = 8 << 20;
+  exec::Cpu ex(1);
+  auto whole = exec::make_buffer<char>(ex, kLarge);
+  const char* data = whole.data();
+  whole.reset();
+  auto first = exec::make_buffer<char>(ex, kLarge / 4);
+  auto second = exec::make_buffer<char>(ex, kLarge / 2);
+  auto third = exec::make_buffer<char>(ex, kLarge / 4);
+  for (const exec::Buffer<char>* part : {&first, &second, &third}) {
+    EXPECT_GE(part->data(), data);
+    EXPECT_LE(part->data() + part->size(), data + kLarge);
+  }
+  first.reset();
+  third.reset();
+  second.reset();
+  EXPECT_EQ(exec::make_buffer<char>(ex, kLarge).data(), data);
+}
+
+TEST(CpuPool, RefusesWhatNoMachineHasAndGoesOn) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer ends the program instead";
+#endif
+  exec::Cpu ex(1);
+  const std::int64_t held = ex.pool()->held_bytes();
+  for (const std::int64_t size : {std::int64_t{1} << 46, std::int64_t{1} << 61, std::int64_t{1} << 62}) {
+    try {
+      const auto block = exec::make_buffer<char>(ex, size);
+      ADD_FAILURE() << "got " << size << " bytes";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::over_limit);
+    }
+  }
+  EXPECT_EQ(ex.pool()->held_bytes(), held);
+  auto block = exec::make_buffer<char>(ex, 1 << 20);
+  block.data()[0] = 1;
+}
+
 }  // namespace
 }  // namespace pointskin::test

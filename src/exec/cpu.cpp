@@ -71,7 +71,10 @@ struct Cpu::Workers {
 };
 
 void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block) {
-  if (count == 1) return block(0);
+  if (threads_ == 1 || count <= 1) {  // nothing to share: a launch would cost more than a small block
+    for (std::int64_t i = 0; i < count; ++i) block(i);
+    return;
+  }
   workers_->arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::int64_t>(0, count, 1),

@@ -1,6 +1,7 @@
 // The primitives on the CPU: the bodies that all spaces share, and what only threads can get wrong.
 #include "unit/exec/primitives_tests.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <string>
@@ -12,6 +13,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(OnCpu, Primitives, CpuSpaces);
 namespace {
 
 constexpr int kThreads[] = {1, 2, 5, 16};
+constexpr std::uint64_t kSentinel = 0x5e7713e1;
 
 /// One result of every primitive over n elements.
 struct Results {
@@ -59,6 +61,53 @@ TEST(PrimitivesOnThreads, RunEveryBlockOnce) {
       for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
     }
   }
+}
+
+TEST(PrimitivesOnThreads, AskAPredicateOncePerIndex) {
+  for (const int threads : kThreads) {
+    exec::Cpu ex(threads);
+    for (const std::int64_t n : {0, 1, 63, 64, 65, 2047, 2048, 2049, 100'000}) {
+      std::vector<std::atomic<int>> calls(index(n));
+      const auto kept = to_host(ex, select(ex, "test", n, [&](std::int64_t i) {
+                                  ++calls[index(i)];
+                                  return i % 3 == 0;
+                                }));
+      for (const std::atomic<int>& count : calls) ASSERT_EQ(count, 1);
+      ASSERT_EQ(kept.size(), index((n + 2) / 3));
+      for (std::size_t k = 0; k < kept.size(); ++k) ASSERT_EQ(kept[k], static_cast<std::int32_t>(3 * k));
+    }
+  }
+}
+
+TEST(PrimitivesOnThreads, CopyArraysOfAnySize) {
+  for (const int threads : kThreads) {
+    exec::Cpu ex(threads);
+    for (const std::int64_t n : {0, 1, 32767, 32768, 32769, 100'000}) {
+      const std::vector<std::uint64_t> from = random_keys(n, 59, 64);
+      const auto there = upload(ex, from);
+      auto copied = exec::make_buffer<std::uint64_t>(ex, n + 1);
+      copy_to_device(ex, &kSentinel, copied.view().part(n, 1));
+      copy(ex, there.cview(), copied.view());
+      std::vector<std::uint64_t> expected = from;
+      expected.push_back(kSentinel);
+      expect_same(to_host(ex, copied), expected);
+    }
+  }
+}
+
+TEST(PrimitivesOnThreads, SortAtTheBordersOfBlocks) {
+  for (const int threads : {1, 4})
+    for (const std::int64_t n : {0, 1, 4095, 4096, 4097, 262'145, 500'001}) {
+      exec::Cpu ex(threads);
+      const std::vector<std::uint64_t> from = random_keys(n, 61, 11);
+      auto keys = upload(ex, from);
+      auto order = exec::iota(ex, n);
+      sort_pairs(ex, "test", keys, order, 11);
+      std::vector<std::int32_t> expected = counted(n);
+      std::stable_sort(expected.begin(), expected.end(),
+                       [&](std::int32_t a, std::int32_t b) { return from[index(a)] < from[index(b)]; });
+      expect_same(to_host(ex, order), expected);
+    }
 }
 
 struct ThrowAt {

@@ -5,8 +5,11 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "exec/algorithms.hpp"
+#include "exec/host_array.hpp"
 #include "octree/octree_data.hpp"
 #include "points.hpp"
 
@@ -61,6 +64,17 @@ struct AddFlaws {
   }
 };
 
+/// A host array of `size` elements to download to.
+template <class T, exec::Space Exec>
+std::vector<T> host_array(Exec& ex, std::int64_t size) {
+  std::vector<T> array;
+  if constexpr (std::is_same_v<Exec, exec::Cpu>)
+    exec::resize(ex, array, static_cast<std::size_t>(size));
+  else
+    array.resize(static_cast<std::size_t>(size));
+  return array;
+}
+
 }  // namespace points
 
 template <exec::Space Exec>
@@ -110,9 +124,9 @@ Mesh download(Exec& ex, const surface::Surface& surface, const octree::Frame& fr
   for_each(ex, "download.world", n, points::ToWorld{frame, surface.positions.cview(), world.view()});
   Mesh mesh;
   mesh.origin = origin;
-  mesh.vertices.resize(static_cast<std::size_t>(n));
-  mesh.normals.resize(static_cast<std::size_t>(surface.normals.size()));
-  mesh.triangles.resize(static_cast<std::size_t>(surface.triangles.size()));
+  mesh.vertices = points::host_array<Vec3f>(ex, n);
+  mesh.normals = points::host_array<Vec3f>(ex, surface.normals.size());
+  mesh.triangles = points::host_array<Triangle>(ex, surface.triangles.size());
   copy_to_host(ex, world.cview(), mesh.vertices.data());
   copy_to_host(ex, surface.normals.cview(), mesh.normals.data());
   copy_to_host(ex, surface.triangles.cview(), mesh.triangles.data());

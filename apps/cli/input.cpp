@@ -97,14 +97,14 @@ Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& opti
 }
 
 std::int64_t drop_zero_normals(Cloud& cloud) {
-  std::vector<bool> keep(cloud.normals.size());
-  std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(), [](const Vec3f& n) { return n != Vec3f{}; });
-  const std::int64_t zero = std::count(keep.begin(), keep.end(), false);
+  const std::int64_t zero = std::count(cloud.normals.begin(), cloud.normals.end(), Vec3f{});
   if (zero == cloud.size()) {
     throw Error(ErrorCode::no_normals,
                 fmt::format("the normals of all {} points have zero length; outward normals are needed", zero));
   }
   if (zero == 0) return 0;
+  std::vector<bool> keep(cloud.normals.size());
+  std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(), [](const Vec3f& n) { return n != Vec3f{}; });
   keep_where(cloud.positions, keep);
   keep_where(cloud.normals, keep);
   for (Attribute& attribute : cloud.attributes) keep_where(attribute.values, keep);

@@ -3,14 +3,11 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdlib>
 #include <exception>
-#include <new>
 #include <optional>
-#include <string>
 #include <vector>
+
+#include "exec/cpu_pool.hpp"
 
 #ifdef POINTSKIN_STD_THREAD
 #include <atomic>
@@ -25,68 +22,6 @@
 #endif
 
 namespace pointskin::exec {
-namespace {
-
-constexpr std::size_t kAlignment = 256;
-
-/// Sizes are rounded up to four classes per octave, so that a block fits later requests of about its size.
-std::size_t size_class(std::size_t bytes) {
-  if (bytes <= 4096) return 4096;
-  const std::size_t step = std::bit_floor(bytes - 1) / 4;
-  return (bytes + step - 1) / step * step;
-}
-
-/// Keeps freed blocks in one list per size class.
-class CpuPool final : public MemoryPool {
- public:
-  CpuPool() = default;
-  ~CpuPool() override { CpuPool::trim(); }
-  CpuPool(const CpuPool&) = delete;
-  CpuPool& operator=(const CpuPool&) = delete;
-
-  void trim() noexcept override {
-    for (const Block& block : free_)
-      std::free(block.data);  // NOLINT(cppcoreguidelines-no-malloc): pairs with aligned_alloc
-    free_.clear();
-  }
-
- private:
-  struct Block {
-    std::size_t bytes;
-    void* data;
-  };
-
-  void* take(std::size_t bytes) override {
-    const std::size_t rounded = size_class(bytes);
-    const auto hit = std::find_if(free_.rbegin(), free_.rend(), [&](const Block& b) { return b.bytes == rounded; });
-    if (hit != free_.rend()) {
-      void* data = hit->data;
-      free_.erase(std::next(hit).base());
-      return data;
-    }
-    void* data = std::aligned_alloc(kAlignment, rounded);
-    if (data == nullptr) {
-      trim();
-      data = std::aligned_alloc(kAlignment, rounded);
-    }
-    if (data == nullptr)
-      throw Error(ErrorCode::over_limit,
-                  "out of memory on the CPU; while allocating " + std::to_string(bytes) + " bytes");
-    return data;
-  }
-
-  void give_back(void* block, std::size_t bytes) noexcept override {
-    try {
-      free_.push_back({size_class(bytes), block});
-    } catch (...) {
-      std::free(block);  // NOLINT(cppcoreguidelines-no-malloc): no room to remember the block
-    }
-  }
-
-  std::vector<Block> free_;
-};
-
-}  // namespace
 
 #ifdef POINTSKIN_STD_THREAD
 
@@ -136,7 +71,10 @@ struct Cpu::Workers {
 };
 
 void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block) {
-  if (count == 1) return block(0);
+  if (threads_ == 1 || count <= 1) {  // nothing to share: a launch would cost more than a small block
+    for (std::int64_t i = 0; i < count; ++i) block(i);
+    return;
+  }
   workers_->arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::int64_t>(0, count, 1),
@@ -149,7 +87,7 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
 
 #endif
 
-Cpu::Cpu(int threads) : threads_(threads > 0 ? threads : available_threads()), pool_(std::make_shared<CpuPool>()) {
+Cpu::Cpu(int threads) : threads_(threads > 0 ? threads : available_threads()), pool_(make_cpu_pool()) {
   if (threads < 0) throw Error(ErrorCode::usage, "the number of threads must not be negative");
   workers_ = std::make_unique<Workers>(threads_);
 }

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
+#include <numeric>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,8 +21,9 @@ namespace pointskin::exec {
 /// Indices per block of for_each, select and scan: large enough to hide the scheduling, small enough to balance.
 inline constexpr std::int64_t kCpuBlock = 2048;
 
-/// Elements per block of the radix sort.
-inline constexpr std::int64_t kCpuSortBlock = 1 << 16;
+/// Elements per block of the radix sort: blocks for many threads, but few enough that their histograms stay small
+/// beside the keys.
+inline std::int64_t cpu_sort_block(std::int64_t n) { return std::clamp<std::int64_t>(n / 64, 1 << 12, 1 << 16); }
 
 inline std::int64_t block_count(std::int64_t n, std::int64_t block) { return (n + block - 1) / block; }
 
@@ -58,22 +62,45 @@ void reduce_tail(Cpu& /*ex*/, const char* /*label*/, ArrayView<const T> values, 
   out[0] = sums.front();
 }
 
-/// The indices i in [0, n) with keep(i), ascending. Two passes over keep; O(n).
+namespace detail {
+
+inline constexpr std::int64_t kBitsPerWord = 64;
+static_assert(kCpuBlock % kBitsPerWord == 0);
+
+/// Bit k of the result is keep(first + k), for first + k < end. Without branches: a predicate need not be predictable.
+template <class Keep>
+std::uint64_t kept_bits(std::int64_t first, std::int64_t end, const Keep& keep) {
+  std::uint64_t bits = 0;
+  const std::int64_t count = std::min<std::int64_t>(kBitsPerWord, end - first);
+  for (std::int64_t k = 0; k < count; ++k) bits |= std::uint64_t{keep(first + k) ? 1U : 0U} << k;
+  return bits;
+}
+
+}  // namespace detail
+
+/// The indices i in [0, n) with keep(i), ascending. One call of keep per index; O(n), n bits of scratch.
 template <class Keep>
 Buffer<std::int32_t> select(Cpu& ex, const char* /*label*/, std::int64_t n, const Keep& keep) {
+  constexpr std::int64_t kWords = kCpuBlock / detail::kBitsPerWord;  // of a block
+  const std::int64_t words = block_count(n, detail::kBitsPerWord);
   const std::int64_t blocks = block_count(n, kCpuBlock);
+  Buffer<std::uint64_t> bits(ex.pool(), words);
   std::vector<std::int64_t> first(static_cast<std::size_t>(blocks) + 1, 0);
   ex.run_blocks(blocks, [&](std::int64_t b) {
     std::int64_t count = 0;
-    for (std::int64_t i = b * kCpuBlock; i < std::min(n, (b + 1) * kCpuBlock); ++i) count += keep(i) ? 1 : 0;
+    for (std::int64_t w = b * kWords; w < std::min(words, (b + 1) * kWords); ++w) {
+      bits.data()[w] = detail::kept_bits(w * detail::kBitsPerWord, n, keep);
+      count += std::popcount(bits.data()[w]);
+    }
     first[static_cast<std::size_t>(b) + 1] = count;
   });
   for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
   Buffer<std::int32_t> kept(ex.pool(), first.back());
   ex.run_blocks(blocks, [&](std::int64_t b) {
     std::int32_t* out = kept.data() + first[static_cast<std::size_t>(b)];
-    for (std::int64_t i = b * kCpuBlock; i < std::min(n, (b + 1) * kCpuBlock); ++i)
-      if (keep(i)) *out++ = static_cast<std::int32_t>(i);
+    for (std::int64_t w = b * kWords; w < std::min(words, (b + 1) * kWords); ++w)
+      for (std::uint64_t left = bits.data()[w]; left != 0; left &= left - 1)
+        *out++ = static_cast<std::int32_t>(w * detail::kBitsPerWord + std::countr_zero(left));
   });
   return kept;
 }
@@ -122,23 +149,23 @@ template <class Move>
 bool sort_pass(Cpu& ex, const Digit& digit_of, ArrayView<const std::uint64_t> keys, std::vector<Histogram>& offsets,
                const Move& move) {
   const std::int64_t n = keys.size;
+  const std::int64_t block = cpu_sort_block(n);
   const auto blocks = static_cast<std::int64_t>(offsets.size());
   ex.run_blocks(blocks, [&](std::int64_t b) {
     Histogram& count = offsets[static_cast<std::size_t>(b)];
     count.fill(0);
-    for (std::int64_t i = b * kCpuSortBlock; i < std::min(n, (b + 1) * kCpuSortBlock); ++i) ++count[digit_of(keys[i])];
+    for (std::int64_t i = b * block; i < std::min(n, (b + 1) * block); ++i) ++count[digit_of(keys[i])];
   });
-  std::int64_t next = 0;
-  for (std::size_t digit = 0; digit < kDigits; ++digit) {
-    const std::int64_t begin = next;
-    for (Histogram& count : offsets) next += std::exchange(count[digit], next);
-    if (next - begin == n) return false;
-  }
+  // Row by row, so that the sums are vectorised: counts become offsets from the first element of their digit.
+  Histogram first{};
+  for (Histogram& count : offsets)
+    for (std::size_t digit = 0; digit < kDigits; ++digit) first[digit] += std::exchange(count[digit], first[digit]);
+  if (std::find(first.begin(), first.end(), n) != first.end()) return false;
+  std::exclusive_scan(first.begin(), first.end(), first.begin(), std::int64_t{0});
   ex.run_blocks(blocks, [&](std::int64_t b) {
     Histogram& offset = offsets[static_cast<std::size_t>(b)];
-    for (std::int64_t i = b * kCpuSortBlock; i < std::min(n, (b + 1) * kCpuSortBlock); ++i) {
-      move(i, offset[digit_of(keys[i])]++);
-    }
+    for (std::size_t digit = 0; digit < kDigits; ++digit) offset[digit] += first[digit];
+    for (std::int64_t i = b * block; i < std::min(n, (b + 1) * block); ++i) move(i, offset[digit_of(keys[i])]++);
   });
   return true;
 }
@@ -152,7 +179,7 @@ void sort_pairs(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, Buf
   const std::int64_t n = keys.size();
   Buffer<std::uint64_t> other_keys(ex.pool(), n);
   Buffer<Value> other_values(ex.pool(), n);
-  std::vector<detail::Histogram> offsets(static_cast<std::size_t>(block_count(n, kCpuSortBlock)));
+  std::vector<detail::Histogram> offsets(static_cast<std::size_t>(block_count(n, cpu_sort_block(n))));
   for (int shift = 0; shift < bits; shift += detail::kDigitBits) {
     const auto move = [&](std::int64_t from, std::int64_t to) {
       other_keys.data()[to] = keys.data()[from];
@@ -168,16 +195,24 @@ void sort_pairs(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, Buf
 /// Sorts keys alone; otherwise as sort_pairs.
 inline void sort_keys(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, int bits) {
   Buffer<std::uint64_t> other(ex.pool(), keys.size());
-  std::vector<detail::Histogram> offsets(static_cast<std::size_t>(block_count(keys.size(), kCpuSortBlock)));
+  std::vector<detail::Histogram> offsets(
+      static_cast<std::size_t>(block_count(keys.size(), cpu_sort_block(keys.size()))));
   for (int shift = 0; shift < bits; shift += detail::kDigitBits) {
     const auto move = [&](std::int64_t from, std::int64_t to) { other.data()[to] = keys.data()[from]; };
     if (detail::sort_pass(ex, detail::Digit(shift, bits), keys.cview(), offsets, move)) keys.swap(other);
   }
 }
 
+/// Copies `from` to the first elements of `to`, in parallel blocks of about 256 KiB. The two must not overlap.
 template <class T>
-void copy(Cpu& /*ex*/, ArrayView<const T> from, ArrayView<T> to) {
-  if (from.size > 0) std::memcpy(to.data, from.data, static_cast<std::size_t>(from.size) * sizeof(T));
+void copy(Cpu& ex, ArrayView<const T> from, ArrayView<T> to) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  constexpr std::int64_t kBlock =
+      std::max<std::int64_t>(1, (std::int64_t{1} << 18) / static_cast<std::int64_t>(sizeof(T)));
+  ex.run_blocks(block_count(from.size, kBlock), [&](std::int64_t b) {
+    const std::int64_t count = std::min(kBlock, from.size - b * kBlock);
+    std::memcpy(to.data + b * kBlock, from.data + b * kBlock, static_cast<std::size_t>(count) * sizeof(T));
+  });
 }
 
 template <class T>

@@ -18,6 +18,7 @@
 #include <optional>
 #include <system_error>
 
+#include "io/block_writer.hpp"
 #include "io/file_descriptor.hpp"
 #include "io/source.hpp"
 
@@ -72,19 +73,6 @@ std::optional<struct stat> status_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;
   return status;
-}
-
-void write_all(int fd, const std::vector<std::string>& parts, const std::string& path) {
-  constexpr std::size_t kLargestWrite = std::size_t{1} << 30;  // Linux writes at most 2 GiB at once
-  for (const std::string& part : parts) {
-    std::size_t done = 0;
-    while (done < part.size()) {
-      const ssize_t wrote = ::write(fd, part.data() + done, std::min(kLargestWrite, part.size() - done));
-      if (wrote < 0 && errno == EINTR) continue;
-      if (wrote < 0) fail_to_write(path, errno);
-      done += static_cast<std::size_t>(wrote);
-    }
-  }
 }
 
 /// A number that another run is unlikely to choose; O_EXCL settles the rest.
@@ -145,11 +133,20 @@ class TemporaryFile {
   FileDescriptor fd_;
 };
 
-void write_stream(const std::string& path, const std::vector<std::string>& parts) {
-  if (path == "-") return write_all(STDOUT_FILENO, parts, path);
+/// Runs the writer; what the system refuses becomes an Error about `path`.
+void write_to(exec::Cpu& ex, const std::string& path, BlockWriter&& writer) {
+  try {
+    writer.run(ex);
+  } catch (const std::system_error& error) {
+    fail_to_write(path, error.code().value());
+  }
+}
+
+void write_stream(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
+  if (path == "-") return write_to(ex, path, {blocks, STDOUT_FILENO, BlockWriter::Target::stream});
   FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (!file.valid()) fail_to_write(path, errno);
-  write_all(file.get(), parts, path);
+  write_to(ex, path, {blocks, file.get(), BlockWriter::Target::stream});
   if (file.close() != 0 && errno != EINTR) fail_to_write(path, errno);
 }
 
@@ -161,8 +158,8 @@ bool is_stream(const std::string& path) {
   return status && !S_ISREG(status->st_mode) && !S_ISDIR(status->st_mode);
 }
 
-void write_parts(const std::string& path, const std::vector<std::string>& parts) {
-  if (is_stream(path)) return write_stream(path, parts);
+void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
+  if (is_stream(path)) return write_stream(ex, path, blocks);
   if (path.empty()) fail_to_write(path, ENOENT);
   const std::string target = follow_links(path);
   const auto old = status_of(target);
@@ -170,7 +167,7 @@ void write_parts(const std::string& path, const std::vector<std::string>& parts)
   // A rename would replace a write-protected file without asking.
   if (old && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail_to_write(path, errno);
   TemporaryFile file(path, target);
-  write_all(file.fd(), parts, path);
+  write_to(ex, path, {blocks, file.fd(), BlockWriter::Target::file});
   if (old) file.inherit(*old);
   file.rename_to(target);
 }
@@ -179,6 +176,10 @@ void write_parts(const std::string& path, const std::vector<std::string>& parts)
 
 namespace pointskin {
 
-void write_file_atomically(const std::string& path, const std::string& bytes) { io::write_parts(path, {bytes}); }
+void write_file_atomically(const std::string& path, const std::string& bytes) {
+  exec::Cpu ex(1);
+  const auto all = [&](std::int64_t /*block*/, std::string& to) { to = bytes; };
+  io::write_blocks(ex, path, {1, all});
+}
 
 }  // namespace pointskin

@@ -1,17 +1,29 @@
 // Files that appear whole or not at all.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
-#include <vector>
+
+#include "exec/cpu.hpp"
 
 namespace pointskin::io {
+
+/// What a file is to hold, cut into blocks of about 256 KiB that can be made in any order.
+struct Blocks {
+  std::int64_t count = 0;
+  /// Appends the bytes of block `b` to `bytes`; called once per block, on any thread.
+  std::function<void(std::int64_t b, std::string& bytes)> make;
+};
 
 /// True if `path` is "-" or names something that exists and is neither a regular file nor a folder.
 bool is_stream(const std::string& path);
 
-/// Replaces the file `path` by the parts, one after the other, by a rename from a temporary file in the same folder.
-/// Streams are written directly, "-" is stdout.
-/// @throws Error output_not_written with the reason of the operating system; a regular file is then what it was
-void write_parts(const std::string& path, const std::vector<std::string>& parts);
+/// Replaces the file `path` by the blocks, one after the other, by a rename from a temporary file in the same folder.
+/// Streams are written directly, "-" is stdout. Blocks are made, and those of files written, in parallel; only as many
+/// as there are threads are in memory at a time.
+/// @throws Error output_not_written with the reason of the operating system, or whatever `make` throws; a regular file
+///         is then what it was
+void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks);
 
 }  // namespace pointskin::io

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <optional>
 
+#include "exec/host_array.hpp"
 #include "io/blocks.hpp"
 #include "io/ply_body.hpp"
 #include "io/polygon.hpp"
@@ -154,7 +155,7 @@ std::optional<TriangleRows> find_triangle_rows(exec::Cpu& ex, const PlyInput& in
 
 void read_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, Scalar type,
                         const TriangleRows& rows, std::vector<Triangle>& triangles) {
-  triangles.resize(static_cast<std::size_t>(face.count));
+  exec::resize(ex, triangles, static_cast<std::size_t>(face.count));
   const std::int64_t vertices = vertex_count(input.header);
   const bool swapped = input.header.encoding == PlyEncoding::big_endian;
   run_in_order(ex, (face.count + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {

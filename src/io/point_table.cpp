@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exec/host_array.hpp"
 #include "io/blocks.hpp"
 
 namespace pointskin::io {
@@ -44,41 +45,59 @@ Roles find_roles(const Source& source, const PointTable& table) {
   return roles;
 }
 
-/// Calls put(i, value of row rows[i]) for all i; the column's type is looked up once.
-template <class Put>
-void gather(const Column& column, const std::vector<std::int64_t>& rows, const Put& put) {
+/// Consecutive rows of a table.
+struct RowRange {
+  std::int64_t first, end;
+  RowRange(const PointTable& table, std::int64_t block)
+      : first(block * kBlockRows), end(std::min(table.rows, first + kBlockRows)) {}
+};
+
+/// Calls f(value) for every row in order; the column's type is looked up once.
+template <class F>
+void for_values(const Column& column, const RowRange& rows, const F& f) {
   visit(column.stored, [&](auto tag) {
     using T = decltype(tag);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      put(i, static_cast<double>(load<T>(column.data + rows[i] * column.stride_bytes, column.swapped)));
+    const char* at = column.data + rows.first * column.stride_bytes;
+    for (std::int64_t row = rows.first; row < rows.end; ++row, at += column.stride_bytes)
+      f(static_cast<double>(load<T>(at, column.swapped)));
   });
 }
 
-/// The rows of a block that have finite coordinates, and these.
-struct FinitePoints {
-  std::vector<std::int64_t> rows;
-  std::vector<Vec3d> points;
-};
+double value_at(const Column& column, std::int64_t row) {
+  return visit(column.stored, [&](auto tag) {
+    return static_cast<double>(load<decltype(tag)>(column.data + row * column.stride_bytes, column.swapped));
+  });
+}
 
-FinitePoints finite_points(const PointTable& table, const Roles& roles, std::int64_t block) {
-  const std::int64_t first = block * kBlockRows;
-  const auto count = static_cast<std::size_t>(std::min(table.rows, first + kBlockRows) - first);
-  FinitePoints all{std::vector<std::int64_t>(count), std::vector<Vec3d>(count)};
-  for (std::size_t i = 0; i < count; ++i) all.rows[i] = first + static_cast<std::int64_t>(i);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    gather(table.columns[roles.position[axis]], all.rows, [&](std::size_t i, double v) { all.points[i][axis] = v; });
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3d p = all.points[i];
-    if (!(std::abs(p[0]) <= kLargestCoordinate && std::abs(p[1]) <= kLargestCoordinate &&
-          std::abs(p[2]) <= kLargestCoordinate))
-      continue;
-    all.rows[kept] = all.rows[i];
-    all.points[kept++] = p;
+/// Calls f(three values) for every row in order. The type is looked up once if the three columns are stored alike, as
+/// they are in all but odd files.
+template <class F>
+void for_triples(const PointTable& table, const std::array<std::size_t, 3>& columns, const RowRange& rows, const F& f) {
+  const Column& x = table.columns[columns[0]];
+  const Column& y = table.columns[columns[1]];
+  const Column& z = table.columns[columns[2]];
+  const auto is_like_x = [&](const Column& c) {
+    return c.stored == x.stored && c.swapped == x.swapped && c.stride_bytes == x.stride_bytes;
+  };
+  if (!is_like_x(y) || !is_like_x(z)) {
+    for (std::int64_t row = rows.first; row < rows.end; ++row)
+      f(Vec3d{value_at(x, row), value_at(y, row), value_at(z, row)});
+    return;
   }
-  all.rows.resize(kept);
-  all.points.resize(kept);
-  return all;
+  visit(x.stored, [&](auto tag) {
+    using T = decltype(tag);
+    const auto value = [&](const Column& column, std::int64_t offset) {
+      return static_cast<double>(load<T>(column.data + offset, x.swapped));
+    };
+    const std::int64_t stride = x.stride_bytes;
+    for (std::int64_t offset = rows.first * stride; offset < rows.end * stride; offset += stride)
+      f(Vec3d{value(x, offset), value(y, offset), value(z, offset)});
+  });
+}
+
+bool is_finite(const Vec3d& p) {
+  return std::abs(p[0]) <= kLargestCoordinate && std::abs(p[1]) <= kLargestCoordinate &&
+         std::abs(p[2]) <= kLargestCoordinate;
 }
 
 struct Box {
@@ -94,20 +113,26 @@ struct Box {
   }
 };
 
-/// What the first pass finds out: where each block's points go, and their box.
+/// What the first pass finds out: where each block's points go, and, if asked for, their box.
 struct Survey {
   std::vector<std::int64_t> first;  ///< shape (blocks + 1); the last is the number of points kept
   Box box;
 };
 
-Survey survey(exec::Cpu& ex, const PointTable& table, const Roles& roles) {
+Survey survey(exec::Cpu& ex, const PointTable& table, const Roles& roles, bool want_box) {
   const std::int64_t blocks = (table.rows + kBlockRows - 1) / kBlockRows;
   Survey result{std::vector<std::int64_t>(static_cast<std::size_t>(blocks) + 1, 0), {}};
   std::vector<Box> boxes(static_cast<std::size_t>(blocks));
   run_in_order(ex, blocks, [&](std::int64_t b) {
-    const FinitePoints kept = finite_points(table, roles, b);
-    for (const Vec3d& p : kept.points) boxes[static_cast<std::size_t>(b)].add(p, p);
-    result.first[static_cast<std::size_t>(b) + 1] = static_cast<std::int64_t>(kept.points.size());
+    std::int64_t kept = 0;
+    Box box;
+    for_triples(table, roles.position, {table, b}, [&](const Vec3d& p) {
+      if (!is_finite(p)) return;
+      ++kept;
+      if (want_box) box.add(p, p);
+    });
+    boxes[static_cast<std::size_t>(b)] = box;
+    result.first[static_cast<std::size_t>(b) + 1] = kept;
   });
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     result.first[b + 1] += result.first[b];
@@ -116,12 +141,14 @@ Survey survey(exec::Cpu& ex, const PointTable& table, const Roles& roles) {
   return result;
 }
 
-/// The "auto" rule of ReadOptions::shift.
-Vec3d automatic_shift(const PointTable& table, const Roles& roles, const Box& box) {
+bool holds_floats(const PointTable& table, const Roles& roles) {
+  return std::all_of(roles.position.begin(), roles.position.end(),
+                     [&](std::size_t c) { return table.columns[c].stored == Scalar::float32; });
+}
+
+/// The "auto" rule of ReadOptions::shift for coordinates that are not float.
+Vec3d automatic_shift(const Box& box) {
   constexpr double kExactEnough = 1000;
-  const bool holds_floats = std::all_of(roles.position.begin(), roles.position.end(),
-                                        [&](std::size_t c) { return table.columns[c].stored == Scalar::float32; });
-  if (holds_floats) return {0, 0, 0};
   double magnitude = 0;
   double extent = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -139,23 +166,28 @@ Vec3f to_normal(const Vec3f& n) { return std::isfinite(n.x) && std::isfinite(n.y
 
 /// The second pass over block `b`: writes its points from index `to` of the cloud on.
 void fill_block(const PointTable& table, const Roles& roles, std::int64_t b, std::int64_t to, Cloud& cloud) {
-  const FinitePoints kept = finite_points(table, roles, b);
+  const RowRange rows(table, b);
+  std::array<bool, kBlockRows> kept;
   const Vec3d& origin = cloud.origin;
-  Vec3f* positions = cloud.positions.data() + to;
-  for (std::size_t i = 0; i < kept.points.size(); ++i) {
-    const Vec3d& p = kept.points[i];
-    positions[i] = {to_float(p[0] - origin[0]), to_float(p[1] - origin[1]), to_float(p[2] - origin[2])};
-  }
+  Vec3f* position = cloud.positions.data() + to;
+  auto* keep = kept.begin();
+  for_triples(table, roles.position, rows, [&](const Vec3d& p) {
+    *keep = is_finite(p);
+    if (*keep++) *position++ = {to_float(p[0] - origin[0]), to_float(p[1] - origin[1]), to_float(p[2] - origin[2])};
+  });
   if (roles.normal) {
-    Vec3f* normals = cloud.normals.data() + to;
-    gather(table.columns[(*roles.normal)[0]], kept.rows, [&](std::size_t i, double v) { normals[i].x = to_float(v); });
-    gather(table.columns[(*roles.normal)[1]], kept.rows, [&](std::size_t i, double v) { normals[i].y = to_float(v); });
-    gather(table.columns[(*roles.normal)[2]], kept.rows, [&](std::size_t i, double v) { normals[i].z = to_float(v); });
-    std::transform(normals, normals + kept.rows.size(), normals, to_normal);
+    Vec3f* normal = cloud.normals.data() + to;
+    keep = kept.begin();
+    for_triples(table, *roles.normal, rows, [&](const Vec3d& n) {
+      if (*keep++) *normal++ = to_normal({to_float(n[0]), to_float(n[1]), to_float(n[2])});
+    });
   }
   for (std::size_t a = 0; a < roles.attributes.size(); ++a) {
-    float* values = cloud.attributes[a].values.data() + to;
-    gather(table.columns[roles.attributes[a]], kept.rows, [&](std::size_t i, double v) { values[i] = to_float(v); });
+    float* value = cloud.attributes[a].values.data() + to;
+    keep = kept.begin();
+    for_values(table.columns[roles.attributes[a]], rows, [&](double v) {
+      if (*keep++) *value++ = to_float(v);
+    });
   }
 }
 
@@ -214,21 +246,22 @@ PointTable ParsedColumns::table() const {
 Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, const std::optional<Vec3d>& shift) {
   if (shift) check_shift(*shift);
   const Roles roles = find_roles(source, table);
-  const Survey found = survey(ex, table, roles);
+  const bool wants_shift = !shift && !holds_floats(table, roles);
+  const Survey found = survey(ex, table, roles, wants_shift);
   const auto kept = static_cast<std::size_t>(found.first.back());
   Cloud cloud;
   cloud.dropped = table.rows - found.first.back();
   if (shift)
     cloud.origin = *shift;
-  else if (kept > 0)
-    cloud.origin = automatic_shift(table, roles, found.box);
-  cloud.positions.resize(kept);
-  if (roles.normal) cloud.normals.resize(kept);
+  else if (wants_shift && kept > 0)
+    cloud.origin = automatic_shift(found.box);
+  exec::resize(ex, cloud.positions, kept);
+  if (roles.normal) exec::resize(ex, cloud.normals, kept);
   for (const std::size_t c : roles.attributes) {
     const Column& column = table.columns[c];
-    cloud.attributes.push_back({column.name,
-                                column.declared == Scalar::uint8 ? AttributeType::uint8 : AttributeType::float32,
-                                std::vector<float>(kept)});
+    cloud.attributes.push_back(
+        {column.name, column.declared == Scalar::uint8 ? AttributeType::uint8 : AttributeType::float32, {}});
+    exec::resize(ex, cloud.attributes.back().values, kept);
   }
   run_in_order(ex, static_cast<std::int64_t>(found.first.size()) - 1,
                [&](std::int64_t b) { fill_block(table, roles, b, found.first[static_cast<std::size_t>(b)], cloud); });

@@ -4,10 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
 
+#include "io/blocks.hpp"
 #include "io/lines.hpp"
 #include "io/ply_body.hpp"
 #include "io/recognise.hpp"
@@ -136,7 +138,13 @@ Mesh assemble_mesh(exec::Cpu& ex, const Source& source, const PointTable& table,
   check_vertex_count(source, table.rows);
   Cloud points = assemble(ex, source, table, options.shift);
   if (points.dropped > 0) fail_on_bad_vertex(source, table);
-  for (Vec3f& n : points.normals) n = unit(n);
+  constexpr std::size_t kBlockRows = 1 << 14;
+  const std::size_t normals = points.normals.size();
+  run_in_order(ex, static_cast<std::int64_t>((normals + kBlockRows - 1) / kBlockRows), [&](std::int64_t b) {
+    const std::size_t first = static_cast<std::size_t>(b) * kBlockRows;
+    for (std::size_t i = first; i < std::min(normals, first + kBlockRows); ++i)
+      points.normals[i] = unit(points.normals[i]);
+  });
   return {points.origin, std::move(points.positions), std::move(points.normals), std::move(points.attributes),
           std::move(triangles)};
 }

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 
+#include "io/blocks.hpp"
 #include "io/output.hpp"
 #include "io/readers.hpp"
 #include "io/writers.hpp"
@@ -21,19 +23,23 @@ std::string output_format(const std::string& path) {
   throw Error(ErrorCode::usage, io::printable(path) + ": unknown extension; use .ply, .obj or .stl");
 }
 
-void check_triangles(const Mesh& mesh) {
+void check_triangles(exec::Cpu& ex, const Mesh& mesh) {
+  constexpr std::int64_t kBlockRows = 1 << 14;
   const auto vertices = static_cast<std::int64_t>(mesh.vertices.size());
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::int32_t corner : triangle)
-      if (corner < 0 || corner >= vertices)
-        throw Error(ErrorCode::invalid_input, fmt::format("a triangle names vertex {} of {}", corner, vertices));
+  const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
+  io::run_in_order(ex, (triangles + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {
+    for (std::int64_t t = b * kBlockRows; t < std::min(triangles, (b + 1) * kBlockRows); ++t)
+      for (const std::int32_t corner : mesh.triangles[static_cast<std::size_t>(t)])
+        if (corner < 0 || corner >= vertices)
+          throw Error(ErrorCode::invalid_input, fmt::format("a triangle names vertex {} of {}", corner, vertices));
+  });
 }
 
-/// Formats first and opens the file after: errors of the data leave the disk alone.
+/// Errors of the data are found by `format`, before the file is opened: they leave the disk alone.
 template <class Format>
-void format_and_write(const std::string& path, const Format& format) {
+void format_and_write(exec::Cpu& ex, const std::string& path, const Format& format) {
   try {
-    io::write_parts(path, format());
+    io::write_blocks(ex, path, format());
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::over_limit, "out of memory; while writing " + io::printable(path));
   } catch (const std::length_error&) {
@@ -45,19 +51,19 @@ void format_and_write(const std::string& path, const Format& format) {
 
 void write_mesh(const std::string& path, const Mesh& mesh, int threads) {
   const std::string extension = output_format(path);
-  check_triangles(mesh);
   exec::Cpu ex(threads);
-  format_and_write(path, [&] {
-    if (extension == ".obj") return io::format_obj(ex, mesh);
-    if (extension == ".stl") return io::format_stl(ex, mesh);
-    return io::format_ply(ex, {mesh.origin, mesh.vertices, mesh.normals, mesh.attributes}, &mesh.triangles);
+  check_triangles(ex, mesh);
+  format_and_write(ex, path, [&] {
+    if (extension == ".obj") return io::format_obj(mesh);
+    if (extension == ".stl") return io::format_stl(mesh);
+    return io::format_ply({mesh.origin, mesh.vertices, mesh.normals, mesh.attributes}, &mesh.triangles);
   });
 }
 
 void write_cloud(const std::string& path, const Cloud& cloud, int threads) {
   exec::Cpu ex(threads);
-  format_and_write(path, [&] {
-    return io::format_ply(ex, {cloud.origin, cloud.positions, cloud.normals, cloud.attributes}, nullptr);
+  format_and_write(ex, path, [&] {
+    return io::format_ply({cloud.origin, cloud.positions, cloud.normals, cloud.attributes}, nullptr);
   });
 }
 

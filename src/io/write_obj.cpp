@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <string_view>
 
-#include "io/blocks.hpp"
 #include "io/writers.hpp"
 
 namespace pointskin::io {
 namespace {
-
-constexpr std::size_t kBlockRows = 1 << 14;
 
 /// A line that is put together without allocating.
 class LineBuffer {
@@ -39,51 +37,43 @@ void add_three(LineBuffer& line, std::string_view keyword, Number x, Number y, N
   }
 }
 
-/// Appends one part per block of rows: write(i, line) makes line i.
+/// A section of lines: write(i, line) makes line i.
 template <class Write>
-void append_parts(exec::Cpu& ex, std::size_t rows, std::vector<std::string>& parts, const Write& write) {
-  const std::size_t blocks = (rows + kBlockRows - 1) / kBlockRows;
-  const std::size_t before = parts.size();
-  parts.resize(before + blocks);
-  run_in_order(ex, static_cast<std::int64_t>(blocks), [&](std::int64_t b) {
-    const std::size_t first = static_cast<std::size_t>(b) * kBlockRows;
-    LineBuffer line;
-    std::string text;
-    for (std::size_t i = first; i < std::min(rows, first + kBlockRows); ++i) {
-      write(i, line);
-      line.flush_to(text);
-    }
-    parts[before + static_cast<std::size_t>(b)] = std::move(text);
-  });
+Section lines(std::size_t rows, const Write& write) {
+  return {rows, [write](std::size_t first, std::size_t last, std::string& bytes) {
+            LineBuffer line;
+            for (std::size_t i = first; i < last; ++i) {
+              write(i, line);
+              line.flush_to(bytes);
+            }
+          }};
 }
 
 }  // namespace
 
-std::vector<std::string> format_obj(exec::Cpu& ex, const Mesh& mesh) {
-  std::vector<std::string> parts;
-  const bool is_world = is_zero(mesh.origin);
-  append_parts(ex, mesh.vertices.size(), parts, [&](std::size_t i, LineBuffer& line) {
+Blocks format_obj(const Mesh& mesh) {
+  const auto write_vertex = [&mesh, is_world = is_zero(mesh.origin)](std::size_t i, LineBuffer& line) {
     const Vec3f& p = mesh.vertices[i];
     if (is_world) return add_three(line, "v", p.x, p.y, p.z);
     const Vec3d w = world(mesh.origin, p);
     add_three(line, "v", w[0], w[1], w[2]);
-  });
-  append_parts(ex, mesh.normals.size(), parts, [&](std::size_t i, LineBuffer& line) {
+  };
+  const auto write_normal = [&mesh](std::size_t i, LineBuffer& line) {
     add_three(line, "vn", mesh.normals[i].x, mesh.normals[i].y, mesh.normals[i].z);
-  });
-  const bool has_normals = !mesh.normals.empty();
-  append_parts(ex, mesh.triangles.size(), parts, [&](std::size_t t, LineBuffer& line) {
+  };
+  const auto write_face = [&mesh](std::size_t t, LineBuffer& line) {
     line.add("f");
     for (const std::int32_t corner : mesh.triangles[t]) {
       const std::int64_t id = std::int64_t{corner} + 1;
       line.add(" ");
       line.add_number(id);
-      if (!has_normals) continue;
+      if (mesh.normals.empty()) continue;
       line.add("//");
       line.add_number(id);
     }
-  });
-  return parts;
+  };
+  return cut_into_blocks({}, {lines(mesh.vertices.size(), write_vertex), lines(mesh.normals.size(), write_normal),
+                              lines(mesh.triangles.size(), write_face)});
 }
 
 }  // namespace pointskin::io

@@ -7,18 +7,15 @@
 #include <cstring>
 #include <iterator>
 #include <unordered_set>
+#include <utility>
 
-#include "io/blocks.hpp"
 #include "io/scalar.hpp"
 #include "io/writers.hpp"
 
 namespace pointskin::io {
 namespace {
 
-constexpr std::size_t kBlockRows = 1 << 14;
 constexpr std::size_t kFaceBytes = 13;
-
-std::int64_t blocks_of(std::size_t rows) { return static_cast<std::int64_t>((rows + kBlockRows - 1) / kBlockRows); }
 
 template <class T>
 void store(char* to, T value) {
@@ -100,32 +97,26 @@ void store_faces(const std::vector<Triangle>& triangles, std::size_t first, std:
 
 }  // namespace
 
-std::vector<std::string> format_ply(exec::Cpu& ex, const VertexArrays& vertices,
-                                    const std::vector<Triangle>* triangles) {
+Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
   check_shapes(vertices);
   std::string header = vertex_header(vertices);
   if (triangles != nullptr)
     fmt::format_to(std::back_inserter(header), "element face {}\nproperty list uchar int vertex_indices\n",
                    triangles->size());
   header += "end_header\n";
-  const std::size_t rows = vertices.positions.size();
-  const std::size_t row_bytes = row_bytes_of(vertices);
+  const auto append_vertices = [vertices, row_bytes = row_bytes_of(vertices)](std::size_t first, std::size_t last,
+                                                                              std::string& bytes) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + (last - first) * row_bytes);
+    store_rows(vertices, first, last, row_bytes, bytes.data() + before);
+  };
+  const auto append_faces = [triangles](std::size_t first, std::size_t last, std::string& bytes) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + (last - first) * kFaceBytes);
+    store_faces(*triangles, first, last, bytes.data() + before);
+  };
   const std::size_t faces = triangles != nullptr ? triangles->size() : 0;
-  std::string bytes = header;
-  bytes.resize(header.size() + rows * row_bytes + faces * kFaceBytes);
-  char* vertex_bytes = bytes.data() + header.size();
-  char* face_bytes = vertex_bytes + rows * row_bytes;
-  run_in_order(ex, blocks_of(rows), [&](std::int64_t b) {
-    const std::size_t first = static_cast<std::size_t>(b) * kBlockRows;
-    store_rows(vertices, first, std::min(rows, first + kBlockRows), row_bytes, vertex_bytes + first * row_bytes);
-  });
-  run_in_order(ex, blocks_of(faces), [&](std::int64_t b) {
-    const std::size_t first = static_cast<std::size_t>(b) * kBlockRows;
-    store_faces(*triangles, first, std::min(faces, first + kBlockRows), face_bytes + first * kFaceBytes);
-  });
-  std::vector<std::string> parts;
-  parts.push_back(std::move(bytes));
-  return parts;
+  return cut_into_blocks(std::move(header), {{vertices.positions.size(), append_vertices}, {faces, append_faces}});
 }
 
 }  // namespace pointskin::io

@@ -6,15 +6,14 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
+#include <utility>
 
-#include "io/blocks.hpp"
 #include "io/scalar.hpp"
 #include "io/writers.hpp"
 
 namespace pointskin::io {
 namespace {
 
-constexpr std::size_t kBlockRows = 1 << 14;
 constexpr std::size_t kHeaderBytes = 84;
 constexpr std::size_t kTriangleBytes = 50;
 constexpr std::string_view kTitle = "binary STL of pointskin";  // must not start with "solid", which marks text
@@ -44,22 +43,21 @@ void store_triangle(const Mesh& mesh, const Triangle& triangle, char* out) {
 
 }  // namespace
 
-std::vector<std::string> format_stl(exec::Cpu& ex, const Mesh& mesh) {
+Blocks format_stl(const Mesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   if (count > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorCode::over_limit, "STL holds at most 4294967295 triangles; write PLY instead");
-  std::string bytes(kHeaderBytes + count * kTriangleBytes, '\0');
-  std::copy(kTitle.begin(), kTitle.end(), bytes.begin());
+  std::string header(kHeaderBytes, '\0');
+  std::copy(kTitle.begin(), kTitle.end(), header.begin());
   const auto stored_count = static_cast<std::uint32_t>(count);
-  std::memcpy(bytes.data() + kHeaderBytes - sizeof(stored_count), &stored_count, sizeof(stored_count));
-  run_in_order(ex, static_cast<std::int64_t>((count + kBlockRows - 1) / kBlockRows), [&](std::int64_t b) {
-    const std::size_t first = static_cast<std::size_t>(b) * kBlockRows;
-    for (std::size_t t = first; t < std::min(count, first + kBlockRows); ++t)
-      store_triangle(mesh, mesh.triangles[t], bytes.data() + kHeaderBytes + t * kTriangleBytes);
-  });
-  std::vector<std::string> parts;
-  parts.push_back(std::move(bytes));
-  return parts;
+  std::memcpy(header.data() + kHeaderBytes - sizeof(stored_count), &stored_count, sizeof(stored_count));
+  const auto append = [&mesh](std::size_t first, std::size_t last, std::string& bytes) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + (last - first) * kTriangleBytes);
+    for (std::size_t t = first; t < last; ++t)
+      store_triangle(mesh, mesh.triangles[t], bytes.data() + before + (t - first) * kTriangleBytes);
+  };
+  return cut_into_blocks(std::move(header), {{count, append}});
 }
 
 }  // namespace pointskin::io

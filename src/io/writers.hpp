@@ -1,13 +1,15 @@
-// Meshes and clouds as bytes. Blocks are formatted in parallel; the bytes do not depend on the number of threads.
+// Meshes and clouds as bytes, in blocks. What the blocks hold depends on the data alone. The data must outlive them.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <pointskin/cloud.hpp>
 #include <pointskin/mesh.hpp>
 
-#include "exec/cpu.hpp"
+#include "io/output.hpp"
 
 namespace pointskin::io {
 
@@ -19,18 +21,26 @@ struct VertexArrays {
   const std::vector<Attribute>& attributes;
 };
 
-/// Binary little endian PLY in one part. `triangles` null: no face element. Coordinates are double, and in world
-/// units, if the origin is not zero.
+/// Binary little endian PLY. `triangles` null: no face element. Coordinates are double, and in world units, if the
+/// origin is not zero.
 /// @throws Error usage if an array has the wrong length or a name comes twice
-std::vector<std::string> format_ply(exec::Cpu& ex, const VertexArrays& vertices,
-                                    const std::vector<Triangle>* triangles);
+Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles);
 
-/// OBJ text in parts: world coordinates in the fewest digits that read back equal.
-std::vector<std::string> format_obj(exec::Cpu& ex, const Mesh& mesh);
+/// OBJ text: world coordinates in the fewest digits that read back equal.
+Blocks format_obj(const Mesh& mesh);
 
-/// Binary STL in one part, world coordinates as float.
+/// Binary STL, world coordinates as float.
 /// @throws Error over_limit for more than 2^32 - 1 triangles
-std::vector<std::string> format_stl(exec::Cpu& ex, const Mesh& mesh);
+Blocks format_stl(const Mesh& mesh);
+
+/// Rows of a file that are made alike: append(first, last, bytes) adds the rows [first, last) to `bytes`.
+struct Section {
+  std::size_t rows;
+  std::function<void(std::size_t first, std::size_t last, std::string& bytes)> append;
+};
+
+/// The header, then the sections one after the other, 2^14 rows a block.
+Blocks cut_into_blocks(std::string header, std::vector<Section> sections);
 
 /// `origin` + `p`.
 inline Vec3d world(const Vec3d& origin, const Vec3f& p) {

@@ -1,6 +1,7 @@
 // The primitives on the CPU: the bodies that all spaces share, and what only threads can get wrong.
 #include "unit/exec/primitives_tests.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <string>
@@ -12,6 +13,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(OnCpu, Primitives, CpuSpaces);
 namespace {
 
 constexpr int kThreads[] = {1, 2, 5, 16};
+constexpr std::uint64_t kSentinel = 0x5e7713e1;
 
 /// One result of every primitive over n elements.
 struct Results {
@@ -59,6 +61,53 @@ TEST(PrimitivesOnThreads, RunEveryBlockOnce) {
       for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
     }
   }
+}
+
+TEST(PrimitivesOnThreads, AskAPredicateOncePerIndex) {
+  for (const int threads : kThreads) {
+    exec::Cpu ex(threads);
+    for (const std::int64_t n : {0, 1, 63, 64, 65, 2047, 2048, 2049, 100'000}) {
+      std::vector<std::atomic<int>> calls(index(n));
+      const auto kept = to_host(ex, select(ex, "test", n, [&](std::int64_t i) {
+                                  ++calls[index(i)];
+                                  return i % 3 == 0;
+                                }));
+      for (const std::atomic<int>& count : calls) ASSERT_EQ(count, 1);
+      ASSERT_EQ(kept.size(), index((n + 2) / 3));
+      for (std::size_t k = 0; k < kept.size(); ++k) ASSERT_EQ(kept[k], static_cast<std::int32_t>(3 * k));
+    }
+  }
+}
+
+TEST(PrimitivesOnThreads, CopyArraysOfAnySize) {
+  for (const int threads : kThreads) {
+    exec::Cpu ex(threads);
+    for (const std::int64_t n : {0, 1, 32767, 32768, 32769, 100'000}) {
+      const std::vector<std::uint64_t> from = random_keys(n, 59, 64);
+      const auto there = upload(ex, from);
+      auto copied = exec::make_buffer<std::uint64_t>(ex, n + 1);
+      copy_to_device(ex, &kSentinel, copied.view().part(n, 1));
+      copy(ex, there.cview(), copied.view());
+      std::vector<std::uint64_t> expected = from;
+      expected.push_back(kSentinel);
+      expect_same(to_host(ex, copied), expected);
+    }
+  }
+}
+
+TEST(PrimitivesOnThreads, SortAtTheBordersOfBlocks) {
+  for (const int threads : {1, 4})
+    for (const std::int64_t n : {0, 1, 4095, 4096, 4097, 262'145, 500'001}) {
+      exec::Cpu ex(threads);
+      const std::vector<std::uint64_t> from = random_keys(n, 61, 11);
+      auto keys = upload(ex, from);
+      auto order = exec::iota(ex, n);
+      sort_pairs(ex, "test", keys, order, 11);
+      std::vector<std::int32_t> expected = counted(n);
+      std::stable_sort(expected.begin(), expected.end(),
+                       [&](std::int32_t a, std::int32_t b) { return from[index(a)] < from[index(b)]; });
+      expect_same(to_host(ex, order), expected);
+    }
 }
 
 struct ThrowAt {
@@ -122,6 +171,52 @@ TEST(CpuPool, AlignsEveryBlock) {
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(blocks.back().data()) % 256, 0U) << size;
     blocks.back().data()[size - 1] = 1;  // for the address sanitizer
   }
+}
+
+/// Buffers of random sizes, small and large, taken and freed in random order; each keeps its bytes while it lives.
+TEST(CpuPool, NeverHandsOutMemoryThatIsInUse) {
+  exec::Cpu ex(1);
+  std::vector<exec::Buffer<std::uint64_t>> live;
+  for (std::uint64_t step = 0; step < 2000; ++step) {
+    const std::uint64_t dice = hash(step);
+    if (live.size() > 20 || (dice % 3 == 0 && !live.empty())) {
+      exec::Buffer<std::uint64_t>& victim = live[(dice >> 8) % live.size()];
+      const std::uint64_t mark = victim.data()[0];
+      for (std::int64_t i = 0; i < victim.size(); i += 256) ASSERT_EQ(victim.data()[i], mark) << "step " << step;
+      ASSERT_EQ(victim.data()[victim.size() - 1], mark) << "step " << step;
+      victim.swap(live.back());
+      live.pop_back();
+      continue;
+    }
+    const auto size = static_cast<std::int64_t>(1 + (dice >> 20) % (std::uint64_t{1} << (4 + (dice >> 8) % 17)));
+    auto block = exec::make_buffer<std::uint64_t>(ex, size);
+    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(block.data()) % 256, 0U);
+    for (std::int64_t i = 0; i < size; i += 256) block.data()[i] = step;
+    block.data()[size - 1] = step;
+    live.push_back(std::move(block));
+  }
+}
+
+TEST(CpuPool, CutsBlocksFromAFreedLargerOneAndMergesThemAgain) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "blocks are not cut under the address sanitizer";
+#endif
+  constexpr std::int64_t kLarge = 8 << 20;
+  exec::Cpu ex(1);
+  auto whole = exec::make_buffer<char>(ex, kLarge);
+  const char* data = whole.data();
+  whole.reset();
+  auto first = exec::make_buffer<char>(ex, kLarge / 4);
+  auto second = exec::make_buffer<char>(ex, kLarge / 2);
+  auto third = exec::make_buffer<char>(ex, kLarge / 4);
+  for (const exec::Buffer<char>* part : {&first, &second, &third}) {
+    EXPECT_GE(part->data(), data);
+    EXPECT_LE(part->data() + part->size(), data + kLarge);
+  }
+  first.reset();
+  third.reset();
+  second.reset();
+  EXPECT_EQ(exec::make_buffer<char>(ex, kLarge).data(), data);
 }
 
 }  // namespace

@@ -92,6 +92,19 @@ TEST_F(BenchCommand, ReportsEveryPhaseOfFilesWithTheirPoints) {
   EXPECT_EQ(report["command_line"][1], "bench");
 }
 
+TEST_F(BenchCommand, TellsFilesOfTheSameNameApart) {
+  for (const char* name : {"a", "b"}) {
+    std::filesystem::create_directory(folder_ / name);
+    write_file(folder_ / name + "/scan.ply", ply_bytes(sphere(500)));
+  }
+  write_file(folder_ / "other.ply", ply_bytes(sphere(600)));
+  const Json report =
+      report_of({folder_ / "a/scan.ply", folder_ / "b/scan.ply", folder_ / "other.ply", "--depths", "4"});
+  EXPECT_EQ(report["runs"][0]["cloud"], folder_ / "a/scan.ply");
+  EXPECT_EQ(report["runs"][1]["cloud"], folder_ / "b/scan.ply");
+  EXPECT_EQ(report["runs"][2]["cloud"], "other.ply");
+}
+
 TEST_F(BenchCommand, PlotsOnAWhiteGround) {
   const Result result = bench(small_with({"--plot", folder_ / "plot.svg"}));
   EXPECT_EQ(result.exit_code, 0) << result.err;

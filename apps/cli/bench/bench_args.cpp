@@ -57,7 +57,7 @@ void define_peer(CLI::App& command, BenchArgs& args) {
   command.add_option("--peer-repeat", args.peer_repeat, "runs of each, 1 to 1000")
       ->type_name("N")
       ->group(group)
-      ->check(CLI::Range(1, 1000))
+      ->check(CLI::Range(1, 1000).description(""))
       ->capture_default_str();
 }
 
@@ -76,7 +76,7 @@ void define_bench_options(CLI::App& command, BenchArgs& args) {
   command.add_option("--repeat", args.repeat, "runs on data in memory, 1 to 100000")
       ->type_name("N")
       ->group("Work")
-      ->check(CLI::Range(1, 100000))
+      ->check(CLI::Range(1, 100000).description(""))
       ->capture_default_str();
   add_text(command, "--devices", args.devices, "cpu, cuda (every GPU), cuda:N, separated by commas, or all")
       ->type_name("DEV,...")

@@ -9,6 +9,7 @@
 #include <pointskin/error.hpp>
 
 #include "args.hpp"
+#include "console.hpp"
 #include "input.hpp"
 #include "shapes.hpp"
 
@@ -52,6 +53,13 @@ std::vector<CloudSource> paper_sources(const std::vector<int>& depths) {
   return sources;
 }
 
+/// The file's name alone, where that tells it from the other inputs.
+std::string short_path(const std::string& path, const std::vector<std::string>& inputs) {
+  const auto name_of = [](const std::string& any) { return std::filesystem::path(any).filename(); };
+  const auto same = [&](const std::string& other) { return name_of(other) == name_of(path); };
+  return one_line(std::count_if(inputs.begin(), inputs.end(), same) > 1 ? path : name_of(path).string());
+}
+
 }  // namespace
 
 std::vector<CloudSource> cloud_sources(const BenchArgs& args) {
@@ -61,7 +69,7 @@ std::vector<CloudSource> cloud_sources(const BenchArgs& args) {
   std::vector<CloudSource> sources;
   for (const std::string& path : args.inputs) {
     if (path == "-") throw Error(ErrorCode::usage, "stdin (-) cannot be measured again and again; name a file");
-    sources.push_back({std::filesystem::path(path).filename().string(), path, "", 0, depths});
+    sources.push_back({short_path(path, args.inputs), path, "", 0, depths});
   }
   for (const std::string& text : args.generate) sources.push_back(parse_generate(text, depths));
   return sources;

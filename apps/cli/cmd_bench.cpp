@@ -77,8 +77,8 @@ struct Bench {
   std::vector<Device> devices{};
   std::vector<Reconstructor> reconstructors{};  ///< one a device
   std::vector<std::string> peer{};              ///< words; empty: none
+  std::optional<WorkFolder> folder{};           ///< with a peer; goes after the launcher, whose programs write there
   std::optional<Launcher> launcher{};           ///< with a peer
-  std::optional<WorkFolder> folder{};           ///< with a peer
   std::size_t name_width = 5;                   ///< of the column of clouds
   Results results{};
 };

@@ -185,10 +185,12 @@ TEST_F(BenchCommand, APeerGetsNoShell) {
 }
 
 TEST_F(BenchCommand, AnInterruptLeavesNothingBehind) {
+  const std::string id = folder_ / "id";
   std::filesystem::create_directory(folder_ / "tmp");
   Start start;
   start.args = {"bench", "--devices", "cpu", "--repeat", "1", "--generate", "knot:3000", "--depths", "5"};
-  start.args.insert(start.args.end(), {"--peer", '"' + script("sleep 50\n") + "\" {in} {out}"});
+  start.args.insert(start.args.end(),
+                    {"--peer", '"' + script("sleep 50 & echo $! > '" + id + "'; wait\n") + "\" {in} {out}"});
   start.args.insert(start.args.end(), {"--report", folder_ / "r.json"});
   start.environment = {"TMPDIR=" + folder_ / "tmp"};
   start.signal = SIGINT;
@@ -198,6 +200,12 @@ TEST_F(BenchCommand, AnInterruptLeavesNothingBehind) {
   EXPECT_LT(result.seconds, 40);
   EXPECT_TRUE(std::filesystem::is_empty(folder_ / "tmp"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "r.json"));
+  // What the peer started is gone too. Nobody may have waited for it yet: then its command line is empty.
+  std::string sleeper = read_file(id);
+  ASSERT_FALSE(sleeper.empty()) << result.err;
+  sleeper.pop_back();
+  const std::string command = "/proc/" + sleeper + "/cmdline";
+  EXPECT_TRUE(!std::filesystem::exists(command) || read_file(command).empty()) << read_file(command);
 }
 
 TEST_F(BenchCommand, UsageErrorsAreFoundBeforeAnyWork) {

@@ -83,6 +83,7 @@ Outcome launch(std::vector<std::string> request) {
 
 /// Life of the small process: until the other end of the socket is gone.
 [[noreturn]] void serve(int socket) {
+  setpgid(0, 0);  // a group of its own, with all that the programs start: ~Launcher() ends them together
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
   std::vector<char> message(kLongestRequest);
@@ -121,11 +122,12 @@ Launcher::Launcher() {
   close(sockets[1]);
   socket_ = sockets[0];
   if (id_ < 0) throw_internal("fork");
+  setpgid(id_, id_);  // both sides do it: whoever comes first
 }
 
 Launcher::~Launcher() {
   close(socket_);
-  kill(id_, SIGKILL);  // and with it a program that still runs
+  kill(-id_, SIGKILL);
   waitpid(id_, nullptr, 0);
 }
 
@@ -138,7 +140,6 @@ Outcome Launcher::run(const std::vector<std::string>& words, const std::string& 
   for (pollfd answer = {socket_, POLLIN, 0}; poll(&answer, 1, 100) <= 0;) throw_if_interrupted();
   Outcome outcome;
   const ssize_t count = recv(socket_, &outcome, sizeof outcome, 0);
-  throw_if_interrupted();  // A signal from a terminal also ends the launching process.
   if (count != sizeof outcome)
     throw Error(ErrorCode::internal, "cannot start programs: the launching process has ended");
   return outcome;

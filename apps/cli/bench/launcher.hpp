@@ -25,7 +25,7 @@ std::string describe(const Outcome& outcome);
 
 /// A small process that starts the programs. Linux counts what the starting process holds into the peak memory of the
 /// program started, so whoever starts them must hold little: make this before anything large, and before any thread.
-/// The programs end with this process.
+/// The programs, and what they start, end with this object.
 class Launcher {
  public:
   /// @throws Error internal if the system refuses

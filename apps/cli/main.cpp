@@ -21,7 +21,7 @@ namespace {
 
 constexpr char kFooter[] =
     "Exit codes: 0 ok, 1 internal error, 2 usage, 3 input unreadable or invalid, 4 no usable normals,\n"
-    "5 result empty or mesh not watertight, 6 over the memory or index limit, 7 device unavailable,\n"
+    "5 result empty, mesh not watertight or peer failed, 6 over the memory or index limit, 7 device unavailable,\n"
     "8 output not written, 130 interrupted.\n"
     "Help on a command: pointskin COMMAND --help";
 
@@ -38,6 +38,7 @@ void define_program(CLI::App& program, Job& job) {
   add_compare(program, job);
   add_convert(program, job);
   add_render(program, job);
+  add_bench(program, job);
 }
 
 /// A usage error, with where to look.

@@ -2,12 +2,12 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <fstream>
 
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "statistics.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -61,15 +61,9 @@ Json ms_json(const Record& record) {
           {"download", run.download_ms}, {"write", record.write_ms}, {"total", record.total_ms}};
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
-Json repeat_json(const std::vector<double>& ms) {
-  const auto [least, most] = std::minmax_element(ms.begin(), ms.end());
-  return {{"min", *least}, {"median", median(ms)}, {"max", *most}};
+Json repeat_json(const std::vector<double>& values) {
+  const Spread ms = spread_of(values);
+  return {{"min", ms.min}, {"median", ms.median}, {"max", ms.max}};
 }
 
 }  // namespace
@@ -99,7 +93,7 @@ std::string summary(const Record& record) {
       record.total_ms, format_bytes(static_cast<double>(run.device_peak_bytes)),
       format_bytes(static_cast<double>(record.host_peak_bytes)));
   if (!record.repeat_ms.empty()) {
-    const double ms = median(record.repeat_ms);
+    const double ms = spread_of(record.repeat_ms).median;
     line +=
         fmt::format("; {} runs: median {:.2f} ms, {:.1f} frames per second", record.repeat_ms.size(), ms, 1000 / ms);
   }

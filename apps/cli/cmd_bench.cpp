@@ -1,0 +1,190 @@
+// pointskin bench: times and memory on this machine, beside another program where one is given.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include <pointskin/error.hpp>
+#include <pointskin/io.hpp>
+
+#include "bench/bench_args.hpp"
+#include "bench/clouds.hpp"
+#include "bench/launcher.hpp"
+#include "bench/measure.hpp"
+#include "bench/plot.hpp"
+#include "bench/results_json.hpp"
+#include "bench/table.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "json_text.hpp"
+#include "output_check.hpp"
+#include "progress.hpp"
+#include "signals.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+/// A folder for the files of the programs, removed at the end.
+class WorkFolder {
+ public:
+  WorkFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "pointskin-bench-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw Error(ErrorCode::output_not_written, fmt::format("{}: cannot make this folder", name));
+    }
+    path_ = name;
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// Shows what is being measured. A depth costs about four times the one before.
+class BenchProgress {
+ public:
+  BenchProgress(const std::vector<CloudSource>& sources, bool shown) : line_(shown) {
+    for (const CloudSource& source : sources) {
+      for (const int depth : source.depths) all_ += std::pow(4.0, depth);
+    }
+  }
+  void begin(const std::string& cloud, int depth) { what_ = fmt::format("{}, depth {}", one_line(cloud), depth); }
+  void end(int depth) { done_ += std::pow(4.0, depth); }
+  void show() { line_.update({what_.c_str(), done_ / all_}); }
+  /// Before lines on stdout, which may be the same terminal.
+  void clear() { line_.clear(); }
+
+ private:
+  ProgressLine line_;
+  std::string what_;
+  double all_ = 0, done_ = 0;
+};
+
+/// What is set up before the first cloud and used until the last.
+struct Bench {
+  const BenchArgs& args;
+  std::vector<Device> devices{};
+  std::vector<Reconstructor> reconstructors{};  ///< one a device
+  std::vector<std::string> peer{};              ///< words; empty: none
+  std::optional<WorkFolder> folder{};           ///< with a peer; goes after the launcher, whose programs write there
+  std::optional<Launcher> launcher{};           ///< with a peer
+  std::size_t name_width = 5;                   ///< of the column of clouds
+  Results results{};
+};
+
+void check_output(const std::string& option, const std::string& path, const BenchArgs& args) {
+  if (path.empty()) return;
+  if (path == "-") throw Error(ErrorCode::usage, option + ": stdout carries the table; name a file");
+  for (const std::string& input : args.inputs) {
+    std::error_code ignored;  // files that do not exist are not the same
+    if (std::filesystem::equivalent(input, path, ignored)) {
+      throw Error(ErrorCode::usage, fmt::format("{} would overwrite the input {}", option, input));
+    }
+  }
+  check_replaceable(path);
+}
+
+void measure_depth(Bench& bench, const Cloud& cloud, int depth, BenchProgress& progress) {
+  const auto keep_going = [&progress] {
+    progress.show();
+    return !interrupted();
+  };
+  for (Reconstructor& reconstructor : bench.reconstructors) {
+    MemoryRun run = measure_in_memory(reconstructor, cloud, {depth, bench.args.repeat, keep_going});
+    run.cloud = bench.results.clouds.size() - 1;
+    bench.results.memory_runs.push_back(std::move(run));
+    progress.clear();
+    write_stdout(memory_row(bench.results, bench.results.memory_runs.back(), bench.name_width));
+  }
+}
+
+void race_depth(Bench& bench, const std::string& input, int depth) {
+  const Race race = {input,     bench.folder->path(), depth, bench.args.threads, bench.args.peer_repeat, bench.devices,
+                     bench.peer};
+  for (FileRun& run : measure_files(*bench.launcher, race)) {
+    run.cloud = bench.results.clouds.size() - 1;
+    if (!run.failure.empty()) {
+      const std::string& cloud = bench.results.clouds.back().name;
+      print_warning(fmt::format("{}, depth {}: {} failed: {}", cloud, depth, run.program, run.failure));
+    }
+    bench.results.file_runs.push_back(std::move(run));
+  }
+}
+
+void measure_cloud(Bench& bench, const CloudSource& source, BenchProgress& progress) {
+  const Cloud cloud = load(source, bench.args.threads);
+  bench.results.clouds.push_back({source.name, source.path, source.shape, cloud.size(), cloud.dropped});
+  std::string input = source.path.empty() ? "" : std::filesystem::absolute(source.path).string();
+  if (bench.launcher && input.empty()) {
+    input = bench.folder->path() + "/cloud.ply";
+    write_cloud(input, cloud, bench.args.threads);
+  }
+  for (const int depth : source.depths) {
+    progress.begin(source.name, depth);
+    measure_depth(bench, cloud, depth, progress);
+    if (bench.launcher) race_depth(bench, input, depth);
+    throw_if_interrupted();
+    progress.end(depth);
+  }
+}
+
+void write_outputs(const Bench& bench) {
+  const BenchArgs& args = bench.args;
+  if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(bench.results, args, bench.devices)));
+  if (!args.plot.empty()) write_file_atomically(args.plot, plot(bench.results));
+}
+
+/// Whatever can be refused is refused here, before the first measurement.
+void prepare(Bench& bench, const std::vector<CloudSource>& sources) {
+  const BenchArgs& args = bench.args;
+  check_output("--report", args.report, args);
+  check_output("--plot", args.plot, args);
+  if (!args.peer.empty()) {
+    bench.peer = parse_peer(args.peer);
+    bench.launcher.emplace();
+    bench.folder.emplace();
+  }
+  bench.devices = parse_devices(args.devices, args.threads);
+  for (const Device& device : bench.devices) bench.reconstructors.emplace_back(device);
+  for (const CloudSource& source : sources) bench.name_width = std::max(bench.name_width, source.name.size());
+}
+
+int run(const BenchArgs& args) {
+  on_interrupt(OnInterrupt::remember);
+  const std::vector<CloudSource> sources = cloud_sources(args);
+  Bench bench{.args = args};
+  prepare(bench, sources);
+  BenchProgress progress(sources, !args.quiet && stderr_is_terminal());
+  for (const Device& device : bench.devices) {
+    if (!args.quiet) print_note(fmt::format("{}: {}", short_name(device), device.name()));
+  }
+  write_stdout(memory_header(bench.name_width));
+  for (const CloudSource& source : sources) measure_cloud(bench, source, progress);
+  if (bench.launcher) write_stdout(file_table(bench.results, bench.name_width));
+  write_outputs(bench);
+  const std::vector<FileRun>& runs = bench.results.file_runs;
+  const bool any_failed = std::any_of(runs.begin(), runs.end(), [](const FileRun& r) { return !r.failure.empty(); });
+  return any_failed ? static_cast<int>(ErrorCode::empty_result) : 0;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program, Job& job) {
+  CLI::App* command = add_command(program, "bench", "Measure times and memory, also of another program.");
+  auto args = std::make_shared<BenchArgs>();
+  define_bench_options(*command, *args);
+  finish_command(*command, job, args, run);
+}
+
+}  // namespace pointskin::cli

@@ -136,12 +136,12 @@ struct CountWord {
   PSK_HD void operator()(std::int64_t i) const { counts[i] = i < words.size ? count_bits(words[i]) : 0; }
 };
 
-/// Number of bricks before every level.
+/// The values of a scan where levels begin.
 struct PickBorders {
+  std::int64_t at[kMaxDepth + 2];
   ArrayView<const std::int32_t> before;
-  std::int64_t first_word[kMaxDepth + 2];
   ArrayView<std::int32_t> borders;
-  PSK_HD void operator()(std::int64_t i) const { borders[i] = before[first_word[i]]; }
+  PSK_HD void operator()(std::int64_t i) const { borders[i] = before[at[i]]; }
 };
 
 /// Writes the keys of the bits of one level's words.
@@ -157,6 +157,81 @@ struct ListKeys {
   }
 };
 
+/// The bricks of a level as a bitmap and, numbered by it, as keys.
+struct LevelBricks {
+  const std::uint32_t* words;
+  const std::uint64_t* keys;
+  std::int32_t bricks_per_axis;
+  std::int64_t first;  // of the level among the bricks of all these levels
+
+  [[nodiscard]] PSK_HD bool contains(const Coordinates& c) const {
+    if (c.x < 0 || c.y < 0 || c.z < 0 || c.x >= bricks_per_axis || c.y >= bricks_per_axis || c.z >= bricks_per_axis)
+      return false;
+    const std::uint64_t brick = encode(c);
+    return (words[brick / kWordBits] >> (brick % kWordBits) & 1) != 0;
+  }
+
+  /// Ghosts that a brick brings along: bit s is set if no brick stands one step s above it, and if of the bricks that
+  /// stand one step below that place this is the one by the smallest step.
+  [[nodiscard]] PSK_HD unsigned ghosts_of(std::uint64_t brick) const {
+    const Coordinates c = decode(brick);
+    std::uint32_t around = 0;
+    PSK_UNROLL for (int j = 0; j < kNeighbours; ++j)
+      if (contains({c.x + j / 9 - 1, c.y + j / 3 % 3 - 1, c.z + j % 3 - 1})) around |= 1U << j;
+    unsigned ghosts = 0;
+    for (int s = 1; s < 8; ++s)
+      if ((around & claims_on_ghost(s)) == 0) ghosts |= 1U << s;
+    return ghosts;
+  }
+
+  /// By neighbour index: the place of the ghost at step s, and the bricks below it by smaller steps.
+  PSK_HD static std::uint32_t claims_on_ghost(int s) {
+    std::uint32_t claims = 0;
+    for (int t = 0; t < s; ++t)
+      claims |= 1U << neighbour_index(slot_x(s) - slot_x(t), slot_y(s) - slot_y(t), slot_z(s) - slot_z(t));
+    return claims;
+  }
+};
+
+/// Levels in one launch, finest first: most bricks are there.
+struct AllLevelBricks {
+  int levels;
+  LevelBricks level[kMaxDepth + 1];
+  [[nodiscard]] PSK_HD const LevelBricks& of(std::int64_t brick) const {
+    int i = levels - 1;
+    while (brick < level[i].first) --i;
+    return level[i];
+  }
+};
+
+struct CountGhosts {
+  AllLevelBricks bricks;
+  ArrayView<std::uint8_t> masks;
+  ArrayView<std::int32_t> counts;  // one more, 0
+  PSK_HD void operator()(std::int64_t i) const {
+    unsigned ghosts = 0;
+    if (i < masks.size) {
+      const LevelBricks& level = bricks.of(i);
+      ghosts = level.ghosts_of(level.keys[i - level.first]);
+      masks[i] = static_cast<std::uint8_t>(ghosts);
+    }
+    counts[i] = count_bits(ghosts);
+  }
+};
+
+/// Ghosts as 8 brick + step, numbered by level.
+struct ListGhosts {
+  AllLevelBricks bricks;
+  ArrayView<const std::uint8_t> masks;
+  ArrayView<const std::int32_t> before;
+  ArrayView<std::int32_t> ghosts;
+  PSK_HD void operator()(std::int64_t i) const {
+    std::int32_t at = before[i];
+    const auto brick = static_cast<std::int32_t>(i - bricks.of(i).first);
+    for (unsigned steps = masks[i]; steps != 0; steps &= steps - 1) ghosts[at++] = 8 * brick + lowest_bit(steps);
+  }
+};
+
 /// Words of the bitmap of level d > kCompleteDepth.
 constexpr std::int64_t bitmap_words(int d) { return (std::int64_t{1} << 3 * (d - 1)) / kWordBits; }
 
@@ -169,7 +244,19 @@ inline int deepest_bitmap(std::int64_t points, int depth) {
   return d;
 }
 
-/// Sorted keys of the cell bricks of every level; none for the complete ones.
+/// Sorted keys of the cell bricks of every level; none for the complete ones. Levels with bitmaps have their ghosts, too.
+struct BrickSets {
+  std::vector<exec::Buffer<std::uint64_t>> keys;
+  exec::Buffer<std::int32_t> ghosts;      ///< 8 brick + step, of levels kCompleteDepth + 1..last_with_ghosts
+  std::vector<std::int32_t> first_ghost;  ///< of each level, counted from kCompleteDepth + 1, and the end
+  int last_with_ghosts = kCompleteDepth;
+
+  [[nodiscard]] bool has_ghosts(int depth) const { return depth <= last_with_ghosts; }
+  [[nodiscard]] ArrayView<const std::int32_t> ghosts_of(int depth) const {
+    const auto i = static_cast<std::size_t>(depth - kCompleteDepth - 1);
+    return ghosts.cview().part(first_ghost[i], first_ghost[i + 1] - first_ghost[i]);
+  }
+};
 using BrickKeys = std::vector<exec::Buffer<std::uint64_t>>;
 
 /// Keys of the cell bricks of level `depth`, given the sorted keys of the cells that they must surround.
@@ -199,19 +286,45 @@ void sort_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
   }
 }
 
-/// Levels last..kCompleteDepth + 1, by bitmaps: all marked, counted and numbered with one round trip.
+/// Values of a scan at some positions, on the host. One round trip for all levels.
 template <exec::Space Exec>
-void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth, int last, BrickKeys& keys) {
+std::vector<std::int32_t> read_borders(Exec& ex, const exec::Buffer<std::int32_t>& before, PickBorders pick, int count) {
+  auto borders = exec::make_buffer<std::int32_t>(ex, count);
+  pick.before = before.cview();
+  pick.borders = borders.view();
+  for_each(ex, "octree.count", count, pick);
+  std::vector<std::int32_t> host(static_cast<std::size_t>(count));
+  copy_to_host(ex, borders.cview(), host.data());
+  return host;
+}
+
+/// Ghosts of the levels whose bitmaps and keys are known.
+template <exec::Space Exec>
+void find_ghosts(Exec& ex, const AllLevelBricks& bricks, PickBorders first_brick, BrickSets& sets) {
+  const std::int64_t all = first_brick.at[bricks.levels];
+  auto masks = exec::make_buffer<std::uint8_t>(ex, all);
+  auto before = exec::make_buffer<std::int32_t>(ex, all + 1);
+  for_each(ex, "octree.ghosts", all + 1, CountGhosts{bricks, masks.view(), before.view()});
+  exclusive_scan(ex, "octree.ghosts", before.cview(), before.view());
+  sets.first_ghost = read_borders(ex, before, first_brick, bricks.levels + 1);
+  sets.ghosts = exec::make_buffer<std::int32_t>(ex, sets.first_ghost.back());
+  for_each(ex, "octree.ghosts", all, ListGhosts{bricks, masks.cview(), before.cview(), sets.ghosts.view()});
+}
+
+/// Levels last..kCompleteDepth + 1, by bitmaps: all marked, counted and numbered with two round trips.
+template <exec::Space Exec>
+void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth, int last, BrickSets& sets) {
   constexpr int kFirst = kCompleteDepth + 1;
   if (last < kFirst) return;
+  BrickKeys& keys = sets.keys;
   PickBorders pick{};
-  for (int d = kFirst; d <= last; ++d) pick.first_word[d - kFirst + 1] = pick.first_word[d - kFirst] + bitmap_words(d);
+  for (int d = kFirst; d <= last; ++d) pick.at[d - kFirst + 1] = pick.at[d - kFirst] + bitmap_words(d);
   const int levels = last - kFirst + 1;
-  const std::int64_t words = pick.first_word[levels];
+  const std::int64_t words = pick.at[levels];
 
   auto bits = exec::make_buffer<std::uint32_t>(ex, words);
   exec::fill(ex, bits.view(), 0U);
-  const auto words_of = [&](int d) { return bits.data() + pick.first_word[d - kFirst]; };
+  const auto words_of = [&](int d) { return bits.data() + pick.at[d - kFirst]; };
   for (int d = last; d >= kFirst; --d) {
     const TouchedBricks around{1 << (d - 1)};
     const BrickBits own{words_of(d)};
@@ -227,20 +340,23 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
   auto before = exec::make_buffer<std::int32_t>(ex, words + 1);
   for_each(ex, "octree.count", words + 1, CountWord{bits.cview(), before.view()});
   exclusive_scan(ex, "octree.count", before.cview(), before.view());
-  auto borders = exec::make_buffer<std::int32_t>(ex, levels + 1);
-  pick.before = before.cview();
-  pick.borders = borders.view();
-  for_each(ex, "octree.count", levels + 1, pick);
-  std::int32_t first[kMaxDepth + 2];
-  copy_to_host(ex, borders.cview(), first);
-  for (int d = kFirst; d <= last; ++d) {
-    const std::int32_t begin = first[d - kFirst];
+  const std::vector<std::int32_t> first = read_borders(ex, before, pick, levels + 1);
+  AllLevelBricks all{levels, {}};
+  PickBorders first_brick{};
+  for (int i = 0; i < levels; ++i) {
+    const int d = kFirst + i;
+    const std::int32_t begin = first[static_cast<std::size_t>(i)];
+    const std::int32_t end = first[static_cast<std::size_t>(i) + 1];
     auto& own = keys[static_cast<std::size_t>(d)];
-    own = exec::make_buffer<std::uint64_t>(ex, first[d - kFirst + 1] - begin);
+    own = exec::make_buffer<std::uint64_t>(ex, end - begin);
     check_limit(own.size(), d);
-    for_each(ex, "octree.keys", bitmap_words(d),
-             ListKeys{words_of(d), before.data() + pick.first_word[d - kFirst], begin, own.view()});
+    for_each(ex, "octree.keys", bitmap_words(d), ListKeys{words_of(d), before.data() + pick.at[i], begin, own.view()});
+    all.level[i] = {words_of(d), own.data(), 1 << (d - 1), begin};
+    first_brick.at[i + 1] = end;
   }
+  before.reset();
+  find_ghosts(ex, all, first_brick, sets);
+  sets.last_with_ghosts = last;
 }
 
 }  // namespace build
@@ -248,12 +364,13 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
 /// Sorted keys of the cell bricks of levels kCompleteDepth + 1..depth: those touched by the 27-neighbourhoods of
 /// occupied cells at the finest level, of cells that have children above it.
 template <exec::Space Exec>
-build::BrickKeys find_brick_keys(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth) {
-  build::BrickKeys keys(static_cast<std::size_t>(depth) + 2);
+build::BrickSets find_brick_sets(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth) {
+  build::BrickSets sets;
+  sets.keys.resize(static_cast<std::size_t>(depth) + 2);
   const int last = build::deepest_bitmap(point_keys.size, depth);
-  build::sort_levels(ex, point_keys, depth, last, keys);
-  build::mark_levels(ex, point_keys, depth, last, keys);
-  return keys;
+  build::sort_levels(ex, point_keys, depth, last, sets.keys);
+  build::mark_levels(ex, point_keys, depth, last, sets);
+  return sets;
 }
 
 }  // namespace pointskin::octree

@@ -84,13 +84,19 @@ struct NeedsGhost {
 
 struct AddGhost {
   LevelView above;
-  ArrayView<const std::int32_t> ghost_parents;
+  ArrayView<const std::int32_t> ghosts;  // their parent nodes; or, if `by_step`, 8 brick + step
+  bool by_step;
   std::int32_t first;
   ArrayView<std::uint64_t> keys;
-  ArrayView<std::int32_t> parent;
+  ArrayView<std::int32_t> parent;  // of the cell bricks already
   ArrayView<std::int32_t> child_brick_above;
+
+  [[nodiscard]] PSK_HD std::int32_t parent_of(std::int32_t ghost) const {
+    const int step = ghost & 7;
+    return by_step ? above.neighbour(parent[ghost >> 3], slot_x(step), slot_y(step), slot_z(step)) : ghost;
+  }
   PSK_HD void operator()(std::int64_t i) const {
-    const std::int32_t node = ghost_parents[i];
+    const std::int32_t node = parent_of(ghosts[i]);
     keys[first + i] = above.node_key(node);
     parent[first + i] = node;
     child_brick_above[node] = static_cast<std::int32_t>(first + i);
@@ -230,7 +236,8 @@ struct RootPoints {
 
 /// Ghost bricks, ids, neighbours and unknowns of level `d`, whose cell brick keys are given. Levels above are complete.
 template <exec::Space Exec>
-void link_level(Exec& ex, OctreeData& tree, int d, const exec::Buffer<std::uint64_t>& cell_keys) {
+void link_level(Exec& ex, OctreeData& tree, int d, const BrickSets& sets) {
+  const exec::Buffer<std::uint64_t>& cell_keys = sets.keys[static_cast<std::size_t>(d)];
   LevelData& above = tree.levels[static_cast<std::size_t>(d - 1)];
   LevelData& level = tree.levels[static_cast<std::size_t>(d)];
   const auto cell_bricks = static_cast<std::int32_t>(cell_keys.size());
@@ -243,16 +250,19 @@ void link_level(Exec& ex, OctreeData& tree, int d, const exec::Buffer<std::uint6
            FindParent{cell_keys.cview(), above_keys, cell_parents.view(), above.child_brick.view()});
 
   const LevelView above_view = tree.view().levels[d - 1];
-  const exec::Buffer<std::int32_t> ghosts = select(ex, "octree.ghosts", above_view.nodes(), NeedsGhost{above_view});
-  check_limit(cell_bricks + ghosts.size(), d);
+  const bool has_ghosts = sets.has_ghosts(d);
+  exec::Buffer<std::int32_t> ghost_parents;
+  if (!has_ghosts) ghost_parents = select(ex, "octree.ghosts", above_view.nodes(), NeedsGhost{above_view});
+  const ArrayView<const std::int32_t> ghosts = has_ghosts ? sets.ghosts_of(d) : ghost_parents.cview();
+  check_limit(cell_bricks + ghosts.size, d);
   level.cell_bricks = cell_bricks;
-  level.bricks = static_cast<std::int32_t>(cell_bricks + ghosts.size());
+  level.bricks = static_cast<std::int32_t>(cell_bricks + ghosts.size);
   level.brick_key = exec::make_buffer<std::uint64_t>(ex, level.bricks);
   level.parent = exec::make_buffer<std::int32_t>(ex, level.bricks);
   copy(ex, cell_keys.cview(), level.brick_key.view().part(0, cell_bricks));
   copy(ex, cell_parents.cview(), level.parent.view().part(0, cell_bricks));
-  for_each(ex, "octree.ghosts", ghosts.size(),
-           AddGhost{above_view, ghosts.cview(), cell_bricks, level.brick_key.view(), level.parent.view(),
+  for_each(ex, "octree.ghosts", ghosts.size,
+           AddGhost{above_view, ghosts, has_ghosts, cell_bricks, level.brick_key.view(), level.parent.view(),
                     above.child_brick.view()});
 
   level.neighbours = exec::make_buffer<std::int32_t>(ex, std::int64_t{kNeighbours} * level.bricks);
@@ -324,13 +334,13 @@ OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int
   tree.levels.resize(static_cast<std::size_t>(depth) + 1);
 
   // Reverse level order (Listing 1): which bricks exist.
-  BrickKeys cell_keys = find_brick_keys(ex, point_keys, depth);
+  BrickSets sets = find_brick_sets(ex, point_keys, depth);
 
   // Level order (Listing 2): who is whose neighbour.
   build_complete_levels(ex, tree, std::min(depth, kCompleteDepth));
   for (int d = kCompleteDepth + 1; d <= depth; ++d) {
-    link_level(ex, tree, d, cell_keys[static_cast<std::size_t>(d)]);
-    cell_keys[static_cast<std::size_t>(d)].reset();
+    link_level(ex, tree, d, sets);
+    sets.keys[static_cast<std::size_t>(d)].reset();
   }
   LevelData& finest = tree.levels.back();
   finest.child_brick = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * finest.bricks);

@@ -22,7 +22,7 @@ struct SumHats {
     const std::int32_t last = level.point_begin[cell + 1];
     if (first < last) {
       const octree::Coordinates at = octree::decode(level.node_key(static_cast<std::int32_t>(cell)));
-      for (std::int32_t i = first; i < last; ++i) {
+      PSK_UNROLL_BY_4 for (std::int32_t i = first; i < last; ++i) {
         const Vec3f local = octree::local_in_cell(positions[i], at, level.depth);
         PSK_UNROLL for (int s = 0; s < 8; ++s) sum[s] += octree::corner_weight(s, local);
       }
@@ -53,6 +53,21 @@ struct RestrictCounts {
   ArrayView<float> counts;
   PSK_HD void operator()(std::int64_t n) const {
     counts[n] = octree::restricted(level, below, below_counts, static_cast<std::int32_t>(n));
+  }
+};
+
+/// The complete levels, one a round: each is done in less time than a launch takes.
+struct RestrictLevels {
+  octree::OctreeView tree;
+  int first;  // depth of round 0
+  float* counts;
+
+  PSK_HD bool takes_part(int) const { return true; }
+  PSK_HD int prepare(int) const { return 0; }
+  PSK_HD void operator()(int round, int n, int) const {
+    const octree::LevelView& level = tree.levels[first - round];
+    const octree::LevelView& below = tree.levels[first - round + 1];
+    if (n < level.nodes()) counts[level.first_node + n] = octree::restricted(level, below, counts + below.first_node, n);
   }
 };
 
@@ -138,13 +153,17 @@ Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const 
   for_each(ex, "density.splat", counted.cells(), density::SumHats{counted, positions, hats.view()});
   for_each(ex, "density.splat", counted.nodes(),
            density::GatherHats{counted, hats.cview(), result.counts.view().part(counted.first_node, counted.nodes())});
-  for (int d = result.depth - 1; d >= 0; --d) {
+  const int complete = std::min(result.depth - 1, octree::kCompleteDepth);
+  for (int d = result.depth - 1; d > complete; --d) {
     const octree::LevelView& level = view.levels[d];
     const octree::LevelView& below = view.levels[d + 1];
     for_each(ex, "density.restrict", level.nodes(),
              density::RestrictCounts{level, below, result.counts.data() + below.first_node,
                                      result.counts.view().part(level.first_node, level.nodes())});
   }
+  if (complete >= 0)
+    sweep(ex, "density.restrict", complete + 1, view.levels[complete].nodes(),
+          density::RestrictLevels{view, complete, result.counts.data()});
   return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "exec/algorithms.hpp"
@@ -239,6 +240,22 @@ struct AddRestriction {
   }
 };
 
+/// The complete levels above all samples' splat depths, one a round.
+struct RestrictLevels {
+  octree::OctreeView tree;
+  int first;  // depth of round 0
+  float* b;
+
+  PSK_HD bool takes_part(int) const { return true; }
+  PSK_HD int prepare(int) const { return 0; }
+  PSK_HD void operator()(int round, int n, int) const {
+    const octree::LevelView& level = tree.levels[first - round];
+    const octree::LevelView& below = tree.levels[first - round + 1];
+    if (n < level.nodes())
+      b[level.first_node + n] = 0.5F * octree::restricted(level, below, b + below.first_node, n);
+  }
+};
+
 struct FlagDepth {
   ArrayView<const std::uint8_t> depths;
   int depth;
@@ -322,7 +339,8 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
   const int coarsest = samples.coarsest_splat_depth;
   std::vector<FieldLevel> field = splat_field(ex, view, samples, coarsest);
   auto b = exec::make_buffer<float>(ex, view.nodes);
-  for (int d = view.depth; d >= 0; --d) {
+  const int complete = std::min({view.depth - 1, coarsest - 1, octree::kCompleteDepth});
+  for (int d = view.depth; d > complete; --d) {
     const octree::LevelView& level = view.levels[d];
     const ArrayView<float> own = b.view().part(level.first_node, level.nodes());
     const bool finest = d == view.depth;
@@ -341,6 +359,8 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
     for_each(ex, "splat.restrict", level.nodes(),
              AddRestriction{level, below, b.data() + below.first_node, has_field, own});
   }
+  if (complete >= 0)
+    sweep(ex, "splat.restrict", complete + 1, view.levels[complete].nodes(), RestrictLevels{view, complete, b.data()});
   return b;
 }
 

@@ -122,7 +122,7 @@ inline Schedule schedule_for(int depth, int iterations) {
   if (depth > octree::kCompleteDepth)
     return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};
   const double cells = std::pow(2.0, depth);
-  return {std::max(iterations, static_cast<int>(1.5 * cells)), std::min(0.1, 2.0 / (cells * cells))};
+  return {std::max(iterations, static_cast<int>(2 * cells)), std::min(0.1, 2.0 / (cells * cells))};
 }
 
 /// Coefficients of Chebyshev iterations on [lower, 1].

@@ -97,8 +97,8 @@ struct MeshView {
 /// Notes for every edge vertex where it lies, and for every table triangle what it is: so that the work that follows is
 /// one thread an item, however few nodes meet the surface.
 struct ListItems {
-  field::FieldView f;
   Numbering numbering;
+  ArrayView<const std::uint8_t> signs;
   MeshView mesh;
 
   PSK_HD void operator()(std::int64_t n) const {
@@ -109,11 +109,8 @@ struct ListItems {
     for (int axis = 0; axis < 3; ++axis)
       if ((mark >> axis & 1) != 0) mesh.keys[vertex++] = static_cast<std::uint64_t>(n) << 2 | static_cast<unsigned>(axis);
     const int triangles = static_cast<int>((mark & kTriangles) >> kTrianglesShift);
-    if (triangles == 0) return;
-    const Place place = place_of(f.tree, n);
-    const auto signs = static_cast<std::int32_t>(LeafCell(f, place.level, place.node).corner_signs());
     const std::int32_t first = high_count(before);
-    for (int t = 0; t < triangles; ++t) mesh.triangles[first + t] = {static_cast<std::int32_t>(n), signs, t};
+    for (int t = 0; t < triangles; ++t) mesh.triangles[first + t] = {static_cast<std::int32_t>(n), signs[n], t};
   }
 };
 
@@ -323,7 +320,8 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   auto cases = exec::make_buffer<Case>(ex, 256);
   copy_constant_to_device(ex, kCases.data(), cases.view());
   auto marks = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
-  const Marker marker{f, count_triangles(kCases), marks.view()};
+  auto signs = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
+  const Marker marker{f, count_triangles(kCases), marks.view(), signs.view()};
   if constexpr (Exec::kManyThreads)
     for_each(ex, "extract.mark", f.tree.nodes, MarkNode{marker});
   else
@@ -351,7 +349,8 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   const MeshView mesh{surface.positions.view(), surface.normals.view(), keys.view(), surface.triangles.view()};
   const Numbering numbering{marks.cview(), first.cview()};
   const VertexLookup vertex_on{f.tree, numbering};
-  for_each(ex, "extract.list", f.tree.nodes, ListItems{f, numbering, mesh});
+  for_each(ex, "extract.list", f.tree.nodes, ListItems{numbering, signs.cview(), mesh});
+  signs.reset();
   for_each(ex, "extract.vertices", low_count(table), EmitVertex{f, options.linear_fit, mesh});
   for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh.triangles});
   for_each(ex, "extract.traced", traced.size(),

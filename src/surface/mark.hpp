@@ -27,6 +27,7 @@ struct Marker {
   field::FieldView f;
   TriangleCounts counts;
   ArrayView<std::uint8_t> marks;
+  ArrayView<std::uint8_t> signs;  ///< inside bits of the corners of cells with triangles; undefined for others
 
   /// True if cells of the brick touch a face of the cube.
   PSK_HD static bool is_near_face(const octree::LevelView& l, std::int64_t brick) {
@@ -54,6 +55,7 @@ struct Marker {
     // face was made outside.
     if (uniform && !(f.closed && cell.touches_cube_face())) return 0;
     if (cell.finer_neighbours() != 0) return kTracedCell;
+    this->signs[f.tree.levels[level].first_node + node] = static_cast<std::uint8_t>(signs);
     return static_cast<unsigned>(counts.of_case[signs]) << kTrianglesShift;
   }
 

@@ -4,7 +4,6 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -25,23 +24,33 @@
 
 namespace pointskin::detail {
 
-/// Measures phases; the space is synchronised at their borders.
+/// Measures phases on the space's own clock, without waiting at their borders.
 template <exec::Space Exec>
 class PhaseClock {
  public:
-  explicit PhaseClock(Exec& ex) : ex_(ex), start_(Clock::now()) {}
+  explicit PhaseClock(Exec& ex) : ex_(ex), start_(ex.mark()) {}
 
-  /// Milliseconds since the last call, and since construction for the first.
-  double lap() {
-    ex_.synchronize();
-    const auto now = Clock::now();
-    return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+  /// Ends a phase and begins the next; the phase's milliseconds go to `to` when read() is called.
+  void lap(double& to) {
+    const Mark now = ex_.mark();
+    phases_.push_back({std::exchange(start_, now), now, &to});
+  }
+
+  /// Waits until all phases are done.
+  void read() {
+    for (const Phase& phase : phases_) *phase.milliseconds = ex_.milliseconds_between(phase.from, phase.to);
+    phases_.clear();
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Mark = typename Exec::Mark;
+  struct Phase {
+    Mark from, to;
+    double* milliseconds;
+  };
   Exec& ex_;
-  Clock::time_point start_;
+  Mark start_;
+  std::vector<Phase> phases_;
 };
 
 /// Tells the caller where the run is. @throws Error interrupted if it wants to stop
@@ -86,7 +95,7 @@ FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options
   poisson::Samples samples = sort_into_cube(ex, points, field.frame, keys);
   field.tree = octree::build_octree(ex, keys.cview(), options.depth);
   keys.reset();
-  report.octree_ms = clock.lap();
+  clock.lap(report.octree_ms);
 
   announce(options, "splat", 0.25);
   field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
@@ -95,7 +104,7 @@ FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options
   const exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view());
   poisson::Screening screening;
   if (options.screening > 0) screening = poisson::collapse_samples(ex, field.tree, samples.view());
-  report.splat_ms = clock.lap();
+  clock.lap(report.splat_ms);
 
   const auto before_level = [&](int depth) {  // every level costs about four times the one before
     announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
@@ -105,7 +114,8 @@ FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options
                              {options.screening, options.iterations, options.residuals, before_level});
   field.isovalue = poisson::mean_at_samples(ex, field.tree, solution.u.cview(), samples.view());
   field.values = std::move(solution.u);
-  report.solve_ms = clock.lap();
+  clock.lap(report.solve_ms);
+  clock.read();
 
   report.points = points.positions.size();
   report.isovalue = field.isovalue;
@@ -157,14 +167,18 @@ class FieldOn final : public FieldImpl {
     ex_->activate();
     PhaseClock clock(*ex_);
     const surface::Surface surface = detail::extract(*ex_, data_, options_);
-    const double extract_ms = clock.lap();
+    double extract_ms = 0;
+    double download_ms = 0;
+    clock.lap(extract_ms);
     if (surface.triangles.empty())
       throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
     Mesh mesh = download(*ex_, surface, data_.frame, origin_);
     if (options_.density) mesh.attributes.push_back(density_at(surface));
+    clock.lap(download_ms);
+    clock.read();
     if (report != nullptr) {
       report->extract_ms = extract_ms;
-      report->download_ms = clock.lap();
+      report->download_ms = download_ms;
       report->device_peak_bytes = ex_->pool()->peak_bytes();
     }
     return mesh;
@@ -199,7 +213,8 @@ class EngineOn final : public Engine {
     ex_->pool()->reset_peak();
     PhaseClock clock(*ex_);
     const DevicePoints points = upload(*ex_, cloud);
-    report.upload_ms = clock.lap();
+    clock.lap(report.upload_ms);
+    clock.read();
     FieldData data = fit_field(*ex_, points, options, report);
     report.device_peak_bytes = ex_->pool()->peak_bytes();
     return std::make_shared<FieldOn<Exec>>(ex_, std::move(data), options, cloud.origin);
@@ -215,7 +230,8 @@ class EngineOn final : public Engine {
       const FieldData data = fit_field(*ex_, points, options, report);
       const surface::Surface surface = detail::extract(*ex_, data, options);
       RunTimes run{report.octree_ms, report.splat_ms, report.solve_ms};
-      run.total_ms = clock.lap();
+      clock.lap(run.total_ms);
+      clock.read();
       run.extract_ms = run.total_ms - run.octree_ms - run.splat_ms - run.solve_ms;
       run.vertices = surface.positions.size();
       run.triangles = surface.triangles.size();

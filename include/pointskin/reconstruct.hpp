@@ -55,7 +55,7 @@ struct LevelReport {
   double residual_after = 0;
 };
 
-/// What a run did and what it cost. Times are milliseconds of wall clock, the device synchronised at phase borders.
+/// What a run did and what it cost. Times are milliseconds on the device's clock.
 struct RunReport {
   std::int64_t points = 0;  ///< points used
   int depth = 0;
@@ -66,7 +66,7 @@ struct RunReport {
   std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
 };
 
-/// One of several runs on resident data, in milliseconds of wall clock.
+/// One of several runs on resident data, in milliseconds on the device's clock.
 struct RunTimes {
   double octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0;
   double total_ms = 0;         ///< points on the device to mesh on the device

@@ -1,6 +1,7 @@
 // The CPU space: worker threads and a memory pool. oneTBB, or std::thread where a sanitizer needs it.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -32,6 +33,13 @@ class Cpu {
 
   /// Does nothing: CPU work is done when its call returns.
   void synchronize() {}
+
+  /// Now, as a point in time of milliseconds_between().
+  using Mark = std::chrono::steady_clock::time_point;
+  [[nodiscard]] Mark mark() const { return std::chrono::steady_clock::now(); }
+  [[nodiscard]] double milliseconds_between(const Mark& from, const Mark& to) const {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+  }
 
   /// Does nothing: any thread may use the CPU.
   void activate() {}

@@ -106,9 +106,33 @@ Cuda::Cuda(int index) : index_(index) {
              "reading the GPU's properties");
   pool_ = std::make_shared<CudaPool>(index, stream);  // owns the stream: buffers may outlive this object
   cuda_check(cudaMallocHost(&staging_, kStagingBytes), "allocating page-locked memory");
+  for (void*& mark : marks_) {
+    cudaEvent_t event = nullptr;
+    cuda_check(cudaEventCreate(&event), "creating a timer");
+    mark = event;
+  }
 }
 
-Cuda::~Cuda() { cudaFreeHost(staging_); }
+Cuda::~Cuda() {
+  cudaFreeHost(staging_);
+  for (void* mark : marks_) cudaEventDestroy(static_cast<cudaEvent_t>(mark));
+}
+
+Cuda::Mark Cuda::mark() {
+  const int mark = next_mark_;
+  next_mark_ = (next_mark_ + 1) % kMarks;
+  cuda_check(cudaEventRecord(static_cast<cudaEvent_t>(marks_[mark]), static_cast<cudaStream_t>(stream_)), "timing");
+  return mark;
+}
+
+double Cuda::milliseconds_between(Mark from, Mark to) const {
+  cuda_check(cudaEventSynchronize(static_cast<cudaEvent_t>(marks_[to])), "waiting for the GPU");
+  float milliseconds = 0;
+  cuda_check(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(marks_[from]),
+                                  static_cast<cudaEvent_t>(marks_[to])),
+             "timing");
+  return milliseconds;
+}
 
 void Cuda::synchronize() {
   cuda_check(cudaStreamSynchronize(static_cast<cudaStream_t>(stream_)), "waiting for the GPU");

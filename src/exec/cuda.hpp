@@ -30,6 +30,14 @@ class Cuda {
   /// Waits until the stream's work is done. @throws Error device_unavailable if some of it failed
   void synchronize();
 
+  /// A point in the stream's work; the last kMarks of them can be asked for. Does not wait.
+  using Mark = int;
+  static constexpr int kMarks = 16;
+  [[nodiscard]] Mark mark();
+
+  /// Time that the stream took from one mark to another. Waits until the second is reached.
+  [[nodiscard]] double milliseconds_between(Mark from, Mark to) const;
+
   /// Makes this GPU the calling thread's current one. To be called before work from a thread that may have used
   /// another.
   void activate();
@@ -45,6 +53,8 @@ class Cuda {
   int multiprocessors_ = 0;
   void* stream_ = nullptr;
   void* staging_ = nullptr;
+  void* marks_[kMarks] = {};  // cudaEvent_t
+  int next_mark_ = 0;
   std::shared_ptr<MemoryPool> pool_;
 };
 

@@ -30,6 +30,7 @@ concept Space = requires(T ex) {
   { ex.pool() } -> std::convertible_to<std::shared_ptr<MemoryPool>>;
   { T::kManyThreads } -> std::convertible_to<bool>;  // true: the smallest pieces of work run best
   ex.synchronize();
+  { ex.milliseconds_between(ex.mark(), ex.mark()) } -> std::convertible_to<double>;
   ex.activate();
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
 #include "poisson/screening.hpp"
@@ -90,6 +92,23 @@ struct CollapseChildren {
   }
 };
 
+/// The complete levels above all splat depths, one a round.
+struct CollapseLevels {
+  octree::OctreeView tree;
+  int first;  // depth of round 0
+  std::int32_t* brick_index;
+  CollapsedSample* samples;
+
+  PSK_HD bool takes_part(int) const { return true; }
+  PSK_HD int prepare(int) const { return 0; }
+  PSK_HD void operator()(int round, int cell, int) const {
+    const octree::LevelView& level = tree.levels[first - round];
+    const octree::LevelView& below = tree.levels[first - round + 1];
+    if (cell < 8 * level.cell_bricks)
+      CollapseChildren{level, brick_index + level.first_node / 8, brick_index + below.first_node / 8, samples}(cell);
+  }
+};
+
 /// Which corners of a brick (of all levels) the screening touches.
 struct MarkCorners {
   octree::OctreeView tree;
@@ -147,7 +166,8 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
   for_each(ex, "screening.occupied", bricks, PlaceBricks{before.cview(), result.brick_index.view()});
   result.samples =
       exec::make_buffer<CollapsedSample>(ex, std::int64_t{8} * exec::read_element(ex, before.cview(), bricks));
-  for (int d = view.depth; d >= 0; --d) {
+  const int complete = std::min({view.depth - 1, samples.coarsest_splat_depth - 1, octree::kCompleteDepth});
+  for (int d = view.depth; d > complete; --d) {
     const octree::LevelView& level = view.levels[d];
     const std::int64_t cells = std::int64_t{8} * level.cell_bricks;
     const std::int32_t* brick_index = result.view(d).brick_index;
@@ -157,6 +177,9 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
       for_each(ex, "screening.collapse", cells,
                CollapseChildren{level, brick_index, result.view(d + 1).brick_index, result.samples.data()});
   }
+  if (complete >= 0)
+    sweep(ex, "screening.collapse", complete + 1, std::int64_t{8} * view.levels[complete].cell_bricks,
+          CollapseLevels{view, complete, result.brick_index.data(), result.samples.data()});
   result.corners = exec::make_buffer<std::uint8_t>(ex, bricks);
   for_each(ex, "screening.corners", bricks,
            MarkCorners{view, result.brick_index.data(), result.samples.data(), result.corners.view()});

@@ -64,15 +64,14 @@ struct AddFlaws {
   }
 };
 
-/// A host array of `size` elements to download to.
+/// Copies to the host, into memory that `to` may have already.
 template <class T, exec::Space Exec>
-std::vector<T> host_array(Exec& ex, std::int64_t size) {
-  std::vector<T> array;
+void download_array(Exec& ex, ArrayView<const T> from, std::vector<T>& to) {
   if constexpr (std::is_same_v<Exec, exec::Cpu>)
-    exec::resize(ex, array, static_cast<std::size_t>(size));
+    exec::resize(ex, to, static_cast<std::size_t>(from.size));
   else
-    array.resize(static_cast<std::size_t>(size));
-  return array;
+    to.resize(static_cast<std::size_t>(from.size));
+  copy_to_host(ex, from, to.data());
 }
 
 }  // namespace points
@@ -118,19 +117,15 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
 }
 
 template <exec::Space Exec>
-Mesh download(Exec& ex, const surface::Surface& surface, const octree::Frame& frame, const Vec3d& origin) {
+void download(Exec& ex, const surface::Surface& surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh) {
   const std::int64_t n = surface.positions.size();
   auto world = exec::make_buffer<Vec3f>(ex, n);
   for_each(ex, "download.world", n, points::ToWorld{frame, surface.positions.cview(), world.view()});
-  Mesh mesh;
   mesh.origin = origin;
-  mesh.vertices = points::host_array<Vec3f>(ex, n);
-  mesh.normals = points::host_array<Vec3f>(ex, surface.normals.size());
-  mesh.triangles = points::host_array<Triangle>(ex, surface.triangles.size());
-  copy_to_host(ex, world.cview(), mesh.vertices.data());
-  copy_to_host(ex, surface.normals.cview(), mesh.normals.data());
-  copy_to_host(ex, surface.triangles.cview(), mesh.triangles.data());
-  return mesh;
+  mesh.attributes.clear();
+  points::download_array(ex, world.cview(), mesh.vertices);
+  points::download_array(ex, surface.normals.cview(), mesh.normals);
+  points::download_array(ex, surface.triangles.cview(), mesh.triangles);
 }
 
 }  // namespace pointskin::detail

@@ -55,10 +55,16 @@ Reconstructor& Reconstructor::operator=(Reconstructor&&) noexcept = default;
 Field Reconstructor::solve(const Cloud& cloud, const Options& options) { return Field(impl_->solve(cloud, options)); }
 
 Mesh Reconstructor::reconstruct(const Cloud& cloud, const Options& options) {
+  Mesh mesh;
+  reconstruct(cloud, options, mesh);
+  return mesh;
+}
+
+void Reconstructor::reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh) {
   const std::shared_ptr<detail::FieldImpl> field = impl_->solve(cloud, options);
   if (options.progress && !options.progress({"extract", 0.8}))
     throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
-  return field->extract(&impl_->report_);
+  field->extract(mesh, &impl_->report_);
 }
 
 std::vector<RunTimes> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
@@ -76,7 +82,12 @@ double Field::isovalue() const { return impl_->isovalue(); }
 double Field::cube_size_world() const { return impl_->cube_size_world(); }
 Vec3d Field::cube_lower_world() const { return impl_->cube_lower_world(); }
 std::vector<float> Field::values(const std::vector<Vec3d>& points_world) const { return impl_->values(points_world); }
-Mesh Field::extract() const { return impl_->extract(nullptr); }
+
+Mesh Field::extract() const {
+  Mesh mesh;
+  impl_->extract(mesh, nullptr);
+  return mesh;
+}
 
 void validate(const Options& options) {
   require(options.depth >= 1 && options.depth <= 20, "depth", "in 1..20");

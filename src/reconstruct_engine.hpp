@@ -19,7 +19,8 @@ class FieldImpl {
   [[nodiscard]] virtual Vec3d cube_lower_world() const = 0;
   [[nodiscard]] virtual std::vector<float> values(const std::vector<Vec3d>& points_world) const = 0;
   /// @param report  if not null, receives extract_ms, download_ms and the peak memory
-  [[nodiscard]] virtual Mesh extract(RunReport* report) const = 0;
+  /// @param mesh  receives the mesh; its memory is used again
+  virtual void extract(Mesh& mesh, RunReport* report) const = 0;
 };
 
 /// The pipeline on one space.

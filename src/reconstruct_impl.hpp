@@ -163,7 +163,7 @@ class FieldOn final : public FieldImpl {
     return result;
   }
 
-  [[nodiscard]] Mesh extract(RunReport* report) const override {
+  void extract(Mesh& mesh, RunReport* report) const override {
     ex_->activate();
     PhaseClock clock(*ex_);
     const surface::Surface surface = detail::extract(*ex_, data_, options_);
@@ -172,7 +172,7 @@ class FieldOn final : public FieldImpl {
     clock.lap(extract_ms);
     if (surface.triangles.empty())
       throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
-    Mesh mesh = download(*ex_, surface, data_.frame, origin_);
+    download(*ex_, surface, data_.frame, origin_, mesh);
     if (options_.density) mesh.attributes.push_back(density_at(surface));
     clock.lap(download_ms);
     clock.read();
@@ -181,7 +181,6 @@ class FieldOn final : public FieldImpl {
       report->download_ms = download_ms;
       report->device_peak_bytes = ex_->pool()->peak_bytes();
     }
-    return mesh;
   }
 
  private:

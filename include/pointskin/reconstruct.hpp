@@ -88,6 +88,10 @@ class Reconstructor {
   /// @throws Error as solve() and Field::extract()
   Mesh reconstruct(const Cloud& cloud, const Options& options = {});
 
+  /// The same into a mesh of the caller, whose memory is used again: for frame after frame.
+  /// @throws Error as above; the mesh is then valid but unspecified
+  void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh);
+
   /// Fits the implicit function (screened Poisson, Kazhdan & Hoppe 2013, on the octree of Zhou et al. 2010).
   /// The Field shares this reconstructor's device resources and may outlive it.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.

@@ -52,7 +52,7 @@ LineIndex index_lines(exec::Cpu& ex, std::string_view text, std::int64_t first_l
 
 void Values::fail_garbled(const char* what) {
   const char* token_end = std::find_if(at_, end_, is_separator);
-  fail_at_line(source_, quoted({at_, static_cast<std::size_t>(token_end - at_)}) + " " + what, line_.number,
+  fail_at_line(source_, in_quotes({at_, static_cast<std::size_t>(token_end - at_)}) + " " + what, line_.number,
                "correct the line or export the file again");
 }
 

@@ -121,7 +121,7 @@ class ObjParser {
     const char* end = word.data() + word.size();
     const auto [rest, error] = std::from_chars(word.data(), end, index);
     if (error != std::errc{} || rest != end)
-      fail_at_line(source_, "a face has the garbled corner " + quoted(word), line.number, "export the file again");
+      fail_at_line(source_, "a face has the garbled corner " + in_quotes(word), line.number, "export the file again");
     if (index == 0 || index > total || index < -defined)
       fail_at_line(source_, fmt::format("a face names index {}, but there are {}", index, index < 0 ? defined : total),
                    line.number, "export the file again");

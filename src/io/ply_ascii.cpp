@@ -98,7 +98,7 @@ void read_ascii_body(exec::Cpu& ex, const PlyInput& input, PlyBody& body) {
     range.last = range.first + lines_of(element);
     if (index.rows < range.last)
       fail_at_byte(input.source,
-                   fmt::format("is truncated, element {} promises {} rows but {} are left", quoted(element.name),
+                   fmt::format("is truncated, element {} promises {} rows but {} are left", in_quotes(element.name),
                                element.count, index.rows - range.first),
                    input.source.bytes.size(), "copy or export the file again");
     if (element.name == "vertex" && !element.properties.empty())

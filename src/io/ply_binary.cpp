@@ -44,7 +44,7 @@ class RowWalker {
   [[nodiscard]] bool swapped() const { return input_.header.encoding == PlyEncoding::big_endian; }
 
   [[noreturn]] void fail_here(const std::string& what) const {
-    fail_at_byte(input_.source, fmt::format("{} in row {} of element {}", what, row_, quoted(element_.name)), at_,
+    fail_at_byte(input_.source, fmt::format("{} in row {} of element {}", what, row_, in_quotes(element_.name)), at_,
                  kAdvice);
   }
 
@@ -72,7 +72,7 @@ class RowWalker {
 std::size_t skip_fixed(const PlyInput& input, const PlyElement& element, std::size_t at, std::size_t row_bytes) {
   const std::size_t left = input.source.bytes.size() - at;
   if (!fits(static_cast<std::uint64_t>(element.count), row_bytes, left))
-    fail_at_byte(input.source, fmt::format("the file ends in element {}", quoted(element.name)),
+    fail_at_byte(input.source, fmt::format("the file ends in element {}", in_quotes(element.name)),
                  input.source.bytes.size(), kAdvice);
   return at + static_cast<std::size_t>(element.count) * row_bytes;
 }

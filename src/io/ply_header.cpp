@@ -61,7 +61,7 @@ class HeaderParser {
       else if (words[0] == "property")
         parse_property(words);
       else
-        fail_here("the header has the unknown word " + quoted(words[0]));
+        fail_here("the header has the unknown word " + in_quotes(words[0]));
     }
     if (!has_format_) fail_here("the header does not name its format");
     header_.body = at_;
@@ -90,7 +90,7 @@ class HeaderParser {
     else if (words[1] == "binary_big_endian")
       header_.encoding = PlyEncoding::big_endian;
     else
-      fail_here("the format " + quoted(words[1]) + " is unknown");
+      fail_here("the format " + in_quotes(words[1]) + " is unknown");
     has_format_ = true;
   }
 
@@ -100,10 +100,10 @@ class HeaderParser {
     const char* end = words[2].data() + words[2].size();
     const auto [rest, error] = std::from_chars(words[2].data(), end, count);
     if (error != std::errc{} || rest != end || count < 0)
-      fail_here("the element count " + quoted(words[2]) + " is not a whole number from 0 on");
+      fail_here("the element count " + in_quotes(words[2]) + " is not a whole number from 0 on");
     // The cap keeps the search for names cheap on garbled files.
     if (header_.elements.size() >= kMostElements) fail_here("the header has too many elements");
-    if (header_.find(std::string(words[1])) != nullptr) fail_here("the element " + quoted(words[1]) + " comes twice");
+    if (header_.find(std::string(words[1])) != nullptr) fail_here("the element " + in_quotes(words[1]) + " comes twice");
     header_.elements.push_back({std::string(words[1]), count, {}});
     names_.clear();
   }
@@ -114,10 +114,10 @@ class HeaderParser {
     if (!is_list && words.size() != 3) fail_here("a property line needs a type and a name");
     const auto type = scalar_of(words[is_list ? 3 : 1]);
     const auto count_type = is_list ? scalar_of(words[2]) : Scalar::uint8;
-    if (!type || !count_type) fail_here("the property " + quoted(words.back()) + " has an unknown type");
-    if (!is_integer(*count_type)) fail_here("the length of the list " + quoted(words.back()) + " is not an integer");
+    if (!type || !count_type) fail_here("the property " + in_quotes(words.back()) + " has an unknown type");
+    if (!is_integer(*count_type)) fail_here("the length of the list " + in_quotes(words.back()) + " is not an integer");
     PlyProperty property{std::string(words.back()), *type, is_list, *count_type};
-    if (!names_.insert(property.name).second) fail_here("the property " + quoted(words.back()) + " comes twice");
+    if (!names_.insert(property.name).second) fail_here("the property " + in_quotes(words.back()) + " comes twice");
     header_.elements.back().properties.push_back(std::move(property));
   }
 
@@ -140,7 +140,7 @@ void check_counts(const Source& source, const PlyHeader& header) {
     if (!fits(count, each, left))
       fail_at_byte(source,
                    fmt::format("is truncated, element {} promises {} rows of at least {} bytes but {} bytes are left",
-                               quoted(element.name), count, each, left),
+                               in_quotes(element.name), count, each, left),
                    source.bytes.size(), "copy or export the file again");
     left -= count * each;
   }

@@ -93,7 +93,7 @@ Format detect_format(const Source& source, bool want_mesh) {
   if (extension == ".off") return Format::off;
   for (const char* text : {".xyz", ".pts", ".asc", ".txt", ".csv"})
     if (extension == text) return Format::text;
-  fail(source, "has the unknown extension " + quoted(extension),
+  fail(source, "has the unknown extension " + in_quotes(extension),
        want_mesh ? "use .ply, .obj, .stl or .off" : "use .ply, .xyz, .pts, .asc, .txt, .csv, .obj, .stl or .off");
 }
 

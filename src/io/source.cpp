@@ -13,7 +13,7 @@ std::string printable(std::string_view name) {
   return text;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string shown = printable(text.substr(0, kLongest));
   for (char& c : shown)

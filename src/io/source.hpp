@@ -15,7 +15,7 @@ struct Source {
 };
 
 /// `text` in quotes, fit for a one-line message: control characters become '?', long text is cut.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// `name` without control characters, so that a message stays on one line. Never cut: it is a path.
 std::string printable(std::string_view name);

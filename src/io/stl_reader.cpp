@@ -123,7 +123,7 @@ void parse_text_line(const Source& source, const Line& line, TextBlock& block) {
   } else if (word == "facet") {
     ++block.facets;
   } else if (word != "solid" && word != "outer" && word != "endloop" && word != "endfacet" && word != "endsolid") {
-    fail_at_line(source, "the word " + quoted(word) + " does not belong into STL", line.number,
+    fail_at_line(source, "the word " + in_quotes(word) + " does not belong into STL", line.number,
                  "export the file again");
   }
 }

@@ -6,6 +6,7 @@
 
 #include <pointskin/vector.hpp>
 
+#include "core/bits.hpp"
 #include "core/host_device.hpp"
 #include "octree/view.hpp"
 
@@ -15,14 +16,12 @@ namespace pointskin::octree {
 /// above: the mean of the 1, 2, 4 or 8 corners around it. Exact for hat functions, whose spaces are nested.
 PSK_HD inline float prolonged(const LevelView& level_above, const float* above, std::int32_t parent, int slot) {
   float sum = 0;
-  int count = 0;
   PSK_UNROLL for (int s = 0; s < 8; ++s) {
     if ((s & ~slot) != 0) continue;
-    ++count;
     const std::int32_t corner = level_above.neighbour(parent, slot_x(s), slot_y(s), slot_z(s));
     if (corner >= 0) sum += above[corner];  // corners of cells have all; other nodes are never read
   }
-  return sum * (1.0F / static_cast<float>(count));
+  return sum * (1.0F / static_cast<float>(1 << count_bits(static_cast<std::uint64_t>(slot))));
 }
 
 /// Sum over the 27 finer corners around node `n` of weight times value, weights 1, 1/2, 1/4, 1/8: the transpose of

@@ -38,8 +38,16 @@ struct ProlongField {
   PSK_HD void operator()(std::int64_t n) const {
     const std::int32_t parent = level.parent[n >> 3];
     const int slot = static_cast<int>(n & 7);
-    for (int a = 0; a < 3; ++a)
-      field.axis[a][n] = 0.5F * octree::prolonged(above, above_field.axis[a].data, parent, slot);
+    std::int32_t corner[8];
+    PSK_UNROLL for (int s = 0; s < 8; ++s)
+      corner[s] = (s & ~slot) != 0 ? -1 : above.neighbour(parent, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+    const float share = 0.5F / static_cast<float>(1 << count_bits(static_cast<std::uint64_t>(slot)));
+    PSK_UNROLL for (int a = 0; a < 3; ++a) {
+      float sum = 0;
+      PSK_UNROLL for (int s = 0; s < 8; ++s)
+        if (corner[s] >= 0) sum += above_field.axis[a][corner[s]];
+      field.axis[a][n] = sum * share;
+    }
   }
 };
 
@@ -207,6 +215,7 @@ struct DivergenceOfBricks : Divergence {
 
 /// A corner at a time, with the same bits, for spaces with many threads.
 struct DivergenceOfCorners : Divergence {
+  static constexpr int kResidentBlocks = 6;
   PSK_HD void operator()(std::int64_t n) const {
     std::int32_t around[27];
     PSK_UNROLL for (int x = -1; x <= 1; ++x) PSK_UNROLL for (int y = -1; y <= 1; ++y)
@@ -246,6 +255,7 @@ struct RestrictLevels {
   int first;  // depth of round 0
   float* b;
 
+  static constexpr int kResidentBlocks = 1;
   PSK_HD bool takes_part(int) const { return true; }
   PSK_HD int prepare(int) const { return 0; }
   PSK_HD void operator()(int round, int n, int) const {

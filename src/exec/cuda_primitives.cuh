@@ -24,16 +24,8 @@ inline constexpr int kThreadsPerBlock = 128;
 
 inline cudaStream_t stream_of(const Cuda& ex) { return static_cast<cudaStream_t>(ex.stream()); }
 
-/// Blocks that a multiprocessor must be able to hold at once. Functors whose threads mostly wait for memory ask for many
-/// by a member kResidentBlocks, at the price of fewer registers each.
 template <class F>
-inline constexpr int kResidentBlocks = 1;
-template <class F>
-requires requires { F::kResidentBlocks; }
-inline constexpr int kResidentBlocks<F> = F::kResidentBlocks;
-
-template <class F>
-__global__ void __launch_bounds__(kThreadsPerBlock, kResidentBlocks<F>) for_each_kernel(std::int64_t n, const F f) {
+__global__ void __launch_bounds__(kThreadsPerBlock) for_each_kernel(std::int64_t n, const F f) {
   const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * kThreadsPerBlock + threadIdx.x;
   if (i < n) f(i);
 }

@@ -13,7 +13,6 @@ namespace pointskin::exec {
 /// One round of a sweep: what for_each calls.
 template <class F>
 struct SweepRound {
-  static constexpr int kResidentBlocks = F::kResidentBlocks;
   F f;
   int round;
   PSK_HD void operator()(std::int64_t index) const {

@@ -4,8 +4,7 @@
 //
 //   for_each(ex, "label", n, f)                f(i) for every i in [0, n)
 //   sweep(ex, "label", rounds, n, f)           f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i),
-//                                              rounds one after another; what prepare returns must not change meanwhile;
-//                                              F::kResidentBlocks: blocks that a GPU's multiprocessor should hold
+//                                              rounds one after another; what prepare returns must not change meanwhile
 //   reduce_tail(ex, "label", values, out, combine)  the last step of reduce: few values to one
 //   select(ex, "label", n, keep)               Buffer<int32> of the i in [0, n) with keep(i), ascending
 //   exclusive_scan(ex, "label", in, out)       out[i] = in[0] + ... + in[i-1]; out may have one element more: the total

@@ -62,7 +62,6 @@ struct RestrictLevels {
   int first;  // depth of round 0
   float* counts;
 
-  static constexpr int kResidentBlocks = 1;
   PSK_HD bool takes_part(int) const { return true; }
   PSK_HD int prepare(int) const { return 0; }
   PSK_HD void operator()(int round, int n, int) const {

@@ -215,7 +215,6 @@ struct DivergenceOfBricks : Divergence {
 
 /// A corner at a time, with the same bits, for spaces with many threads.
 struct DivergenceOfCorners : Divergence {
-  static constexpr int kResidentBlocks = 6;
   PSK_HD void operator()(std::int64_t n) const {
     std::int32_t around[27];
     PSK_UNROLL for (int x = -1; x <= 1; ++x) PSK_UNROLL for (int y = -1; y <= 1; ++y)
@@ -255,7 +254,6 @@ struct RestrictLevels {
   int first;  // depth of round 0
   float* b;
 
-  static constexpr int kResidentBlocks = 1;
   PSK_HD bool takes_part(int) const { return true; }
   PSK_HD int prepare(int) const { return 0; }
   PSK_HD void operator()(int round, int n, int) const {

@@ -99,7 +99,6 @@ struct CollapseLevels {
   std::int32_t* brick_index;
   CollapsedSample* samples;
 
-  static constexpr int kResidentBlocks = 1;
   PSK_HD bool takes_part(int) const { return true; }
   PSK_HD int prepare(int) const { return 0; }
   PSK_HD void operator()(int round, int cell, int) const {

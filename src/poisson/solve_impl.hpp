@@ -36,7 +36,6 @@ struct ChebyshevStep {
 /// value in both arrays.
 struct RelaxCorners {
   static constexpr int kMostRounds = 64;
-  static constexpr int kResidentBlocks = 6;
 
   LevelSystem system;
   float* u[2];  // round k reads the one of its parity

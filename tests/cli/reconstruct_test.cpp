@@ -221,6 +221,22 @@ TEST_F(ReconstructCommand, DryRunPrintsTheEstimateAndWritesNothing) {
   EXPECT_EQ(to_stdout.out, "");
 }
 
+/// The number before " bytes)" in what a dry run prints.
+std::int64_t printed_estimate(const std::string& text) {
+  const std::size_t first = text.find("estimate");
+  const std::size_t open = text.find('(', first);
+  if (first == std::string::npos || open == std::string::npos) return 0;
+  return std::stoll(text.substr(open + 1));
+}
+
+TEST_F(ReconstructCommand, TheLimitIsTheEstimateThatADryRunPrints) {
+  const std::int64_t estimate = printed_estimate(reconstruct({"--dry-run"}).out);
+  ASSERT_GT(estimate, 0);
+  EXPECT_EQ(reconstruct({"--max-memory", std::to_string(estimate)}).exit_code, 0);
+  EXPECT_EQ(reconstruct({"--max-memory", std::to_string(estimate - 1)}).exit_code, 6);
+  EXPECT_EQ(reconstruct({"--dry-run", "--max-memory", std::to_string(estimate - 1)}).exit_code, 6);
+}
+
 TEST_F(ReconstructCommand, EnoughMemoryIsEnough) { EXPECT_EQ(reconstruct({"--max-memory", "64G"}).exit_code, 0); }
 
 TEST_F(ReconstructCommand, ReportFollowsItsSchema) {

@@ -88,7 +88,7 @@ struct Model {
     return kSorted * points + tree() + kNodeValue * counted_bricks + kHats * level(counted_depth()).cell_bricks;
   }
 
-  /// The vector field of all levels, and its divergence.
+  /// The vector field, as if there were samples for the coarsest levels too, and its divergence.
   [[nodiscard]] std::int64_t splat() const {
     return kWeighed * points + tree() + kept_counts() + 4 * kNodeValue * bricks;
   }

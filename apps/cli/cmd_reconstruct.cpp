@@ -96,20 +96,22 @@ Estimate estimate_memory(const Cloud& cloud, const Record& record, int threads) 
           record.device.kind == DeviceKind::cpu ? host_bytes(cloud) : 0};
 }
 
+std::string bytes_text(std::int64_t bytes) {
+  return fmt::format("{} ({} bytes)", format_bytes(static_cast<double>(bytes)), bytes);
+}
+
 void check_memory(std::int64_t estimate, std::int64_t limit) {
   if (limit == 0 || estimate <= limit) return;
-  throw Error(
-      ErrorCode::over_limit,
-      fmt::format("the estimate of {} ({} bytes) is above --max-memory {}; use a smaller --depth or allow more",
-                  format_bytes(static_cast<double>(estimate)), estimate, format_bytes(static_cast<double>(limit))));
+  throw Error(ErrorCode::over_limit,
+              fmt::format("the estimate of {} is above --max-memory {}; use a smaller --depth or allow more",
+                          bytes_text(estimate), format_bytes(static_cast<double>(limit))));
 }
 
 void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record, const Estimate& estimate) {
-  std::string text =
-      fmt::format("points {}, depth {}, device {}: estimate {} ({} bytes), available {}", cloud.size(),
-                  record.options.depth, record.device.name(), format_bytes(static_cast<double>(estimate.total())),
-                  estimate.total(), format_bytes(static_cast<double>(record.device.available_bytes())));
-  if (estimate.cloud > 0) text += fmt::format("; buffers {} bytes, cloud {} bytes", estimate.buffers, estimate.cloud);
+  const std::string with_cloud = estimate.cloud > 0 ? ", with the cloud " + bytes_text(estimate.total()) : "";
+  const std::string text = fmt::format("points {}, depth {}, device {}: estimate {}{}, available {}", cloud.size(),
+                                       record.options.depth, record.device.name(), bytes_text(estimate.buffers),
+                                       with_cloud, format_bytes(static_cast<double>(record.device.available_bytes())));
   if (args.output == "-") return print_note(text);  // stdout is kept for PLY.
   write_stdout(text + "\n");
 }

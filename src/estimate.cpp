@@ -26,7 +26,7 @@ struct CellKeyOfPoint {
   }
 };
 
-/// Counts from the points themselves. 16 bytes a point and about 1 a node.
+/// Counts from the points themselves. 16 bytes a point and up to 5 a node.
 detail::RunSize measure_run(exec::Cpu& ex, const octree::Frame& frame, const Cloud& cloud, int depth) {
   const ArrayView<const Vec3f> positions{cloud.positions.data(), cloud.size()};
   auto keys = exec::make_buffer<std::uint64_t>(ex, cloud.size());

@@ -17,7 +17,7 @@ struct BrickCounts {
 };
 
 /// Counts the bricks of levels 0..depth exactly, from the keys of the points alone: holds the keys of the cell bricks
-/// (one byte a node) and what finding them takes, but no level.
+/// and a bitmap of one level, at most 5 bytes a node, and what finding the keys takes, but no level.
 /// @param point_keys  shape (n), ascending in their first 3 depth bits, n >= 0
 /// @param depth       D in [1, kMaxDepth]
 /// @returns depth + 1 counts, level 0 first

@@ -107,10 +107,12 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
   for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view()});
   for_each(ex, "octree.hash", n, points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
+  hashes.reset();
   poisson::Samples samples;
   samples.positions = exec::make_buffer<Vec3f>(ex, n);
-  samples.normals = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, unit.cview(), sorted.order.cview(), samples.positions.view());
+  unit.reset();
+  samples.normals = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
   keys = std::move(sorted.keys);
   return samples;

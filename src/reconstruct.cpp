@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "reconstruct_engine.hpp"
 
 namespace pointskin {
@@ -28,14 +25,15 @@ class Reconstructor::Impl {
 
   std::shared_ptr<detail::FieldImpl> solve(const Cloud& cloud, const Options& options) {
     validate(options);
-    check_memory(cloud.size(), options);
+    check_memory(cloud, options);
     report_ = {};
     return engine_->solve(cloud, options, report_);
   }
 
-  static void check_memory(std::int64_t points, const Options& options) {
-    const std::int64_t needed = estimate_device_bytes(points, options);
-    if (options.max_memory_bytes > 0 && needed > options.max_memory_bytes)
+  void check_memory(const Cloud& cloud, const Options& options) const {
+    if (options.max_memory_bytes == 0) return;
+    const std::int64_t needed = estimate_device_bytes(cloud, options, device_.threads);
+    if (needed > options.max_memory_bytes)
       throw Error(
           ErrorCode::over_limit,
           fmt::format("the run would need about {} MB of the {} MB allowed; choose a smaller depth or allow more",
@@ -70,7 +68,7 @@ void Reconstructor::reconstruct(const Cloud& cloud, const Options& options, Mesh
 std::vector<RunTimes> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
   validate(options);
   require(times > 0, "repeat", "at least 1");
-  Impl::check_memory(cloud.size(), options);
+  impl_->check_memory(cloud, options);
   return impl_->engine_->repeat(cloud, options, times);
 }
 
@@ -96,20 +94,6 @@ void validate(const Options& options) {
   require(options.scale >= 1 && options.scale <= 100, "scale", "in 1..100");
   require(options.samples_per_node >= 0 && options.samples_per_node <= 100, "samples-per-node", "in 0..100");
   require(options.max_memory_bytes >= 0, "max-memory", "at least 0");
-}
-
-std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) {
-  // A level's nodes cover a band around the surface, about 25 per face of its grid for common shapes; where points lie
-  // apart, each has its own 27 bricks; and no level has more nodes than the whole grid.
-  constexpr double kNodesPerFace = 25;
-  constexpr double kNodesPerPoint = 27 * 8;
-  constexpr double kBytesPerNode = 72;
-  constexpr double kBytesPerPoint = 120;
-  double nodes = 0;
-  for (int d = 0; d <= options.depth; ++d)
-    nodes += std::max(std::min(std::pow(8.0, d), 1e4), std::min({kNodesPerPoint * static_cast<double>(points),
-                                                                 kNodesPerFace * std::pow(4.0, d), std::pow(8.0, d)}));
-  return static_cast<std::int64_t>(kBytesPerNode * nodes + kBytesPerPoint * static_cast<double>(points));
 }
 
 }  // namespace pointskin

@@ -83,16 +83,18 @@ inline void report_levels(const octree::OctreeData& tree, const std::vector<pois
                              level.residual_before, level.residual_after});
 }
 
-/// Points to implicit function.
+/// Points to implicit function. Frees `points` once they are sorted, unless they are to be kept for another run.
 template <exec::Space Exec>
-FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options, RunReport& report) {
+FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Options& options, RunReport& report) {
   PhaseClock clock(ex);
   FieldData field;
+  report.points = points.positions.size();
 
   announce(options, "octree", 0.05);
   field.frame = octree::fit_frame(ex, points.positions.cview(), options.scale);
   exec::Buffer<std::uint64_t> keys;
   poisson::Samples samples = sort_into_cube(ex, points, field.frame, keys);
+  if (!keep_points) points = {};
   field.tree = octree::build_octree(ex, keys.cview(), options.depth);
   keys.reset();
   clock.lap(report.octree_ms);
@@ -101,7 +103,8 @@ FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options
   field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
   poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
   if (!options.density) field.density.counts.reset();
-  const exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view());
+  exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view());
+  samples.normals.reset();
   poisson::Screening screening;
   if (options.screening > 0) screening = poisson::collapse_samples(ex, field.tree, samples.view());
   clock.lap(report.splat_ms);
@@ -112,12 +115,13 @@ FieldData fit_field(Exec& ex, const DevicePoints& points, const Options& options
   poisson::Solution solution =
       poisson::solve_poisson(ex, field.tree, divergence.cview(), screening,
                              {options.screening, options.iterations, options.residuals, before_level});
+  divergence.reset();
+  screening = {};
   field.isovalue = poisson::mean_at_samples(ex, field.tree, solution.u.cview(), samples.view());
   field.values = std::move(solution.u);
   clock.lap(report.solve_ms);
   clock.read();
 
-  report.points = points.positions.size();
   report.isovalue = field.isovalue;
   report_levels(field.tree, solution.levels, report);
   return field;
@@ -211,22 +215,22 @@ class EngineOn final : public Engine {
     ex_->activate();
     ex_->pool()->reset_peak();
     PhaseClock clock(*ex_);
-    const DevicePoints points = upload(*ex_, cloud);
+    DevicePoints points = upload(*ex_, cloud);
     clock.lap(report.upload_ms);
     clock.read();
-    FieldData data = fit_field(*ex_, points, options, report);
+    FieldData data = fit_field(*ex_, points, false, options, report);
     report.device_peak_bytes = ex_->pool()->peak_bytes();
     return std::make_shared<FieldOn<Exec>>(ex_, std::move(data), options, cloud.origin);
   }
 
   std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) override {
     ex_->activate();
-    const DevicePoints points = upload(*ex_, cloud);
+    DevicePoints points = upload(*ex_, cloud);
     std::vector<RunTimes> runs;
     for (int i = 0; i < times; ++i) {
       PhaseClock clock(*ex_);
       RunReport report;
-      const FieldData data = fit_field(*ex_, points, options, report);
+      const FieldData data = fit_field(*ex_, points, true, options, report);
       const surface::Surface surface = detail::extract(*ex_, data, options);
       RunTimes run{report.octree_ms, report.splat_ms, report.solve_ms};
       clock.lap(run.total_ms);

@@ -83,26 +83,35 @@ std::int64_t host_bytes(const Cloud& cloud) {
   return bytes;
 }
 
-/// What a run takes where the limit counts: on the CPU the cloud shares the memory with the work.
-std::int64_t estimate_bytes(const Cloud& cloud, const Record& record) {
-  const std::int64_t work = estimate_device_bytes(cloud.size(), record.options);
-  return record.device.kind == DeviceKind::cpu ? work + host_bytes(cloud) : work;
+/// What a run takes where the limit counts.
+struct Estimate {
+  std::int64_t buffers = 0;  ///< of the work; memory.device_peak_bytes of the report
+  std::int64_t cloud = 0;    ///< on the CPU, the cloud shares the memory with the work
+
+  [[nodiscard]] std::int64_t total() const { return buffers + cloud; }
+};
+
+Estimate estimate_memory(const Cloud& cloud, const Record& record, int threads) {
+  return {estimate_device_bytes(cloud, record.options, threads),
+          record.device.kind == DeviceKind::cpu ? host_bytes(cloud) : 0};
+}
+
+std::string bytes_text(std::int64_t bytes) {
+  return fmt::format("{} ({} bytes)", format_bytes(static_cast<double>(bytes)), bytes);
 }
 
 void check_memory(std::int64_t estimate, std::int64_t limit) {
   if (limit == 0 || estimate <= limit) return;
-  throw Error(
-      ErrorCode::over_limit,
-      fmt::format("the estimate of {} ({} bytes) is above --max-memory {}; use a smaller --depth or allow more",
-                  format_bytes(static_cast<double>(estimate)), estimate, format_bytes(static_cast<double>(limit))));
+  throw Error(ErrorCode::over_limit,
+              fmt::format("the estimate of {} is above --max-memory {}; use a smaller --depth or allow more",
+                          bytes_text(estimate), format_bytes(static_cast<double>(limit))));
 }
 
-void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
-  const std::int64_t estimate = estimate_bytes(cloud, record);
-  const std::string text =
-      fmt::format("points {}, depth {}, device {}: estimate {} ({} bytes), available {}", cloud.size(),
-                  record.options.depth, record.device.name(), format_bytes(static_cast<double>(estimate)), estimate,
-                  format_bytes(static_cast<double>(record.device.available_bytes())));
+void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record, const Estimate& estimate) {
+  const std::string with_cloud = estimate.cloud > 0 ? ", with the cloud " + bytes_text(estimate.total()) : "";
+  const std::string text = fmt::format("points {}, depth {}, device {}: estimate {}{}, available {}", cloud.size(),
+                                       record.options.depth, record.device.name(), bytes_text(estimate.buffers),
+                                       with_cloud, format_bytes(static_cast<double>(record.device.available_bytes())));
   if (args.output == "-") return print_note(text);  // stdout is kept for PLY.
   write_stdout(text + "\n");
 }
@@ -121,6 +130,7 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   Reconstructor reconstructor(record.device);
   ProgressLine line(!args.quiet && stderr_is_terminal());
   Options options = record.options;
+  options.max_memory_bytes = 0;  // checked before, with the cloud
   options.progress = [&line](const Progress& progress) {
     line.update(progress);
     return !interrupted();
@@ -166,8 +176,11 @@ int run(const ReconstructArgs& given) {
 
   Cloud cloud = read_input(args, record);
   settle_options(args, cloud, record);
-  if (args.dry_run) print_estimate(args, cloud, record);
-  check_memory(estimate_bytes(cloud, record), record.options.max_memory_bytes);
+  if (args.dry_run || record.options.max_memory_bytes > 0) {
+    const Estimate estimate = estimate_memory(cloud, record, args.threads);
+    if (args.dry_run) print_estimate(args, cloud, record, estimate);
+    check_memory(estimate.total(), record.options.max_memory_bytes);
+  }
   if (args.dry_run) return 0;
 
   on_interrupt(OnInterrupt::remember);

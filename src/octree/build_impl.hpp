@@ -315,13 +315,18 @@ SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<c
     return sorted;
 
   // Points share a key: sort by the tie break first, then, stably, by key again.
+  sorted.keys.reset();
+  sorted.order.reset();
   auto ties = exec::make_buffer<std::uint64_t>(ex, n);
   copy(ex, tie_break, ties.view());
   sorted.order = exec::iota(ex, n);
   sort_pairs(ex, "octree.ties", ties, sorted.order, 64);
+  ties.reset();
   auto tied_positions = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, positions, sorted.order.cview(), tied_positions.view());
+  sorted.keys = exec::make_buffer<std::uint64_t>(ex, n);
   for_each(ex, "octree.keys", n, PointKey{tied_positions.cview(), sorted.keys.view()});
+  tied_positions.reset();
   sort_pairs(ex, "octree.sort", sorted.keys, sorted.order, kKeyBits);
   return sorted;
 }

@@ -292,9 +292,11 @@ Surface sort_vertices(Exec& ex, Surface unsorted, exec::Buffer<std::uint64_t> ke
   const std::int64_t n = keys.size();
   exec::Buffer<std::int32_t> order = exec::iota(ex, n);
   sort_pairs(ex, "extract.sort", keys, order, 3 * (depth + 1));
+  keys.reset();
   auto rank = exec::make_buffer<std::int32_t>(ex, n);
   for_each(ex, "extract.renumber", n, Invert{order.cview(), rank.view()});
   for_each(ex, "extract.renumber", unsorted.triangles.size(), Renumber{rank.cview(), unsorted.triangles.view()});
+  rank.reset();
   Surface sorted{exec::make_buffer<Vec3f>(ex, n), exec::make_buffer<Vec3f>(ex, unsorted.normals.size()),
                  std::move(unsorted.triangles)};
   exec::gather(ex, unsorted.positions.cview(), order.cview(), sorted.positions.view());
@@ -355,6 +357,8 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh.triangles});
   for_each(ex, "extract.traced", traced.size(),
            EmitTraced{f, vertex_on, traced.cview(), first_traced.cview(), low_count(table), high_count(table), mesh});
+  marks.reset();
+  first.reset();
   return sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth);
 }
 

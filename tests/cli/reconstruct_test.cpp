@@ -221,6 +221,30 @@ TEST_F(ReconstructCommand, DryRunPrintsTheEstimateAndWritesNothing) {
   EXPECT_EQ(to_stdout.out, "");
 }
 
+/// The bytes in brackets after `words` in what a dry run prints; 0: there are none.
+std::int64_t bytes_after(const std::string& words, const std::string& text) {
+  const std::size_t first = text.find(words);
+  const std::size_t open = text.find('(', first);
+  if (first == std::string::npos || open == std::string::npos) return 0;
+  return std::stoll(text.substr(open + 1));
+}
+
+TEST_F(ReconstructCommand, DryRunPrintsThePeakThatTheReportMeasures) {
+  const std::int64_t estimate = bytes_after("estimate", reconstruct({"--dry-run"}).out);
+  const std::string report = folder_ / "report.json";
+  ASSERT_EQ(reconstruct({"--report", report}).exit_code, 0);
+  const double peak = Json::parse(read_file(report))["memory"]["device_peak_bytes"].get<double>();
+  EXPECT_NEAR(static_cast<double>(estimate), peak, 0.15 * peak);
+}
+
+TEST_F(ReconstructCommand, TheLimitIsTheEstimateWithTheCloud) {
+  const std::int64_t estimate = bytes_after("with the cloud", reconstruct({"--dry-run"}).out);
+  ASSERT_GT(estimate, 0);
+  EXPECT_EQ(reconstruct({"--max-memory", std::to_string(estimate)}).exit_code, 0);
+  EXPECT_EQ(reconstruct({"--max-memory", std::to_string(estimate - 1)}).exit_code, 6);
+  EXPECT_EQ(reconstruct({"--dry-run", "--max-memory", std::to_string(estimate - 1)}).exit_code, 6);
+}
+
 TEST_F(ReconstructCommand, EnoughMemoryIsEnough) { EXPECT_EQ(reconstruct({"--max-memory", "64G"}).exit_code, 0); }
 
 TEST_F(ReconstructCommand, ReportFollowsItsSchema) {

@@ -189,7 +189,7 @@ TEST(Options, ResidualsAreMeasuredWhenAskedFor) {
   EXPECT_NEAR(r.report().isovalue, 0.5, 0.05);
 }
 
-TEST(Options, MemoryEstimatesHold) {
+TEST(Options, MemoryEstimatesFromCountsHold) {
   for (const int depth : {5, 7, 9})
     for (const std::int64_t n : {2'000, 100'000}) {
       Reconstructor r(Device::cpu(2));

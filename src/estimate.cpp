@@ -1,0 +1,70 @@
+// Estimates of the memory that a run takes.
+#include <pointskin/error.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exec/cpu_primitives.hpp"
+#include "memory_model.hpp"
+#include "octree/frame.hpp"
+#include "octree/keys.hpp"
+
+namespace pointskin {
+namespace {
+
+/// Point keys as the octree sorts them, without the bits below its finest cells.
+struct CellKeyOfPoint {
+  octree::Frame frame;
+  ArrayView<const Vec3f> positions;
+  int depth;
+  ArrayView<std::uint64_t> keys;
+  void operator()(std::int64_t i) const {
+    const Vec3f p = frame.to_unit(positions[i]);
+    const int below = 3 * (octree::kPointBits - depth);
+    keys[i] = octree::point_key(p.x, p.y, p.z) >> below << below;
+  }
+};
+
+/// Counts from the points themselves. 16 bytes a point and up to 5 a node.
+detail::RunSize measure_run(exec::Cpu& ex, const octree::Frame& frame, const Cloud& cloud, int depth) {
+  const ArrayView<const Vec3f> positions{cloud.positions.data(), cloud.size()};
+  auto keys = exec::make_buffer<std::uint64_t>(ex, cloud.size());
+  for_each(ex, "estimate.keys", keys.size(), CellKeyOfPoint{frame, positions, depth, keys.view()});
+  sort_keys(ex, "estimate.sort", keys, 3 * octree::kPointBits);
+  return {cloud.size(), octree::count_bricks(ex, keys.cview(), depth)};
+}
+
+}  // namespace
+
+std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) {
+  // A level's nodes cover a band around the surface, about 25 per face of its grid for common shapes; where points lie
+  // apart, each has its own 27 bricks; and no level has more nodes than the whole grid.
+  constexpr double kNodesPerFace = 25;
+  constexpr double kNodesPerPoint = 27 * 8;
+  constexpr double kBytesPerNode = 72;
+  constexpr double kBytesPerPoint = 120;
+  double nodes = 0;
+  for (int d = 0; d <= options.depth; ++d)
+    nodes += std::max(std::min(std::pow(8.0, d), 1e4), std::min({kNodesPerPoint * static_cast<double>(points),
+                                                                 kNodesPerFace * std::pow(4.0, d), std::pow(8.0, d)}));
+  return static_cast<std::int64_t>(kBytesPerNode * nodes + kBytesPerPoint * static_cast<double>(points));
+}
+
+std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, int threads) {
+  validate(options);
+  exec::Cpu ex(threads);
+  octree::Frame frame;
+  try {
+    frame = octree::fit_frame(ex, ArrayView<const Vec3f>{cloud.positions.data(), cloud.size()}, options.scale);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::empty_result) throw;
+    return detail::uploaded_bytes(cloud.size());  // the run ends here, too
+  }
+  const std::vector<detail::PhaseBytes> phases =
+      detail::model_memory(measure_run(ex, frame, cloud, options.depth), options);
+  return std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.bytes < b.bytes; })
+      ->bytes;
+}
+
+}  // namespace pointskin

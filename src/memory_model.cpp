@@ -1,0 +1,136 @@
+#include "memory_model.hpp"
+
+#include <algorithm>
+
+#include "octree/brick_sets.hpp"
+#include "octree/keys.hpp"
+
+namespace pointskin::detail {
+namespace {
+
+// Bytes a point.
+constexpr std::int64_t kUploaded = 24;             // position, normal
+constexpr std::int64_t kSorting = kUploaded + 44;  // position in the cube, hash; key, index, and both again
+constexpr std::int64_t kSorted = 24;               // position in the cube, normal
+constexpr std::int64_t kKey = 8;
+constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
+constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
+
+// Bytes a brick.
+constexpr std::int64_t kBrick = 153;             // key, parent, 27 neighbours, 8 children, unknowns
+constexpr std::int64_t kPointRanges = 32;        // of cell bricks
+constexpr std::int64_t kNodeValue = 32;          // one float a node
+constexpr std::int64_t kScreening = 5;           // place of the collapsed samples, corners that they touch
+constexpr std::int64_t kCollapsedSamples = 128;  // of occupied bricks
+constexpr std::int64_t kWeightedValues = 128;    // of cell bricks: two doubles a cell
+constexpr std::int64_t kHats = 256;              // of cell bricks: eight floats a cell
+constexpr std::int64_t kMarks = 16;              // two bytes a node
+constexpr std::int64_t kNumbering = 8;           // first vertex and triangle
+
+// Bytes an occupied cell: its key, its first point, and eight candidate bricks, sorted.
+constexpr std::int64_t kCandidates = 8 + 4 + 2 * 64;
+
+// Bytes a vertex and a triangle.
+constexpr std::int64_t kPosition = 12;  // as large as a normal
+constexpr std::int64_t kTriangle = 12;
+constexpr std::int64_t kVertexKey = 8;
+constexpr std::int64_t kOrder = 4;
+
+/// Nodes a vertex: 6 to 9 for scans and common shapes, whose nodes are a band of cells around the surface; 4 where the
+/// surface fills the cube like a sponge. Meshes have two triangles a vertex.
+constexpr std::int64_t kNodesPerVertex = 7;
+constexpr std::int64_t kTrianglesPerVertex = 2;
+
+/// Sums over the levels.
+struct Model {
+  const RunSize& size;
+  const Options& options;
+  std::int64_t points = size.points;
+  std::int64_t bricks = 0, cell_bricks = 0;
+  std::int64_t occupied_bricks = 1;  // the root's
+  std::int64_t most_bricks = 0;      // of one level
+  std::int64_t counted_bricks = 0;   // of the levels that count samples
+
+  Model(const RunSize& of, const Options& with) : size(of), options(with) {
+    for (int d = 0; d <= depth(); ++d) {
+      const octree::BrickCounts& own = level(d);
+      bricks += own.bricks;
+      cell_bricks += own.cell_bricks;
+      if (d < depth()) occupied_bricks += own.occupied_cells;
+      most_bricks = std::max(most_bricks, own.bricks);
+      if (d <= counted_depth()) counted_bricks += own.bricks;
+    }
+  }
+
+  [[nodiscard]] int depth() const { return static_cast<int>(size.levels.size()) - 1; }
+  [[nodiscard]] int counted_depth() const { return std::max(0, depth() - 2); }
+  [[nodiscard]] const octree::BrickCounts& level(int d) const { return size.levels[static_cast<std::size_t>(d)]; }
+
+  [[nodiscard]] std::int64_t tree() const { return kBrick * bricks + kPointRanges * cell_bricks; }
+  [[nodiscard]] std::int64_t kept_counts() const { return options.density ? kNodeValue * counted_bricks : 0; }
+
+  [[nodiscard]] std::int64_t sort() const { return kSorting * points; }
+
+  /// Keys of all cell bricks, and what finding them takes: bitmaps and the bits before every word, or eight candidates
+  /// an occupied cell, sorted.
+  [[nodiscard]] std::int64_t find_bricks() const {
+    const int last = octree::build::deepest_bitmap(points, depth());
+    std::int64_t words = 0;
+    for (int d = octree::kCompleteDepth + 1; d <= last; ++d) words += octree::build::bitmap_words(d);
+    std::int64_t bytes = 8 * words;
+    if (last < depth()) bytes = std::max(bytes, kCandidates * level(depth()).occupied_cells);
+    return (kSorted + kKey) * points + bytes + 8 * cell_bricks;
+  }
+
+  [[nodiscard]] std::int64_t build_tree() const { return (kSorted + kKey) * points + tree(); }
+
+  [[nodiscard]] std::int64_t density() const {
+    return kSorted * points + tree() + kNodeValue * counted_bricks + kHats * level(counted_depth()).cell_bricks;
+  }
+
+  /// The vector field, as if there were samples for the coarsest levels too, and its divergence.
+  [[nodiscard]] std::int64_t splat() const {
+    return kWeighed * points + tree() + kept_counts() + 4 * kNodeValue * bricks;
+  }
+
+  /// Divergence and solution of all levels; the other solution and the last step of one level.
+  [[nodiscard]] std::int64_t solve() const {
+    const std::int64_t screening =
+        options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
+    return kCollapsed * points + tree() + kept_counts() + screening + 2 * kNodeValue * (bricks + most_bricks);
+  }
+
+  [[nodiscard]] std::int64_t isovalue() const {
+    return kCollapsed * points + tree() + kept_counts() + kNodeValue * bricks +
+           kWeightedValues * level(depth()).cell_bricks;
+  }
+
+  /// The largest of: marks with their counts and sums; the mesh as it is made; the mesh as its vertices are sorted.
+  [[nodiscard]] std::int64_t extract() const {
+    const std::int64_t vertices = 8 * bricks / kNodesPerVertex;
+    const std::int64_t vertex = options.normals ? 2 * kPosition : kPosition;
+    const std::int64_t mesh = (vertex + kTrianglesPerVertex * kTriangle) * vertices;
+    const std::int64_t mark = (kMarks + 2 * kNumbering) * bricks;
+    const std::int64_t make = mesh + kVertexKey * vertices + (kMarks + kNumbering) * bricks;
+    const std::int64_t sort = mesh + (std::max(2 * kVertexKey + kOrder, vertex) + kOrder) * vertices;
+    return tree() + kept_counts() + kNodeValue * bricks + std::max({mark, make, sort});
+  }
+};
+
+}  // namespace
+
+std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options) {
+  const Model model(size, options);
+  return {{"sort", model.sort()},
+          {"find bricks", model.find_bricks()},
+          {"build tree", model.build_tree()},
+          {"density", model.density()},
+          {"splat", model.splat()},
+          {"solve", model.solve()},
+          {"isovalue", model.isovalue()},
+          {"extract", model.extract()}};
+}
+
+std::int64_t uploaded_bytes(std::int64_t points) { return kUploaded * points; }
+
+}  // namespace pointskin::detail

@@ -1,0 +1,33 @@
+// What a run holds at once, phase by phase: follows the allocations of reconstruct_impl.hpp and of the phases.
+// Whoever allocates or frees an array there changes the model here; tests/property/memory_test.cpp holds the two
+// together.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <pointskin/reconstruct.hpp>
+
+#include "octree/brick_counts.hpp"
+
+namespace pointskin::detail {
+
+/// What decides how much memory a run takes.
+struct RunSize {
+  std::int64_t points = 0;
+  std::vector<octree::BrickCounts> levels;  ///< depth 0 first
+};
+
+/// The largest sum of buffers in one phase of a run.
+struct PhaseBytes {
+  const char* phase;
+  std::int64_t bytes;
+};
+
+/// All phases that may be the one with the peak, in their order.
+std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options);
+
+/// The peak of a run whose points are all at one place: it ends when it knows that.
+std::int64_t uploaded_bytes(std::int64_t points);
+
+}  // namespace pointskin::detail

@@ -14,8 +14,10 @@
 /// takes or returns one may be left as a call.
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define PSK_INLINE inline __attribute__((always_inline))
+#define PSK_OUTLINE __attribute__((noinline))  ///< rare paths, kept out of code compiled twice
 #else
 #define PSK_INLINE inline
+#define PSK_OUTLINE
 #endif
 
 namespace pointskin {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
 #include "exec/algorithms.hpp"
@@ -63,36 +64,55 @@ struct SplatSource {
 
 /// Adds samples to V at the corners of a brick. A GPU has a kernel of its own for it (splat_kernel.cuh).
 struct SplatToBricks {
+  static constexpr bool kWide = true;
+  static constexpr int kBatch = 64;
+
   SplatSource source;
   VectorField field;
 
+  /// Sums over the samples so far, a lane for each corner.
+  struct Sums {
+    Float8 axis[3] = {};
+    bool any = false;
+  };
+
   PSK_HD void operator()(std::int64_t brick) const {
     const octree::Coordinates origin = brick_origin(source.level, brick);
-    const auto scale = static_cast<float>(1 << source.level.depth);
-    float sum[3][8] = {};
-    bool any = false;
+    Sums sums;
     for_points_around(source.level, brick, [&](std::int32_t first, std::int32_t last) {
       const std::int32_t end = source.subset.rank_of(last);
-      for (std::int32_t rank = source.subset.rank_of(first); rank < end; ++rank) {
-        add(source.subset.sample_of(rank), origin, scale, sum);
-        any = true;
-      }
+      for (std::int32_t rank = source.subset.rank_of(first); rank < end; rank += kBatch)
+        add(rank, rank + kBatch < end ? rank + kBatch : end, origin, sums);
     });
-    if (!any) return;
-    for (int a = 0; a < 3; ++a)
-      for (int s = 0; s < 8; ++s) field.axis[a][8 * brick + s] += sum[a][s];
+    if (!sums.any) return;
+    PSK_UNROLL for (int a = 0; a < 3; ++a) {
+      float* v = &field.axis[a][8 * brick];
+      store8(load8(v) + sums.axis[a], v);
+    }
   }
 
-  PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
-    if (!source.is_splatted(sample)) return;
-    const BrickSample at(source.samples.positions[sample], origin, scale);
-    if (!at.reaches<QuadraticKernel>()) return;
-    float w[8];
-    at.weights<QuadraticKernel>(w);
-    const Vec3f v = source.vector(sample);
-    for (int s = 0; s < 8; ++s) sum[0][s] += w[s] * v.x;
-    for (int s = 0; s < 8; ++s) sum[1][s] += w[s] * v.y;
-    for (int s = 0; s < 8; ++s) sum[2][s] += w[s] * v.z;
+  /// Samples of ranks [first, last), at most kBatch: those that reach the brick are listed before they are added.
+  PSK_HD PSK_INLINE void add(std::int32_t first, std::int32_t last, const octree::Coordinates& origin,
+                             Sums& sums) const {
+    const auto scale = static_cast<float>(1 << source.level.depth);
+    std::int32_t reaching[kBatch];
+    int count = 0;
+    for (std::int32_t rank = first; rank < last; ++rank) {
+      const std::int32_t sample = source.subset.sample_of(rank);
+      const BrickSample at(source.samples.positions[sample], origin, scale);
+      reaching[count] = sample;
+      count += at.reaches_unordered<QuadraticKernel>() ? 1 : 0;
+    }
+    for (int i = 0; i < count; ++i) {
+      if (!source.is_splatted(reaching[i])) continue;
+      Float8 w;
+      BrickSample(source.samples.positions[reaching[i]], origin, scale).weights<QuadraticKernel>(w);
+      const Vec3f v = source.vector(reaching[i]);
+      sums.axis[0] += w * v.x;
+      sums.axis[1] += w * v.y;
+      sums.axis[2] += w * v.z;
+      sums.any = true;
+    }
   }
 };
 
@@ -120,15 +140,16 @@ constexpr Coefficients make_coefficients() {
 
 /// D M M and its permutations around a corner whose 8 cells are all leaves; v(x, y, z) at offsets -1, 0, 1.
 template <class Values>
-PSK_HD inline float divergence_inside(int axis, const Values& v) {
+PSK_HD PSK_INLINE auto divergence_inside(int axis, const Values& v) {
+  using Float = std::decay_t<decltype(v(0, 0, 0))>;
   constexpr auto kEnd = static_cast<float>(kAxisRows.mass[0][0]);
   constexpr auto kMiddle = static_cast<float>(kAxisRows.mass[0][1]);
   constexpr auto kDerivative = static_cast<float>(kAxisRows.derivative[0][2]);
   static_assert(kAxisRows.derivative[0][1] == 0 && kAxisRows.derivative[0][0] == -kAxisRows.derivative[0][2]);
-  const auto mass = [](const float (&u)[3]) { return kEnd * (u[0] + u[2]) + kMiddle * u[1]; };
-  float along[3];
+  const auto mass = [](const Float (&u)[3]) { return kEnd * (u[0] + u[2]) + kMiddle * u[1]; };
+  Float along[3];
   PSK_UNROLL for (int j = -1; j <= 1; ++j) {
-    float slope[3];
+    Float slope[3];
     PSK_UNROLL for (int k = -1; k <= 1; ++k)
       slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
                      : axis == 1 ? v(j, 1, k) - v(j, -1, k)
@@ -187,13 +208,57 @@ struct Divergence {
 
 /// A brick at a time, for spaces with few threads.
 struct DivergenceOfBricks : Divergence {
+  static constexpr bool kWide = true;
+
   PSK_HD void operator()(std::int64_t brick) const {
-    float sum[8] = {};
+    if (lies_in_finest_cells(brick)) return along_lanes(brick);
     int leaves[8];
-    for (int s = 0; s < 8; ++s) leaves[s] = leaves_around(static_cast<std::int32_t>(8 * brick + s));
+    int all = 0xff;
+    int any = 0;
+    for (int s = 0; s < 8; ++s) {
+      leaves[s] = leaves_around(static_cast<std::int32_t>(8 * brick + s));
+      all &= leaves[s];
+      any |= leaves[s];
+    }
+    if (all == 0xff)
+      along_lanes(brick);
+    else if (any == 0)
+      store8(Float8{}, &b[8 * brick]);
+    else
+      along_corners(brick, leaves);
+  }
+
+ private:
+  /// True if all cells around the brick's corners are cells of the finest level. A level's cells are whole bricks, but
+  /// for the root.
+  [[nodiscard]] PSK_HD bool lies_in_finest_cells(std::int64_t brick) const {
+    if (finer_cell_bricks != 0 || level.depth == 0) return false;
+    bool inside = true;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      const std::int32_t other = level.neighbours[brick * octree::kNeighbours +
+                                                  octree::neighbour_index(octree::slot_x(s) - 1, octree::slot_y(s) - 1,
+                                                                          octree::slot_z(s) - 1)];
+      inside = inside && other >= 0 && other < level.cell_bricks;
+    }
+    return inside;
+  }
+
+  /// 8 corners at once, where all cells around are leaves.
+  PSK_HD PSK_INLINE void along_lanes(std::int64_t brick) const {
+    Float8 sum = {};
+    PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+      octree::NeighbourLanes around;
+      octree::load_lanes(level, brick, field.axis[axis].data, around);
+      sum += divergence_inside(axis, around);
+    }
+    store8(sum, &b[8 * brick]);
+  }
+
+  PSK_HD PSK_OUTLINE void along_corners(std::int64_t brick, const int (&leaves)[8]) const {
+    float sum[8] = {};
     for (int axis = 0; axis < 3; ++axis) {
       const octree::Neighbourhood around = octree::load_neighbourhood(level, brick, field.axis[axis].data);
-      PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      for (int s = 0; s < 8; ++s) {
         const auto v = [&](int x, int y, int z) {
           return around.at(octree::slot_x(s) + x, octree::slot_y(s) + y, octree::slot_z(s) + z);
         };

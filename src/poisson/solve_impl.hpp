@@ -89,7 +89,7 @@ struct RelaxBricks {
   }
 
   /// One corner after another: a brick at the cube's faces.
-  PSK_HD void relax_corners(std::int64_t brick, int unknowns) const {
+  PSK_HD PSK_OUTLINE void relax_corners(std::int64_t brick, int unknowns) const {
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
     const BrickResidual r = brick_residual(system, brick, around);
     PSK_UNROLL for (int s = 0; s < 8; ++s) {

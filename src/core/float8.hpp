@@ -1,8 +1,8 @@
 // Eight floats at once, one for each corner or cell of a brick, in the order of the slots (x is the highest bit).
 //
 // With g++ and clang they are vectors of the language's extension: two SSE registers on plain x86-64, one register in
-// code compiled for AVX2 (exec/wide.hpp), what there is elsewhere. Every operation works lane by lane, so a lane gets the
-// bits that a float would. nvcc gets an array: it parses the functors that use it, and calls none of them.
+// code compiled for AVX2 (exec/wide.hpp), what there is elsewhere. Every operation works lane by lane, so a lane gets
+// the bits that a float would. nvcc gets an array: it parses the functors that use it, and calls none of them.
 #pragma once
 
 #include <cstdint>
@@ -72,7 +72,7 @@ struct Float8 {
   float lane[8];
   Float8() = default;
   template <class... Lanes>
-  PSK_HD Float8(float first, Lanes... others) : lane{first, others...} {
+  PSK_HD Float8(float first, Lanes... others) : lane{first, static_cast<float>(others)...} {
     for (int s = 1; sizeof...(others) == 0 && s < 8; ++s) lane[s] = first;
   }
   PSK_HD float& operator[](int s) { return lane[s]; }
@@ -90,13 +90,25 @@ struct Float8 {
     for (int s = 0; s < 8; ++s) out.lane[s] = holds(s);
     return out;
   }
-  PSK_HD friend Float8 operator+(const Float8& a, const Float8& b) { return each([&](int s) { return a[s] + b[s]; }); }
-  PSK_HD friend Float8 operator-(const Float8& a, const Float8& b) { return each([&](int s) { return a[s] - b[s]; }); }
-  PSK_HD friend Float8 operator*(const Float8& a, const Float8& b) { return each([&](int s) { return a[s] * b[s]; }); }
-  PSK_HD friend Float8 operator/(const Float8& a, const Float8& b) { return each([&](int s) { return a[s] / b[s]; }); }
-  PSK_HD friend Float8 operator-(const Float8& a) { return each([&](int s) { return -a[s]; }); }
+  PSK_HD friend Float8 operator+(const Float8& a, const Float8& b) {
+    return each([&](int s) { return a[s] + b[s]; });
+  }
+  PSK_HD friend Float8 operator-(const Float8& a, const Float8& b) {
+    return each([&](int s) { return a[s] - b[s]; });
+  }
+  PSK_HD friend Float8 operator*(const Float8& a, const Float8& b) {
+    return each([&](int s) { return a[s] * b[s]; });
+  }
+  PSK_HD friend Float8 operator/(const Float8& a, const Float8& b) {
+    return each([&](int s) { return a[s] / b[s]; });
+  }
+  PSK_HD friend Float8 operator-(const Float8& a) {
+    return each([&](int s) { return -a[s]; });
+  }
   PSK_HD friend Float8& operator+=(Float8& a, const Float8& b) { return a = a + b; }
-  PSK_HD friend Mask8 operator<(const Float8& a, const Float8& b) { return where([&](int s) { return a[s] < b[s]; }); }
+  PSK_HD friend Mask8 operator<(const Float8& a, const Float8& b) {
+    return where([&](int s) { return a[s] < b[s]; });
+  }
   PSK_HD friend Mask8 operator>(const Float8& a, const Float8& b) { return b < a; }
 };
 PSK_HD inline Float8 select(const Mask8& mask, const Float8& a, const Float8& b) {
@@ -126,8 +138,8 @@ PSK_HD PSK_INLINE Float8 load8(const float* from) {
 }
 PSK_HD PSK_INLINE void store8(const Float8& value, float* to) { std::memcpy(to, &value, sizeof value); }
 
-/// The 8 values half way between two bricks that are neighbours along an axis: the upper half of `lower`, then the lower
-/// half of `upper`.
+/// The 8 values half way between two bricks that are neighbours along an axis: the upper half of `lower`, then the
+/// lower half of `upper`.
 template <int Axis>
 PSK_HD PSK_INLINE Float8 between(const Float8& lower, const Float8& upper) {
   return detail::between<Axis>(lower, upper);

@@ -1,4 +1,5 @@
-// Wide vectors, chosen at run time: a range of indices in a function of its own, compiled for AVX2 beside the plain one.
+// Wide vectors, chosen at run time: a range of indices in a function of its own, compiled for AVX2 beside the plain
+// one.
 #pragma once
 
 #include <cstdint>

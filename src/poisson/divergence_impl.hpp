@@ -146,14 +146,13 @@ PSK_HD PSK_INLINE auto divergence_inside(int axis, const Values& v) {
   constexpr auto kMiddle = static_cast<float>(kAxisRows.mass[0][1]);
   constexpr auto kDerivative = static_cast<float>(kAxisRows.derivative[0][2]);
   static_assert(kAxisRows.derivative[0][1] == 0 && kAxisRows.derivative[0][0] == -kAxisRows.derivative[0][2]);
-  const auto mass = [](const Float (&u)[3]) { return kEnd * (u[0] + u[2]) + kMiddle * u[1]; };
+  const auto mass = [](const Float(&u)[3]) { return kEnd * (u[0] + u[2]) + kMiddle * u[1]; };
   Float along[3];
   PSK_UNROLL for (int j = -1; j <= 1; ++j) {
     Float slope[3];
-    PSK_UNROLL for (int k = -1; k <= 1; ++k)
-      slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
-                     : axis == 1 ? v(j, 1, k) - v(j, -1, k)
-                                 : v(j, k, 1) - v(j, k, -1);
+    PSK_UNROLL for (int k = -1; k <= 1; ++k) slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
+                                                            : axis == 1 ? v(j, 1, k) - v(j, -1, k)
+                                                                        : v(j, k, 1) - v(j, k, -1);
     along[j + 1] = mass(slope);
   }
   return kDerivative * mass(along);
@@ -170,7 +169,7 @@ PSK_HD inline float divergence_by_cells(int leaves, const float (&element)[8][8]
     const int y = octree::slot_y(t) - 1;
     const int z = octree::slot_z(t) - 1;
     PSK_UNROLL for (int j = 0; j < 8; ++j)  // the corner is number 7 - t of that cell
-      sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
+        sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
   }
   return sum;
 }
@@ -235,9 +234,10 @@ struct DivergenceOfBricks : Divergence {
     if (finer_cell_bricks != 0 || level.depth == 0) return false;
     bool inside = true;
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const std::int32_t other = level.neighbours[brick * octree::kNeighbours +
-                                                  octree::neighbour_index(octree::slot_x(s) - 1, octree::slot_y(s) - 1,
-                                                                          octree::slot_z(s) - 1)];
+      const std::int32_t other =
+          level
+              .neighbours[brick * octree::kNeighbours +
+                          octree::neighbour_index(octree::slot_x(s) - 1, octree::slot_y(s) - 1, octree::slot_z(s) - 1)];
       inside = inside && other >= 0 && other < level.cell_bricks;
     }
     return inside;
@@ -274,12 +274,12 @@ struct DivergenceOfCorners : Divergence {
   PSK_HD void operator()(std::int64_t n) const {
     std::int32_t around[27];
     PSK_UNROLL for (int x = -1; x <= 1; ++x) PSK_UNROLL for (int y = -1; y <= 1; ++y)
-        PSK_UNROLL for (int z = -1; z <= 1; ++z)
-            around[octree::neighbour_index(x, y, z)] = level.neighbour(static_cast<std::int32_t>(n), x, y, z);
+        PSK_UNROLL for (int z = -1; z <= 1; ++z) around[octree::neighbour_index(x, y, z)] =
+            level.neighbour(static_cast<std::int32_t>(n), x, y, z);
     int leaves = 0;
-    PSK_UNROLL for (int t = 0; t < 8; ++t)
-      if (is_leaf(around[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1)]))
-        leaves |= 1 << t;
+    PSK_UNROLL for (int t = 0; t < 8;
+                    ++t) if (is_leaf(around[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1,
+                                                                    octree::slot_z(t) - 1)])) leaves |= 1 << t;
     float sum = 0;
     if (leaves != 0) {
       PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {

@@ -45,10 +45,10 @@ PSK_HD PSK_INLINE auto laplacian_inside(const Values& u) {
   constexpr auto kEdge = static_cast<float>(InsideLaplacian::kEdge);
   constexpr auto kCorner = static_cast<float>(InsideLaplacian::kCorner);
   const auto edges = ((u(-1, -1, 0) + u(-1, 1, 0)) + (u(1, -1, 0) + u(1, 1, 0))) +
-                      ((u(-1, 0, -1) + u(-1, 0, 1)) + (u(1, 0, -1) + u(1, 0, 1))) +
-                      ((u(0, -1, -1) + u(0, -1, 1)) + (u(0, 1, -1) + u(0, 1, 1)));
+                     ((u(-1, 0, -1) + u(-1, 0, 1)) + (u(1, 0, -1) + u(1, 0, 1))) +
+                     ((u(0, -1, -1) + u(0, -1, 1)) + (u(0, 1, -1) + u(0, 1, 1)));
   const auto corners = ((u(-1, -1, -1) + u(-1, -1, 1)) + (u(-1, 1, -1) + u(-1, 1, 1))) +
-                        ((u(1, -1, -1) + u(1, -1, 1)) + (u(1, 1, -1) + u(1, 1, 1)));
+                       ((u(1, -1, -1) + u(1, -1, 1)) + (u(1, 1, -1) + u(1, 1, 1)));
   return kCentre * u(0, 0, 0) + kEdge * edges + kCorner * corners;
 }
 
@@ -76,7 +76,7 @@ struct AxisCoefficients {
 template <class Values>
 PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x, const AxisCoefficients& y,
                                       const AxisCoefficients& z) {
-  const auto along = [](const float (&row)[3], const float (&v)[3]) {
+  const auto along = [](const float(&row)[3], const float(&v)[3]) {
     return AxisCoefficients::apply(row, v[0], v[1], v[2]);
   };
   float mass_mass[3], rest[3];  // along y and z: M M, and K M + M K
@@ -93,8 +93,8 @@ PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x
   return along(x.stiffness, mass_mass) + along(x.mass, rest);
 }
 
-/// True if some corner of the brick may lie on a face of the cube: a coordinate is 0 or 2^(depth - 1). Read off the key,
-/// without decoding it.
+/// True if some corner of the brick may lie on a face of the cube: a coordinate is 0 or 2^(depth - 1). Read off the
+/// key, without decoding it.
 PSK_HD inline bool touches_faces(std::uint64_t brick_key, int depth) {
   bool touches = depth == 0;
   PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
@@ -118,7 +118,7 @@ struct Pull {
 /// Trilinear interpolation; weight[a][0] and u(0, ..) belong to this corner, weight[a][1] to the other end of axis a.
 template <class Float, class Values>
 PSK_HD PSK_INLINE Float value_in_cell(const Float (&weight)[3][2], const Values& u, int dx, int dy, int dz) {
-  const auto mix = [](const Float (&w)[2], const Float& own, const Float& other) { return w[0] * own + w[1] * other; };
+  const auto mix = [](const Float(&w)[2], const Float& own, const Float& other) { return w[0] * own + w[1] * other; };
   const Float near = mix(weight[1], mix(weight[2], u(0, 0, 0), u(0, 0, dz)), mix(weight[2], u(0, dy, 0), u(0, dy, dz)));
   const Float far =
       mix(weight[1], mix(weight[2], u(dx, 0, 0), u(dx, 0, dz)), mix(weight[2], u(dx, dy, 0), u(dx, dy, dz)));
@@ -136,8 +136,8 @@ struct CornerResidual {
   }
 };
 
-/// The operator at one unknown corner, for spaces with many threads. What does not change from iteration to iteration is
-/// looked up once.
+/// The operator at one unknown corner, for spaces with many threads. What does not change from iteration to iteration
+/// is looked up once.
 class CornerOperator {
  public:
   PSK_HD CornerOperator(const LevelSystem& system, std::int64_t node)
@@ -168,8 +168,8 @@ class CornerOperator {
     int step[3];
     PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = slot_[a] == 0 ? -1 : 1;
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const std::int32_t brick = bricks[octree::neighbour_index(octree::slot_x(s) * step[0], octree::slot_y(s) * step[1],
-                                                                octree::slot_z(s) * step[2])];
+      const std::int32_t brick = bricks[octree::neighbour_index(
+          octree::slot_x(s) * step[0], octree::slot_y(s) * step[1], octree::slot_z(s) * step[2])];
       brick_[s] = brick < 0 ? own : brick;
     }
   }
@@ -205,8 +205,8 @@ class CornerOperator {
     return {system_.rows, side_of(brick_corner + slot_[axis], system_.level.depth), slot_[axis] != 0};
   }
 
-  /// Collapsed samples of the 8 cells around, by side: 0 beyond the corner, 1 on the brick's side. A cell belongs to the
-  /// node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
+  /// Collapsed samples of the 8 cells around, by side: 0 beyond the corner, 1 on the brick's side. A cell belongs to
+  /// the node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
   PSK_HD void find_samples(const std::int32_t* bricks) {
     std::int32_t place[8];
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
@@ -329,10 +329,10 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
     const int z = octree::slot_z(s);
     const BrickCornerValues values{u, x, y, z};
     const auto coefficients = [&](std::int32_t c) { return AxisCoefficients(system.rows, side_of(c, depth), false); };
-    out.corner[s].residual = system.b[8 * brick + s] -
-                             (faces ? laplacian_at_face(values, coefficients(2 * at.x + x), coefficients(2 * at.y + y),
-                                                        coefficients(2 * at.z + z))
-                                    : laplacian_inside(values));
+    out.corner[s].residual =
+        system.b[8 * brick + s] - (faces ? laplacian_at_face(values, coefficients(2 * at.x + x),
+                                                             coefficients(2 * at.y + y), coefficients(2 * at.z + z))
+                                         : laplacian_inside(values));
   }
   if (!(system.screening_scale > 0) || system.screening.corners[brick] == 0) return out;
   BrickPulls pulls;

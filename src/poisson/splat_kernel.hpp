@@ -63,7 +63,8 @@ struct BrickSample {
     constexpr float kLower = -Kernel::kReach;
     constexpr float kUpper = 1 + Kernel::kReach;
     return (static_cast<int>(rel[0] > kLower) & static_cast<int>(rel[0] < kUpper) & static_cast<int>(rel[1] > kLower) &
-            static_cast<int>(rel[1] < kUpper) & static_cast<int>(rel[2] > kLower) & static_cast<int>(rel[2] < kUpper)) != 0;
+            static_cast<int>(rel[1] < kUpper) & static_cast<int>(rel[2] > kLower) &
+            static_cast<int>(rel[2] < kUpper)) != 0;
   }
 
   /// Weights along every axis on the brick's lower and upper corners.

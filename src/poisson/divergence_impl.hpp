@@ -205,67 +205,75 @@ struct Divergence {
   }
 };
 
-/// A brick at a time, for spaces with few threads.
+/// A brick at a time, all 8 corners at once, for spaces with few threads.
 struct DivergenceOfBricks : Divergence {
   static constexpr bool kWide = true;
 
   PSK_HD void operator()(std::int64_t brick) const {
-    if (lies_in_finest_cells(brick)) return along_lanes(brick);
-    int leaves[8];
-    int all = 0xff;
+    int inside = 0xff;  // bit s: all cells around corner s are leaves
+    int leaves[8];      // of the cells at offset slot(t) - 1: bit s for the one seen from corner s
+    find_leaves(brick, leaves);
     int any = 0;
-    for (int s = 0; s < 8; ++s) {
-      leaves[s] = leaves_around(static_cast<std::int32_t>(8 * brick + s));
-      all &= leaves[s];
-      any |= leaves[s];
+    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+      inside &= leaves[t];
+      any |= leaves[t];
     }
-    if (all == 0xff)
-      along_lanes(brick);
-    else if (any == 0)
-      store8(Float8{}, &b[8 * brick]);
-    else
-      along_corners(brick, leaves);
-  }
-
- private:
-  /// True if all cells around the brick's corners are cells of the finest level. A level's cells are whole bricks, but
-  /// for the root.
-  [[nodiscard]] PSK_HD bool lies_in_finest_cells(std::int64_t brick) const {
-    if (finer_cell_bricks != 0 || level.depth == 0) return false;
-    bool inside = true;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const std::int32_t other =
-          level
-              .neighbours[brick * octree::kNeighbours +
-                          octree::neighbour_index(octree::slot_x(s) - 1, octree::slot_y(s) - 1, octree::slot_z(s) - 1)];
-      inside = inside && other >= 0 && other < level.cell_bricks;
-    }
-    return inside;
-  }
-
-  /// 8 corners at once, where all cells around are leaves.
-  PSK_HD PSK_INLINE void along_lanes(std::int64_t brick) const {
     Float8 sum = {};
-    PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; any != 0 && axis < 3; ++axis) {
       octree::NeighbourLanes around;
       octree::load_lanes(level, brick, field.axis[axis].data, around);
-      sum += divergence_inside(axis, around);
+      Float8 along = {};
+      if (inside != 0xff) add_cells(leaves, coefficients.element[axis], around, along);
+      sum += select(mask_of_bits(inside), divergence_inside(axis, around), along);
     }
     store8(sum, &b[8 * brick]);
   }
 
-  PSK_HD PSK_OUTLINE void along_corners(std::int64_t brick, const int (&leaves)[8]) const {
-    float sum[8] = {};
-    for (int axis = 0; axis < 3; ++axis) {
-      const octree::Neighbourhood around = octree::load_neighbourhood(level, brick, field.axis[axis].data);
-      for (int s = 0; s < 8; ++s) {
-        const auto v = [&](int x, int y, int z) {
-          return around.at(octree::slot_x(s) + x, octree::slot_y(s) + y, octree::slot_z(s) + z);
-        };
-        sum[s] += along(axis, leaves[s], v);
-      }
+ private:
+  PSK_HD PSK_INLINE void find_leaves(std::int64_t brick, int (&leaves)[8]) const {
+    if (finer_cell_bricks == 0 && level.depth > 0) return find_finest_cells(brick, leaves);
+    PSK_UNROLL for (int t = 0; t < 8; ++t) leaves[t] = 0;
+    for (int s = 0; s < 8; ++s) {
+      const int around = leaves_around(static_cast<std::int32_t>(8 * brick + s));
+      PSK_UNROLL for (int t = 0; t < 8; ++t) leaves[t] |= (around >> t & 1) << s;
     }
-    for (int s = 0; s < 8; ++s) b[8 * brick + s] = sum[s];
+  }
+
+  /// On the finest level all cells are leaves, and but for the root cells are whole bricks.
+  PSK_HD PSK_INLINE void find_finest_cells(std::int64_t brick, int (&leaves)[8]) const {
+    const std::int32_t* bricks = level.neighbours + brick * octree::kNeighbours;
+    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+      const std::int32_t other =
+          bricks[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1)];
+      leaves[t] = other >= 0 && other < level.cell_bricks ? 0xff : 0;
+    }
+    step_along<4>(leaves);
+    step_along<2>(leaves);
+    step_along<1>(leaves);
+  }
+
+  /// Turns bits of whole bricks (before, own) into those at offsets -1 and 0 along the axis of a slot's bit. All bits
+  /// of a brick agree at first.
+  template <int Bit>
+  PSK_HD PSK_INLINE static void step_along(int (&leaves)[8]) {
+    constexpr int kUpper = Bit == 4 ? 0xf0 : Bit == 2 ? 0xcc : 0xaa;  // corners at the upper end of the axis
+    PSK_UNROLL for (int t = 0; t < 8; ++t) if ((t & Bit) == 0) leaves[t] =
+        (leaves[t] & ~kUpper) | (leaves[t | Bit] & kUpper);
+  }
+
+  /// divergence_by_cells at all corners.
+  PSK_HD PSK_INLINE static void add_cells(const int (&leaves)[8], const float (&element)[8][8],
+                                          const octree::NeighbourLanes& v, Float8& sum) {
+    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+      if (leaves[t] == 0) continue;
+      const int x = octree::slot_x(t) - 1;
+      const int y = octree::slot_y(t) - 1;
+      const int z = octree::slot_z(t) - 1;
+      Float8 with_cell = sum;
+      PSK_UNROLL for (int j = 0; j < 8; ++j) with_cell +=
+          element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
+      sum = select(mask_of_bits(leaves[t]), with_cell, sum);
+    }
   }
 };
 

@@ -33,7 +33,7 @@ endif()
 # (docs/determinism.md).
 add_library(pointskin_flags INTERFACE)
 target_compile_options(pointskin_flags INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -ffp-contract=off>
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wno-psabi -ffp-contract=off>
   # CMake 3.25 does not know nvcc 13's C++20 mode, so it is asked for by hand.
   $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --fmad=false --expt-relaxed-constexpr -Xcompiler=-Wall,-Wextra,-ffp-contract=off>)
 if(POINTSKIN_SANITIZE)

@@ -15,6 +15,7 @@
 #include "exec/cpu.hpp"
 #include "exec/memory.hpp"
 #include "exec/reduce_order.hpp"
+#include "exec/wide.hpp"
 
 namespace pointskin::exec {
 
@@ -34,8 +35,7 @@ void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
   // Heavy functors over few indices still spread over the threads.
   const std::int64_t block = std::clamp<std::int64_t>(n / 64, 16, kCpuBlock);
   ex.run_blocks(block_count(n, block), [&](std::int64_t b) {
-    const std::int64_t end = std::min(n, (b + 1) * block);
-    for (std::int64_t i = b * block; i < end; ++i) f(i);
+    run_range(f, b * block, std::min(n, (b + 1) * block));
   });
 }
 

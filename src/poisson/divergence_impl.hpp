@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "exec/algorithms.hpp"
@@ -72,36 +73,55 @@ struct SplatSource {
 
 /// Adds samples to V at the corners of a brick. A GPU has a kernel of its own for it (splat_kernel.cuh).
 struct SplatToBricks {
+  static constexpr bool kWide = true;
+  static constexpr int kBatch = 64;
+
   SplatSource source;
   VectorField field;
 
+  /// Sums over the samples so far, a lane for each corner.
+  struct Sums {
+    Float8 axis[3] = {};
+    bool any = false;
+  };
+
   PSK_HD void operator()(std::int64_t brick) const {
     const octree::Coordinates origin = brick_origin(source.level, brick);
-    const auto scale = static_cast<float>(1 << source.level.depth);
-    float sum[3][8] = {};
-    bool any = false;
+    Sums sums;
     for_points_around(source.level, brick, [&](std::int32_t first, std::int32_t last) {
       const std::int32_t end = source.subset.rank_of(last);
-      for (std::int32_t rank = source.subset.rank_of(first); rank < end; ++rank) {
-        add(source.subset.sample_of(rank), origin, scale, sum);
-        any = true;
-      }
+      for (std::int32_t rank = source.subset.rank_of(first); rank < end; rank += kBatch)
+        add(rank, rank + kBatch < end ? rank + kBatch : end, origin, sums);
     });
-    if (!any) return;
-    for (int a = 0; a < 3; ++a)
-      for (int s = 0; s < 8; ++s) field.axis[a][8 * brick + s] += sum[a][s];
+    if (!sums.any) return;
+    PSK_UNROLL for (int a = 0; a < 3; ++a) {
+      float* v = &field.axis[a][8 * brick];
+      store8(load8(v) + sums.axis[a], v);
+    }
   }
 
-  PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
-    if (!source.is_splatted(sample)) return;
-    const BrickSample at(source.samples.positions[sample], origin, scale);
-    if (!at.reaches<QuadraticKernel>()) return;
-    float w[8];
-    at.weights<QuadraticKernel>(w);
-    const Vec3f v = source.vector(sample);
-    for (int s = 0; s < 8; ++s) sum[0][s] += w[s] * v.x;
-    for (int s = 0; s < 8; ++s) sum[1][s] += w[s] * v.y;
-    for (int s = 0; s < 8; ++s) sum[2][s] += w[s] * v.z;
+  /// Samples of ranks [first, last), at most kBatch: those that reach the brick are listed before they are added.
+  PSK_HD PSK_INLINE void add(std::int32_t first, std::int32_t last, const octree::Coordinates& origin,
+                             Sums& sums) const {
+    const auto scale = static_cast<float>(1 << source.level.depth);
+    std::int32_t reaching[kBatch];
+    int count = 0;
+    for (std::int32_t rank = first; rank < last; ++rank) {
+      const std::int32_t sample = source.subset.sample_of(rank);
+      const BrickSample at(source.samples.positions[sample], origin, scale);
+      reaching[count] = sample;
+      count += at.reaches_unordered<QuadraticKernel>() ? 1 : 0;
+    }
+    for (int i = 0; i < count; ++i) {
+      if (!source.is_splatted(reaching[i])) continue;
+      Float8 w;
+      BrickSample(source.samples.positions[reaching[i]], origin, scale).weights<QuadraticKernel>(w);
+      const Vec3f v = source.vector(reaching[i]);
+      sums.axis[0] += w * v.x;
+      sums.axis[1] += w * v.y;
+      sums.axis[2] += w * v.z;
+      sums.any = true;
+    }
   }
 };
 
@@ -129,19 +149,19 @@ constexpr Coefficients make_coefficients() {
 
 /// D M M and its permutations around a corner whose 8 cells are all leaves; v(x, y, z) at offsets -1, 0, 1.
 template <class Values>
-PSK_HD inline float divergence_inside(int axis, const Values& v) {
+PSK_HD PSK_INLINE auto divergence_inside(int axis, const Values& v) {
+  using Float = std::decay_t<decltype(v(0, 0, 0))>;
   constexpr auto kEnd = static_cast<float>(kAxisRows.mass[0][0]);
   constexpr auto kMiddle = static_cast<float>(kAxisRows.mass[0][1]);
   constexpr auto kDerivative = static_cast<float>(kAxisRows.derivative[0][2]);
   static_assert(kAxisRows.derivative[0][1] == 0 && kAxisRows.derivative[0][0] == -kAxisRows.derivative[0][2]);
-  const auto mass = [](const float (&u)[3]) { return kEnd * (u[0] + u[2]) + kMiddle * u[1]; };
-  float along[3];
+  const auto mass = [](const Float(&u)[3]) { return kEnd * (u[0] + u[2]) + kMiddle * u[1]; };
+  Float along[3];
   PSK_UNROLL for (int j = -1; j <= 1; ++j) {
-    float slope[3];
-    PSK_UNROLL for (int k = -1; k <= 1; ++k)
-      slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
-                     : axis == 1 ? v(j, 1, k) - v(j, -1, k)
-                                 : v(j, k, 1) - v(j, k, -1);
+    Float slope[3];
+    PSK_UNROLL for (int k = -1; k <= 1; ++k) slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
+                                                            : axis == 1 ? v(j, 1, k) - v(j, -1, k)
+                                                                        : v(j, k, 1) - v(j, k, -1);
     along[j + 1] = mass(slope);
   }
   return kDerivative * mass(along);
@@ -158,7 +178,7 @@ PSK_HD inline float divergence_by_cells(int leaves, const float (&element)[8][8]
     const int y = octree::slot_y(t) - 1;
     const int z = octree::slot_z(t) - 1;
     PSK_UNROLL for (int j = 0; j < 8; ++j)  // the corner is number 7 - t of that cell
-      sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
+        sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
   }
   return sum;
 }
@@ -194,22 +214,75 @@ struct Divergence {
   }
 };
 
-/// A brick at a time, for spaces with few threads.
+/// A brick at a time, all 8 corners at once, for spaces with few threads.
 struct DivergenceOfBricks : Divergence {
+  static constexpr bool kWide = true;
+
   PSK_HD void operator()(std::int64_t brick) const {
-    float sum[8] = {};
-    int leaves[8];
-    for (int s = 0; s < 8; ++s) leaves[s] = leaves_around(static_cast<std::int32_t>(8 * brick + s));
-    for (int axis = 0; axis < 3; ++axis) {
-      const octree::Neighbourhood around = octree::load_neighbourhood(level, brick, field.axis[axis].data);
-      PSK_UNROLL for (int s = 0; s < 8; ++s) {
-        const auto v = [&](int x, int y, int z) {
-          return around.at(octree::slot_x(s) + x, octree::slot_y(s) + y, octree::slot_z(s) + z);
-        };
-        sum[s] += along(axis, leaves[s], v);
-      }
+    int inside = 0xff;  // bit s: all cells around corner s are leaves
+    int leaves[8];      // of the cells at offset slot(t) - 1: bit s for the one seen from corner s
+    find_leaves(brick, leaves);
+    int any = 0;
+    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+      inside &= leaves[t];
+      any |= leaves[t];
     }
-    for (int s = 0; s < 8; ++s) b[8 * brick + s] = sum[s];
+    Float8 sum = {};
+    for (int axis = 0; any != 0 && axis < 3; ++axis) {
+      octree::NeighbourLanes around;
+      octree::load_lanes(level, brick, field.axis[axis].data, around);
+      Float8 along = {};
+      if (inside != 0xff) add_cells(leaves, coefficients.element[axis], around, along);
+      sum += select(mask_of_bits(inside), divergence_inside(axis, around), along);
+    }
+    store8(sum, &b[8 * brick]);
+  }
+
+ private:
+  PSK_HD PSK_INLINE void find_leaves(std::int64_t brick, int (&leaves)[8]) const {
+    if (finer_cell_bricks == 0 && level.depth > 0) return find_finest_cells(brick, leaves);
+    PSK_UNROLL for (int t = 0; t < 8; ++t) leaves[t] = 0;
+    for (int s = 0; s < 8; ++s) {
+      const int around = leaves_around(static_cast<std::int32_t>(8 * brick + s));
+      PSK_UNROLL for (int t = 0; t < 8; ++t) leaves[t] |= (around >> t & 1) << s;
+    }
+  }
+
+  /// On the finest level all cells are leaves, and but for the root cells are whole bricks.
+  PSK_HD PSK_INLINE void find_finest_cells(std::int64_t brick, int (&leaves)[8]) const {
+    const std::int32_t* bricks = level.neighbours + brick * octree::kNeighbours;
+    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+      const std::int32_t other =
+          bricks[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1)];
+      leaves[t] = other >= 0 && other < level.cell_bricks ? 0xff : 0;
+    }
+    step_along<4>(leaves);
+    step_along<2>(leaves);
+    step_along<1>(leaves);
+  }
+
+  /// Turns bits of whole bricks (before, own) into those at offsets -1 and 0 along the axis of a slot's bit. All bits
+  /// of a brick agree at first.
+  template <int Bit>
+  PSK_HD PSK_INLINE static void step_along(int (&leaves)[8]) {
+    constexpr int kUpper = Bit == 4 ? 0xf0 : Bit == 2 ? 0xcc : 0xaa;  // corners at the upper end of the axis
+    PSK_UNROLL for (int t = 0; t < 8; ++t) if ((t & Bit) == 0) leaves[t] =
+        (leaves[t] & ~kUpper) | (leaves[t | Bit] & kUpper);
+  }
+
+  /// divergence_by_cells at all corners.
+  PSK_HD PSK_INLINE static void add_cells(const int (&leaves)[8], const float (&element)[8][8],
+                                          const octree::NeighbourLanes& v, Float8& sum) {
+    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+      if (leaves[t] == 0) continue;
+      const int x = octree::slot_x(t) - 1;
+      const int y = octree::slot_y(t) - 1;
+      const int z = octree::slot_z(t) - 1;
+      Float8 with_cell = sum;
+      PSK_UNROLL for (int j = 0; j < 8; ++j) with_cell +=
+          element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
+      sum = select(mask_of_bits(leaves[t]), with_cell, sum);
+    }
   }
 };
 
@@ -218,12 +291,12 @@ struct DivergenceOfCorners : Divergence {
   PSK_HD void operator()(std::int64_t n) const {
     std::int32_t around[27];
     PSK_UNROLL for (int x = -1; x <= 1; ++x) PSK_UNROLL for (int y = -1; y <= 1; ++y)
-        PSK_UNROLL for (int z = -1; z <= 1; ++z)
-            around[octree::neighbour_index(x, y, z)] = level.neighbour(static_cast<std::int32_t>(n), x, y, z);
+        PSK_UNROLL for (int z = -1; z <= 1; ++z) around[octree::neighbour_index(x, y, z)] =
+            level.neighbour(static_cast<std::int32_t>(n), x, y, z);
     int leaves = 0;
-    PSK_UNROLL for (int t = 0; t < 8; ++t)
-      if (is_leaf(around[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1)]))
-        leaves |= 1 << t;
+    PSK_UNROLL for (int t = 0; t < 8;
+                    ++t) if (is_leaf(around[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1,
+                                                                    octree::slot_z(t) - 1)])) leaves |= 1 << t;
     float sum = 0;
     if (leaves != 0) {
       PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {

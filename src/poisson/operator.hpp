@@ -7,6 +7,7 @@
 
 #include <cstdint>
 
+#include "core/float8.hpp"
 #include "octree/keys.hpp"
 #include "octree/neighbourhood.hpp"
 #include "octree/view.hpp"
@@ -39,15 +40,15 @@ struct BrickCornerValues {
 
 /// Sum of the 12 edge and 8 corner neighbours with their coefficients, and the corner itself.
 template <class Values>
-PSK_HD inline float laplacian_inside(const Values& u) {
+PSK_HD PSK_INLINE auto laplacian_inside(const Values& u) {
   constexpr auto kCentre = static_cast<float>(InsideLaplacian::kCentre);
   constexpr auto kEdge = static_cast<float>(InsideLaplacian::kEdge);
   constexpr auto kCorner = static_cast<float>(InsideLaplacian::kCorner);
-  const float edges = ((u(-1, -1, 0) + u(-1, 1, 0)) + (u(1, -1, 0) + u(1, 1, 0))) +
-                      ((u(-1, 0, -1) + u(-1, 0, 1)) + (u(1, 0, -1) + u(1, 0, 1))) +
-                      ((u(0, -1, -1) + u(0, -1, 1)) + (u(0, 1, -1) + u(0, 1, 1)));
-  const float corners = ((u(-1, -1, -1) + u(-1, -1, 1)) + (u(-1, 1, -1) + u(-1, 1, 1))) +
-                        ((u(1, -1, -1) + u(1, -1, 1)) + (u(1, 1, -1) + u(1, 1, 1)));
+  const auto edges = ((u(-1, -1, 0) + u(-1, 1, 0)) + (u(1, -1, 0) + u(1, 1, 0))) +
+                     ((u(-1, 0, -1) + u(-1, 0, 1)) + (u(1, 0, -1) + u(1, 0, 1))) +
+                     ((u(0, -1, -1) + u(0, -1, 1)) + (u(0, 1, -1) + u(0, 1, 1)));
+  const auto corners = ((u(-1, -1, -1) + u(-1, -1, 1)) + (u(-1, 1, -1) + u(-1, 1, 1))) +
+                       ((u(1, -1, -1) + u(1, -1, 1)) + (u(1, 1, -1) + u(1, 1, 1)));
   return kCentre * u(0, 0, 0) + kEdge * edges + kCorner * corners;
 }
 
@@ -75,7 +76,7 @@ struct AxisCoefficients {
 template <class Values>
 PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x, const AxisCoefficients& y,
                                       const AxisCoefficients& z) {
-  const auto along = [](const float (&row)[3], const float (&v)[3]) {
+  const auto along = [](const float(&row)[3], const float(&v)[3]) {
     return AxisCoefficients::apply(row, v[0], v[1], v[2]);
   };
   float mass_mass[3], rest[3];  // along y and z: M M, and K M + M K
@@ -92,8 +93,8 @@ PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x
   return along(x.stiffness, mass_mass) + along(x.mass, rest);
 }
 
-/// True if some corner of the brick may lie on a face of the cube: a coordinate is 0 or 2^(depth - 1). Read off the key,
-/// without decoding it.
+/// True if some corner of the brick may lie on a face of the cube: a coordinate is 0 or 2^(depth - 1). Read off the
+/// key, without decoding it.
 PSK_HD inline bool touches_faces(std::uint64_t brick_key, int depth) {
   bool touches = depth == 0;
   PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
@@ -104,7 +105,8 @@ PSK_HD inline bool touches_faces(std::uint64_t brick_key, int depth) {
 }
 
 /// Sum over the 8 cells around a corner; the sides of an axis may change places.
-PSK_HD inline float sum_of_cells(const float (&cell)[8]) {
+template <class Float>
+PSK_HD PSK_INLINE Float sum_of_cells(const Float (&cell)[8]) {
   return ((cell[0] + cell[1]) + (cell[2] + cell[3])) + ((cell[4] + cell[5]) + (cell[6] + cell[7]));
 }
 
@@ -114,11 +116,11 @@ struct Pull {
 };
 
 /// Trilinear interpolation; weight[a][0] and u(0, ..) belong to this corner, weight[a][1] to the other end of axis a.
-template <class Values>
-PSK_HD inline float value_in_cell(const float (&weight)[3][2], const Values& u, int dx, int dy, int dz) {
-  const auto mix = [](const float (&w)[2], float own, float other) { return w[0] * own + w[1] * other; };
-  const float near = mix(weight[1], mix(weight[2], u(0, 0, 0), u(0, 0, dz)), mix(weight[2], u(0, dy, 0), u(0, dy, dz)));
-  const float far =
+template <class Float, class Values>
+PSK_HD PSK_INLINE Float value_in_cell(const Float (&weight)[3][2], const Values& u, int dx, int dy, int dz) {
+  const auto mix = [](const Float(&w)[2], const Float& own, const Float& other) { return w[0] * own + w[1] * other; };
+  const Float near = mix(weight[1], mix(weight[2], u(0, 0, 0), u(0, 0, dz)), mix(weight[2], u(0, dy, 0), u(0, dy, dz)));
+  const Float far =
       mix(weight[1], mix(weight[2], u(dx, 0, 0), u(dx, 0, dz)), mix(weight[2], u(dx, dy, 0), u(dx, dy, dz)));
   return mix(weight[0], near, far);
 }
@@ -134,8 +136,8 @@ struct CornerResidual {
   }
 };
 
-/// The operator at one unknown corner, for spaces with many threads. What does not change from iteration to iteration is
-/// looked up once.
+/// The operator at one unknown corner, for spaces with many threads. What does not change from iteration to iteration
+/// is looked up once.
 class CornerOperator {
  public:
   PSK_HD CornerOperator(const LevelSystem& system, std::int64_t node)
@@ -166,8 +168,8 @@ class CornerOperator {
     int step[3];
     PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = slot_[a] == 0 ? -1 : 1;
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const std::int32_t brick = bricks[octree::neighbour_index(octree::slot_x(s) * step[0], octree::slot_y(s) * step[1],
-                                                                octree::slot_z(s) * step[2])];
+      const std::int32_t brick = bricks[octree::neighbour_index(
+          octree::slot_x(s) * step[0], octree::slot_y(s) * step[1], octree::slot_z(s) * step[2])];
       brick_[s] = brick < 0 ? own : brick;
     }
   }
@@ -203,8 +205,8 @@ class CornerOperator {
     return {system_.rows, side_of(brick_corner + slot_[axis], system_.level.depth), slot_[axis] != 0};
   }
 
-  /// Collapsed samples of the 8 cells around, by side: 0 beyond the corner, 1 on the brick's side. A cell belongs to the
-  /// node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
+  /// Collapsed samples of the 8 cells around, by side: 0 beyond the corner, 1 on the brick's side. A cell belongs to
+  /// the node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
   PSK_HD void find_samples(const std::int32_t* bricks) {
     std::int32_t place[8];
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
@@ -327,10 +329,10 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
     const int z = octree::slot_z(s);
     const BrickCornerValues values{u, x, y, z};
     const auto coefficients = [&](std::int32_t c) { return AxisCoefficients(system.rows, side_of(c, depth), false); };
-    out.corner[s].residual = system.b[8 * brick + s] -
-                             (faces ? laplacian_at_face(values, coefficients(2 * at.x + x), coefficients(2 * at.y + y),
-                                                        coefficients(2 * at.z + z))
-                                    : laplacian_inside(values));
+    out.corner[s].residual =
+        system.b[8 * brick + s] - (faces ? laplacian_at_face(values, coefficients(2 * at.x + x),
+                                                             coefficients(2 * at.y + y), coefficients(2 * at.z + z))
+                                         : laplacian_inside(values));
   }
   if (!(system.screening_scale > 0) || system.screening.corners[brick] == 0) return out;
   BrickPulls pulls;
@@ -340,6 +342,91 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
       screen_corner(pulls, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s), out.corner[s]);
   }
   return out;
+}
+
+/// Residual and bounding diagonal at the 8 corners of a brick, a lane each.
+struct BrickResidual8 {
+  Float8 residual, diagonal;
+};
+
+/// Collapsed samples of 8 cells, with the weight they have in the matrix.
+struct CellLanes {
+  Float8 x{}, y{}, z{}, weight{};
+};
+
+/// The cells around a brick's corners: [s] lies at offset slot(s) - 1 from each corner.
+struct CellsAround {
+  CellLanes cell[8];
+
+  /// Turns the cells of whole bricks (before, own) into those at offsets -1 and 0 along an axis.
+  template <int Axis>
+  PSK_HD PSK_INLINE void step_along() {
+    constexpr int kBit = 4 >> Axis;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      if ((s & kBit) != 0) continue;
+      const CellLanes& upper = cell[s | kBit];
+      cell[s].x = between<Axis>(cell[s].x, upper.x);
+      cell[s].y = between<Axis>(cell[s].y, upper.y);
+      cell[s].z = between<Axis>(cell[s].z, upper.z);
+      cell[s].weight = between<Axis>(cell[s].weight, upper.weight);
+    }
+  }
+};
+
+/// Finds the samples around a brick.
+PSK_HD PSK_INLINE void load_cells(const LevelSystem& system, std::int64_t brick, CellsAround& out) {
+  const std::int32_t* bricks = system.level.neighbours + brick * octree::kNeighbours;
+  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    const std::int32_t other =
+        bricks[octree::neighbour_index(octree::slot_x(s) - 1, octree::slot_y(s) - 1, octree::slot_z(s) - 1)];
+    const std::int32_t place = other < 0 ? -1 : system.screening.brick_index[other];
+    out.cell[s] = {};
+    if (place < 0) continue;
+    Float8 column[4];
+    load_columns(&system.screening.samples[8 * std::int64_t{place}].x, column);
+    out.cell[s] = {column[0], column[1], column[2], system.screening_scale * column[3]};
+  }
+  out.step_along<0>();
+  out.step_along<1>();
+  out.step_along<2>();
+}
+
+/// Values at the corners of the cells at offset slot(s) - 1, for value_in_cell.
+struct CellCornerLanes {
+  const octree::NeighbourLanes& around;
+  int s;
+  PSK_HD PSK_INLINE const Float8& operator()(int dx, int dy, int dz) const {
+    return around(octree::slot_x(s) - 1 + dx, octree::slot_y(s) - 1 + dy, octree::slot_z(s) - 1 + dz);
+  }
+};
+
+/// Adds the screening of the 8 cells around each corner: load_pulls and screen_corner, 8 corners at once.
+PSK_HD PSK_INLINE void screen_lanes(const LevelSystem& system, std::int64_t brick, const octree::NeighbourLanes& u,
+                                    BrickResidual8& out) {
+  CellsAround cells;
+  load_cells(system, brick, cells);
+  Float8 residuals[8], diagonals[8];
+  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    const CellLanes& cell = cells.cell[s];
+    const Float8 weight[3][2] = {{1 - cell.x, cell.x}, {1 - cell.y, cell.y}, {1 - cell.z, cell.z}};
+    const Float8 value = value_in_cell(weight, CellCornerLanes{u, s}, 1, 1, 1);
+    const Float8 own =  // the corner is the upper end of the cell below it
+        weight[0][1 - octree::slot_x(s)] * weight[1][1 - octree::slot_y(s)] * weight[2][1 - octree::slot_z(s)];
+    const Mask8 has_sample = cell.weight > 0;
+    residuals[s] = select(has_sample, own * (cell.weight * (0.5F - value)), Float8{});
+    diagonals[s] = select(has_sample, own * cell.weight, Float8{});
+  }
+  const Mask8 screened = mask_of_bits(system.screening.corners[brick]);
+  out.residual = select(screened, out.residual + sum_of_cells(residuals), out.residual);
+  out.diagonal = select(screened, out.diagonal + sum_of_cells(diagonals), out.diagonal);
+}
+
+/// brick_residual, with the same bits, of a brick that does not touch the cube's faces.
+PSK_HD PSK_INLINE void residual_lanes(const LevelSystem& system, std::int64_t brick, const octree::NeighbourLanes& u,
+                                      BrickResidual8& out) {
+  out.residual = load8(system.b + 8 * brick) - laplacian_inside(u);
+  out.diagonal = Float8{} + kLargestEigenvalue;
+  if (system.screening_scale > 0 && system.screening.corners[brick] != 0) screen_lanes(system, brick, u, out);
 }
 
 }  // namespace pointskin::poisson

@@ -42,9 +42,7 @@ struct RelaxCorners {
   float* step;
   ChebyshevStep steps[kMostRounds];
 
-  [[nodiscard]] PSK_HD bool takes_part(int n) const {
-    return (system.level.unknowns[n >> 3] >> (n & 7) & 1) != 0;
-  }
+  [[nodiscard]] PSK_HD bool takes_part(int n) const { return (system.level.unknowns[n >> 3] >> (n & 7) & 1) != 0; }
   [[nodiscard]] PSK_HD CornerOperator prepare(int n) const { return {system, n}; }
 
   PSK_HD void operator()(int round, int n, const CornerOperator& corner) const {
@@ -58,6 +56,8 @@ struct RelaxCorners {
 
 /// One iteration a brick at a time, for spaces with few threads.
 struct RelaxBricks {
+  static constexpr bool kWide = true;
+
   LevelSystem system;
   ChebyshevStep chebyshev;
   const float* u;
@@ -66,6 +66,28 @@ struct RelaxBricks {
   PSK_HD void operator()(std::int64_t brick) const {
     const int unknowns = system.level.unknowns[brick];
     if (unknowns == 0) return;  // `next` holds the interpolated values already
+    if (touches_faces(system.level.brick_key[brick], system.level.depth))
+      relax_corners(brick, unknowns);
+    else
+      relax_lanes(brick, unknowns);
+  }
+
+ private:
+  /// 8 corners at once: a brick inside the cube.
+  PSK_HD PSK_INLINE void relax_lanes(std::int64_t brick, int unknowns) const {
+    octree::NeighbourLanes around;
+    octree::load_lanes(system.level, brick, u, around);
+    BrickResidual8 r;
+    residual_lanes(system, brick, around, r);
+    Float8 change = chebyshev.gain * (r.residual / r.diagonal);
+    if (chebyshev.momentum != 0) change += chebyshev.momentum * load8(step + 8 * brick);
+    change = select(mask_of_bits(unknowns), change, Float8{});
+    store8(change, step + 8 * brick);
+    store8(around(0, 0, 0) + change, next + 8 * brick);
+  }
+
+  /// One corner after another: a brick at the cube's faces.
+  PSK_HD PSK_OUTLINE void relax_corners(std::int64_t brick, int unknowns) const {
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
     const BrickResidual r = brick_residual(system, brick, around);
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
@@ -259,9 +281,8 @@ double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const
   auto cells = exec::make_buffer<solve::WeightedValue>(ex, level.cells());
   for_each(ex, "solve.isovalue", level.cells(),
            solve::ValuesInCell{level, u.data + level.first_node, samples, cells.view()});
-  const auto total =
-      exec::reduce<solve::WeightedValue>(ex, "solve.isovalue", cells.size(),
-                                         exec::LoadValue<solve::WeightedValue>{cells.cview()}, solve::AddWeighted{});
+  const auto total = exec::reduce<solve::WeightedValue>(
+      ex, "solve.isovalue", cells.size(), exec::LoadValue<solve::WeightedValue>{cells.cview()}, solve::AddWeighted{});
   return total.sum / total.weight;
 }
 

@@ -31,6 +31,7 @@ endif()
 
 # Arithmetic must not depend on who compiles it: without fused multiply-adds the CPU and the GPU compute the same bits
 # (docs/determinism.md).
+# -Wno-psabi: no function that passes a vector of 32 bytes is left as a call (src/core/float8.hpp).
 add_library(pointskin_flags INTERFACE)
 target_compile_options(pointskin_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wno-psabi -ffp-contract=off>

@@ -28,7 +28,8 @@ inline std::int64_t cpu_sort_block(std::int64_t n) { return std::clamp<std::int6
 
 inline std::int64_t block_count(std::int64_t n, std::int64_t block) { return (n + block - 1) / block; }
 
-/// Calls f(i) for every i in [0, n). f must not depend on the order of the calls.
+/// Calls f(i) for every i in [0, n). f must not depend on the order of the calls. Functors with a `wide` body use it
+/// where the processor has AVX2 (exec/wide.hpp).
 template <class F>
 void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
   if (n <= 0) return;

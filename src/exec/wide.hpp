@@ -1,5 +1,5 @@
-// Wide vectors, chosen at run time: a range of indices in a function of its own, compiled for AVX2 beside the plain
-// one.
+// Wide vectors, chosen at run time: a range of indices in a function of its own, compiled for AVX2 beside the
+// plain one (docs/decisions/0011-vectors-at-run-time.md).
 #pragma once
 
 #include <cstdint>

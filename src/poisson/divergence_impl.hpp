@@ -97,7 +97,7 @@ struct SplatToBricks {
   }
 
 #if PSK_WIDE
-  static constexpr int kBatch = 64;
+  static constexpr int kBatch = 64;  ///< samples that are tested before those that reach the brick are added
 
   /// Sums over the samples so far, a lane for each corner.
   struct Sums {
@@ -199,7 +199,7 @@ PSK_HD inline float divergence_by_cells(int leaves, const float (&element)[8][8]
     const int y = octree::slot_y(t) - 1;
     const int z = octree::slot_z(t) - 1;
     PSK_UNROLL for (int j = 0; j < 8; ++j)  // the corner is number 7 - t of that cell
-        sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
+      sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
   }
   return sum;
 }
@@ -329,12 +329,12 @@ struct DivergenceOfCorners : Divergence {
   PSK_HD void operator()(std::int64_t n) const {
     std::int32_t around[27];
     PSK_UNROLL for (int x = -1; x <= 1; ++x) PSK_UNROLL for (int y = -1; y <= 1; ++y)
-        PSK_UNROLL for (int z = -1; z <= 1; ++z) around[octree::neighbour_index(x, y, z)] =
-            level.neighbour(static_cast<std::int32_t>(n), x, y, z);
+        PSK_UNROLL for (int z = -1; z <= 1; ++z)
+            around[octree::neighbour_index(x, y, z)] = level.neighbour(static_cast<std::int32_t>(n), x, y, z);
     int leaves = 0;
-    PSK_UNROLL for (int t = 0; t < 8;
-                    ++t) if (is_leaf(around[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1,
-                                                                    octree::slot_z(t) - 1)])) leaves |= 1 << t;
+    PSK_UNROLL for (int t = 0; t < 8; ++t)
+      if (is_leaf(around[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1)]))
+        leaves |= 1 << t;
     float sum = 0;
     if (leaves != 0) {
       PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {

@@ -1,6 +1,7 @@
-// The matrix-free operator of one level: Laplacian plus screening, for one corner or for all 8 corners of a brick.
+// The matrix-free operator of one level: Laplacian plus screening, for one corner or for all 8 corners of a brick, one
+// after another or as the lanes of a vector.
 //
-// Both give the same bits. Values and cells around a corner are named by their side along each axis, and every sum is a
+// All give the same bits. Values and cells around a corner are named by their side along each axis, and every sum is a
 // tree that does not change when the two sides of an axis change places. So a thread that has one corner may call the
 // side away from the corner's brick -1, whichever it is, and keep all it loads in registers.
 #pragma once
@@ -76,7 +77,7 @@ struct AxisCoefficients {
 template <class Values>
 PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x, const AxisCoefficients& y,
                                       const AxisCoefficients& z) {
-  const auto along = [](const float(&row)[3], const float(&v)[3]) {
+  const auto along = [](const float (&row)[3], const float (&v)[3]) {
     return AxisCoefficients::apply(row, v[0], v[1], v[2]);
   };
   float mass_mass[3], rest[3];  // along y and z: M M, and K M + M K
@@ -93,8 +94,8 @@ PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x
   return along(x.stiffness, mass_mass) + along(x.mass, rest);
 }
 
-/// True if some corner of the brick may lie on a face of the cube: a coordinate is 0 or 2^(depth - 1). Read off the
-/// key, without decoding it.
+/// True if some corner of the brick may lie on a face of the cube: a coordinate is 0 or 2^(depth - 1). Read off the key,
+/// without decoding it.
 PSK_HD inline bool touches_faces(std::uint64_t brick_key, int depth) {
   bool touches = depth == 0;
   PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
@@ -136,8 +137,8 @@ struct CornerResidual {
   }
 };
 
-/// The operator at one unknown corner, for spaces with many threads. What does not change from iteration to iteration
-/// is looked up once.
+/// The operator at one unknown corner, for spaces with many threads. What does not change from iteration to iteration is
+/// looked up once.
 class CornerOperator {
  public:
   PSK_HD CornerOperator(const LevelSystem& system, std::int64_t node)
@@ -168,8 +169,8 @@ class CornerOperator {
     int step[3];
     PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = slot_[a] == 0 ? -1 : 1;
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const std::int32_t brick = bricks[octree::neighbour_index(
-          octree::slot_x(s) * step[0], octree::slot_y(s) * step[1], octree::slot_z(s) * step[2])];
+      const std::int32_t brick = bricks[octree::neighbour_index(octree::slot_x(s) * step[0], octree::slot_y(s) * step[1],
+                                                                octree::slot_z(s) * step[2])];
       brick_[s] = brick < 0 ? own : brick;
     }
   }
@@ -205,8 +206,8 @@ class CornerOperator {
     return {system_.rows, side_of(brick_corner + slot_[axis], system_.level.depth), slot_[axis] != 0};
   }
 
-  /// Collapsed samples of the 8 cells around, by side: 0 beyond the corner, 1 on the brick's side. A cell belongs to
-  /// the node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
+  /// Collapsed samples of the 8 cells around, by side: 0 beyond the corner, 1 on the brick's side. A cell belongs to the
+  /// node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
   PSK_HD void find_samples(const std::int32_t* bricks) {
     std::int32_t place[8];
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
@@ -329,10 +330,10 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
     const int z = octree::slot_z(s);
     const BrickCornerValues values{u, x, y, z};
     const auto coefficients = [&](std::int32_t c) { return AxisCoefficients(system.rows, side_of(c, depth), false); };
-    out.corner[s].residual =
-        system.b[8 * brick + s] - (faces ? laplacian_at_face(values, coefficients(2 * at.x + x),
-                                                             coefficients(2 * at.y + y), coefficients(2 * at.z + z))
-                                         : laplacian_inside(values));
+    out.corner[s].residual = system.b[8 * brick + s] -
+                             (faces ? laplacian_at_face(values, coefficients(2 * at.x + x), coefficients(2 * at.y + y),
+                                                        coefficients(2 * at.z + z))
+                                    : laplacian_inside(values));
   }
   if (!(system.screening_scale > 0) || system.screening.corners[brick] == 0) return out;
   BrickPulls pulls;

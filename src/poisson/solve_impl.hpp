@@ -42,7 +42,9 @@ struct RelaxCorners {
   float* step;
   ChebyshevStep steps[kMostRounds];
 
-  [[nodiscard]] PSK_HD bool takes_part(int n) const { return (system.level.unknowns[n >> 3] >> (n & 7) & 1) != 0; }
+  [[nodiscard]] PSK_HD bool takes_part(int n) const {
+    return (system.level.unknowns[n >> 3] >> (n & 7) & 1) != 0;
+  }
   [[nodiscard]] PSK_HD CornerOperator prepare(int n) const { return {system, n}; }
 
   PSK_HD void operator()(int round, int n, const CornerOperator& corner) const {
@@ -275,8 +277,9 @@ double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const
   auto cells = exec::make_buffer<solve::WeightedValue>(ex, level.cells());
   for_each(ex, "solve.isovalue", level.cells(),
            solve::ValuesInCell{level, u.data + level.first_node, samples, cells.view()});
-  const auto total = exec::reduce<solve::WeightedValue>(
-      ex, "solve.isovalue", cells.size(), exec::LoadValue<solve::WeightedValue>{cells.cview()}, solve::AddWeighted{});
+  const auto total =
+      exec::reduce<solve::WeightedValue>(ex, "solve.isovalue", cells.size(),
+                                         exec::LoadValue<solve::WeightedValue>{cells.cview()}, solve::AddWeighted{});
   return total.sum / total.weight;
 }
 

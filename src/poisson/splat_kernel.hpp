@@ -61,7 +61,7 @@ struct BrickSample {
 
   /// The same, without branches: of many samples around a brick about a third reaches it, in no order.
   template <class Kernel>
-  [[nodiscard]] PSK_HD PSK_INLINE bool reaches_unordered() const {
+  [[nodiscard]] PSK_HD bool reaches_unordered() const {
     constexpr float kLower = -Kernel::kReach;
     constexpr float kUpper = 1 + Kernel::kReach;
     return (static_cast<int>(rel[0] > kLower) & static_cast<int>(rel[0] < kUpper) & static_cast<int>(rel[1] > kLower) &

@@ -38,6 +38,7 @@ target_compile_options(pointskin_flags INTERFACE
   # CMake 3.25 does not know nvcc 13's C++20 mode, so it is asked for by hand.
   $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --fmad=false --expt-relaxed-constexpr -Xcompiler=-Wall,-Wextra,-ffp-contract=off>)
 if(POINTSKIN_SANITIZE)
+  target_compile_definitions(pointskin_flags INTERFACE POINTSKIN_PLAIN)  # scalar bodies only (src/core/float8.hpp)
   target_compile_options(pointskin_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${POINTSKIN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
   target_link_options(pointskin_flags INTERFACE -fsanitize=${POINTSKIN_SANITIZE})

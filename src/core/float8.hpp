@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <cstring>
 
-/// 1 where the compiler can make functions for AVX2 beside those for the plain processor.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__)
+/// 1 where the compiler can make functions for AVX2 beside those for the plain processor. Sanitizer builds do not.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__) && !defined(POINTSKIN_PLAIN)
 #define PSK_WIDE 1
 #else
 #define PSK_WIDE 0

@@ -1,28 +1,31 @@
 // Eight floats at once, one for each corner or cell of a brick, in the order of the slots (x is the highest bit).
 //
-// With g++ and clang they are vectors of the language's extension: two SSE registers on plain x86-64, one register in
-// code compiled for AVX2 (exec/wide.hpp), what there is elsewhere. Every operation works lane by lane, so a lane gets
-// the bits that a float would. nvcc gets an array: it parses the functors that use it, and calls none of them.
+// Vectors of the language's extension in g++ and clang. Every operation works lane by lane, so a lane gets the bits
+// that a float would. For code that is compiled for AVX2 (exec/wide.hpp): without it compilers take vectors of 32 bytes
+// apart, which is slower than floats one by one. nvcc does not see them.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
 
-#include "core/host_device.hpp"
+/// 1 where the compiler can make functions for AVX2 beside those for the plain processor. Sanitizer builds do not.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__) && !defined(POINTSKIN_PLAIN)
+#define PSK_WIDE 1
+#else
+#define PSK_WIDE 0
+#endif
 
 /// A Float8 may be passed in a register or in memory, depending on what the caller is compiled for. So no function that
 /// takes or returns one may be left as a call.
-#if defined(__GNUC__) && !defined(__CUDACC__)
+#if PSK_WIDE
 #define PSK_INLINE inline __attribute__((always_inline))
-#define PSK_OUTLINE __attribute__((noinline))  ///< rare paths, kept out of code compiled twice
 #else
 #define PSK_INLINE inline
-#define PSK_OUTLINE
 #endif
 
-namespace pointskin {
+#if PSK_WIDE
 
-#if defined(__GNUC__) && !defined(__CUDACC__)
+namespace pointskin {
 
 using Float8 = float __attribute__((vector_size(32)));
 using Mask8 = std::int32_t __attribute__((vector_size(32)));  ///< -1 or 0 in each lane
@@ -63,86 +66,21 @@ PSK_INLINE void load_columns(const float* rows, Float8 (&out)[4]) {
   out[3] = __builtin_shufflevector(high01, high23, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-#else
-
-struct Mask8 {
-  bool lane[8];
-};
-struct Float8 {
-  float lane[8];
-  Float8() = default;
-  template <class... Lanes>
-  PSK_HD Float8(float first, Lanes... others) : lane{first, static_cast<float>(others)...} {
-    for (int s = 1; sizeof...(others) == 0 && s < 8; ++s) lane[s] = first;
-  }
-  PSK_HD float& operator[](int s) { return lane[s]; }
-  PSK_HD float operator[](int s) const { return lane[s]; }
-
-  template <class Operation>
-  PSK_HD static Float8 each(const Operation& lane_of) {
-    Float8 out;
-    for (int s = 0; s < 8; ++s) out.lane[s] = lane_of(s);
-    return out;
-  }
-  template <class Comparison>
-  PSK_HD static Mask8 where(const Comparison& holds) {
-    Mask8 out{};
-    for (int s = 0; s < 8; ++s) out.lane[s] = holds(s);
-    return out;
-  }
-  PSK_HD friend Float8 operator+(const Float8& a, const Float8& b) {
-    return each([&](int s) { return a[s] + b[s]; });
-  }
-  PSK_HD friend Float8 operator-(const Float8& a, const Float8& b) {
-    return each([&](int s) { return a[s] - b[s]; });
-  }
-  PSK_HD friend Float8 operator*(const Float8& a, const Float8& b) {
-    return each([&](int s) { return a[s] * b[s]; });
-  }
-  PSK_HD friend Float8 operator/(const Float8& a, const Float8& b) {
-    return each([&](int s) { return a[s] / b[s]; });
-  }
-  PSK_HD friend Float8 operator-(const Float8& a) {
-    return each([&](int s) { return -a[s]; });
-  }
-  PSK_HD friend Float8& operator+=(Float8& a, const Float8& b) { return a = a + b; }
-  PSK_HD friend Mask8 operator<(const Float8& a, const Float8& b) {
-    return where([&](int s) { return a[s] < b[s]; });
-  }
-  PSK_HD friend Mask8 operator>(const Float8& a, const Float8& b) { return b < a; }
-};
-PSK_HD inline Float8 select(const Mask8& mask, const Float8& a, const Float8& b) {
-  return Float8::each([&](int s) { return mask.lane[s] ? a[s] : b[s]; });
-}
-PSK_HD inline Mask8 mask_of_bits(int bits) {
-  return Float8::where([&](int s) { return (bits >> s & 1) != 0; });
-}
-namespace detail {
-template <int Axis>
-PSK_HD Float8 between(const Float8& lower, const Float8& upper) {
-  constexpr int kBit = 4 >> Axis;
-  return Float8::each([&](int s) { return (s & kBit) != 0 ? upper[s ^ kBit] : lower[s ^ kBit]; });
-}
-}  // namespace detail
-PSK_HD inline void load_columns(const float* rows, Float8 (&out)[4]) {
-  for (int k = 0; k < 4; ++k) out[k] = Float8::each([&](int s) { return rows[4 * s + k]; });
-}
-
-#endif
-
 /// 8 floats, of any alignment.
-PSK_HD PSK_INLINE Float8 load8(const float* from) {
+PSK_INLINE Float8 load8(const float* from) {
   Float8 out;
   std::memcpy(&out, from, sizeof out);
   return out;
 }
-PSK_HD PSK_INLINE void store8(const Float8& value, float* to) { std::memcpy(to, &value, sizeof value); }
+PSK_INLINE void store8(const Float8& value, float* to) { std::memcpy(to, &value, sizeof value); }
 
 /// The 8 values half way between two bricks that are neighbours along an axis: the upper half of `lower`, then the
 /// lower half of `upper`.
 template <int Axis>
-PSK_HD PSK_INLINE Float8 between(const Float8& lower, const Float8& upper) {
+PSK_INLINE Float8 between(const Float8& lower, const Float8& upper) {
   return detail::between<Axis>(lower, upper);
 }
 
 }  // namespace pointskin
+
+#endif

@@ -28,19 +28,18 @@ inline std::int64_t cpu_sort_block(std::int64_t n) { return std::clamp<std::int6
 
 inline std::int64_t block_count(std::int64_t n, std::int64_t block) { return (n + block - 1) / block; }
 
-/// Calls f(i) for every i in [0, n). f must not depend on the order of the calls.
+/// Calls f(i) for every i in [0, n). f must not depend on the order of the calls. Functors with a `wide` body use it
+/// where the processor has AVX2 (exec/wide.hpp).
 template <class F>
 void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
   if (n <= 0) return;
   // Heavy functors over few indices still spread over the threads.
   const std::int64_t block = std::clamp<std::int64_t>(n / 64, 16, kCpuBlock);
-  ex.run_blocks(block_count(n, block), [&](std::int64_t b) {
-    run_range(f, b * block, std::min(n, (b + 1) * block));
-  });
+  ex.run_blocks(block_count(n, block), [&](std::int64_t b) { run_range(f, b * block, std::min(n, (b + 1) * block)); });
 }
 
-/// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds one
-/// after another.
+/// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds
+/// one after another.
 template <class F>
 void sweep(Cpu& ex, const char* label, int rounds, std::int64_t n, const F& f) {
   for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});

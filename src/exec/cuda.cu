@@ -13,8 +13,8 @@ namespace pointskin::exec {
 namespace {
 
 /// Allocates in stream order from a driver's pool of its own whose release threshold is unlimited. Blocks up to
-/// kLargestKept bytes do not even go back there when they are freed: asking the driver takes longer than a small kernel.
-/// Work on the one stream is ordered, so a block may be handed out while its last user is still running.
+/// kLargestKept bytes do not even go back there when they are freed: asking the driver takes longer than a small
+/// kernel. Work on the one stream is ordered, so a block may be handed out while its last user is still running.
 class CudaPool final : public MemoryPool {
  public:
   CudaPool(int index, cudaStream_t stream) : stream_(stream) {
@@ -128,9 +128,9 @@ Cuda::Mark Cuda::mark() {
 double Cuda::milliseconds_between(Mark from, Mark to) const {
   cuda_check(cudaEventSynchronize(static_cast<cudaEvent_t>(marks_[to])), "waiting for the GPU");
   float milliseconds = 0;
-  cuda_check(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(marks_[from]),
-                                  static_cast<cudaEvent_t>(marks_[to])),
-             "timing");
+  cuda_check(
+      cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(marks_[from]), static_cast<cudaEvent_t>(marks_[to])),
+      "timing");
   return milliseconds;
 }
 

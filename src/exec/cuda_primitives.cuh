@@ -52,13 +52,14 @@ __global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n,
   }
 }
 
-/// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds one
-/// after another. Asynchronous. What fits onto the GPU at one block a multiprocessor takes one cooperative launch, with
-/// a barrier between rounds and one call of prepare, whose result stays in registers.
+/// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds
+/// one after another. Asynchronous. What fits onto the GPU at one block a multiprocessor takes one cooperative launch,
+/// with a barrier between rounds and one call of prepare, whose result stays in registers.
 template <class F>
 void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) {
   if (n <= 0 || rounds <= 0) return;
-  const std::int64_t threads = n <= std::int64_t{ex.multiprocessors()} * kThreadsPerBlock ? kThreadsPerBlock : kSweepThreads;
+  const std::int64_t threads =
+      n <= std::int64_t{ex.multiprocessors()} * kThreadsPerBlock ? kThreadsPerBlock : kSweepThreads;
   const std::int64_t blocks = (n + threads - 1) / threads;
   if (blocks > ex.multiprocessors()) {
     for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});

@@ -103,7 +103,8 @@ class HeaderParser {
       fail_here("the element count " + in_quotes(words[2]) + " is not a whole number from 0 on");
     // The cap keeps the search for names cheap on garbled files.
     if (header_.elements.size() >= kMostElements) fail_here("the header has too many elements");
-    if (header_.find(std::string(words[1])) != nullptr) fail_here("the element " + in_quotes(words[1]) + " comes twice");
+    if (header_.find(std::string(words[1])) != nullptr)
+      fail_here("the element " + in_quotes(words[1]) + " comes twice");
     header_.elements.push_back({std::string(words[1]), count, {}});
     names_.clear();
   }

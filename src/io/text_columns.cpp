@@ -157,7 +157,8 @@ void add_columns(const Source& source, const TextLayout& layout, ParsedColumns& 
   std::vector<std::string> sorted = names;
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice != sorted.end()) fail(source, "has two columns named " + in_quotes(*twice), "give every column its own name");
+  if (twice != sorted.end())
+    fail(source, "has two columns named " + in_quotes(*twice), "give every column its own name");
   for (const char* axis : {"x", "y", "z"})
     if (!has_name(names, axis)) fail(source, fmt::format("has no column named {}", axis), kNameAdvice);
   for (const std::string& name : names) parsed.add(name, is_coordinate(name) ? Scalar::float64 : Scalar::float32);

@@ -28,7 +28,8 @@ PSK_HD inline float prolonged(const LevelView& level_above, const float* above, 
 /// prolonged(). Finer corners that do not exist count as zero.
 PSK_HD inline float restricted(const LevelView& level, const LevelView& below, const float* values, std::int32_t n) {
   float sum = 0;
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
+  PSK_UNROLL for (int s = 0; s < 8;
+                  ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
     const int x = slot_x(s);
     const int y = slot_y(s);
     const int z = slot_z(s);
@@ -70,8 +71,8 @@ PSK_HD inline Vec3f local_in_cell(const Vec3f& p, const Coordinates& c, int dept
 /// Trilinear interpolation of corner values in a cell.
 PSK_HD inline float interpolated(const LevelView& level, const float* values, std::int32_t cell, const Vec3f& local) {
   float sum = 0;
-  PSK_UNROLL for (int s = 0; s < 8; ++s)
-    sum += corner_weight(s, local) * values[level.neighbour(cell, slot_x(s), slot_y(s), slot_z(s))];
+  PSK_UNROLL for (int s = 0; s < 8; ++s) sum +=
+      corner_weight(s, local) * values[level.neighbour(cell, slot_x(s), slot_y(s), slot_z(s))];
   return sum;
 }
 

@@ -1,8 +1,8 @@
 // Which bricks every level needs, as sets of Morton keys.
 //
-// Sets are bitmaps over all possible bricks of a level while those are not many more than the points: marking a brick is
-// one atomic OR, and counting the bits before a word sorts and numbers the keys at once. Levels too fine for that sort
-// the keys of eight candidates a cell.
+// Sets are bitmaps over all possible bricks of a level while those are not many more than the points: marking a brick
+// is one atomic OR, and counting the bits before a word sorts and numbers the keys at once. Levels too fine for that
+// sort the keys of eight candidates a cell.
 #pragma once
 
 #include <pointskin/error.hpp>
@@ -176,8 +176,8 @@ struct LevelBricks {
   [[nodiscard]] PSK_HD unsigned ghosts_of(std::uint64_t brick) const {
     const Coordinates c = decode(brick);
     std::uint32_t around = 0;
-    PSK_UNROLL for (int j = 0; j < kNeighbours; ++j)
-      if (contains({c.x + j / 9 - 1, c.y + j / 3 % 3 - 1, c.z + j % 3 - 1})) around |= 1U << j;
+    PSK_UNROLL for (int j = 0; j < kNeighbours;
+                    ++j) if (contains({c.x + j / 9 - 1, c.y + j / 3 % 3 - 1, c.z + j % 3 - 1})) around |= 1U << j;
     unsigned ghosts = 0;
     for (int s = 1; s < 8; ++s)
       if ((around & claims_on_ghost(s)) == 0) ghosts |= 1U << s;
@@ -244,7 +244,8 @@ inline int deepest_bitmap(std::int64_t points, int depth) {
   return d;
 }
 
-/// Sorted keys of the cell bricks of every level; none for the complete ones. Levels with bitmaps have their ghosts, too.
+/// Sorted keys of the cell bricks of every level; none for the complete ones. Levels with bitmaps have their ghosts,
+/// too.
 struct BrickSets {
   std::vector<exec::Buffer<std::uint64_t>> keys;
   exec::Buffer<std::int32_t> ghosts;      ///< 8 brick + step, of levels kCompleteDepth + 1..last_with_ghosts
@@ -281,14 +282,16 @@ void sort_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
     }
     const auto first_points = select(ex, "octree.occupied", point_keys.size, StartsCell{point_keys, depth});
     auto cells = exec::make_buffer<std::uint64_t>(ex, first_points.size());
-    for_each(ex, "octree.occupied", cells.size(), OccupiedCellKey{point_keys, first_points.cview(), depth, cells.view()});
+    for_each(ex, "octree.occupied", cells.size(),
+             OccupiedCellKey{point_keys, first_points.cview(), depth, cells.view()});
     own = sort_bricks_around(ex, cells.cview(), d);
   }
 }
 
 /// Values of a scan at some positions, on the host. One round trip for all levels.
 template <exec::Space Exec>
-std::vector<std::int32_t> read_borders(Exec& ex, const exec::Buffer<std::int32_t>& before, PickBorders pick, int count) {
+std::vector<std::int32_t> read_borders(Exec& ex, const exec::Buffer<std::int32_t>& before, PickBorders pick,
+                                       int count) {
   auto borders = exec::make_buffer<std::int32_t>(ex, count);
   pick.before = before.cview();
   pick.borders = borders.view();

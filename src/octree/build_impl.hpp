@@ -148,7 +148,8 @@ struct FindUnknowns {
       const std::int32_t x = c.x + j / 9 - 1;
       const std::int32_t y = c.y + j / 3 % 3 - 1;
       const std::int32_t z = c.z + j % 3 - 1;
-      const bool in_cube = x >= 0 && y >= 0 && z >= 0 && x < bricks_per_axis && y < bricks_per_axis && z < bricks_per_axis;
+      const bool in_cube =
+          x >= 0 && y >= 0 && z >= 0 && x < bricks_per_axis && y < bricks_per_axis && z < bricks_per_axis;
       if (in_cube && (brick < 0 || brick >= level.cell_bricks)) missing |= 1U << j;
     }
     const std::int32_t last = 1 << level.depth;

@@ -37,23 +37,24 @@ PSK_HD inline Neighbourhood load_neighbourhood(const LevelView& level, std::int6
   return around;
 }
 
+#if PSK_WIDE
+
 /// The same for all 8 corners at once: values at offset (x, y, z), each in -1..1, from every corner of the brick.
 struct NeighbourLanes {
   Float8 value[kNeighbours];
-  PSK_HD PSK_INLINE const Float8& operator()(int x, int y, int z) const { return value[neighbour_index(x, y, z)]; }
+  PSK_INLINE const Float8& operator()(int x, int y, int z) const { return value[neighbour_index(x, y, z)]; }
 };
 
 /// Turns values of whole bricks around (before, own, after; `stride` apart) into those at offsets -1, 0, 1 along an
 /// axis.
 template <int Axis>
-PSK_HD PSK_INLINE void step_along(Float8* bricks, int stride) {
+PSK_INLINE void step_along(Float8* bricks, int stride) {
   bricks[0] = between<Axis>(bricks[0], bricks[stride]);
   bricks[2 * stride] = between<Axis>(bricks[stride], bricks[2 * stride]);
 }
 
 /// Loads `values` (of one level) around `brick`: 27 bricks of 32 bytes, then one axis after another.
-PSK_HD PSK_INLINE void load_lanes(const LevelView& level, std::int64_t brick, const float* values,
-                                  NeighbourLanes& out) {
+PSK_INLINE void load_lanes(const LevelView& level, std::int64_t brick, const float* values, NeighbourLanes& out) {
   const std::int32_t* bricks = level.neighbours + brick * kNeighbours;
   PSK_UNROLL for (int j = 0; j < kNeighbours; ++j) out.value[j] =
       bricks[j] < 0 ? Float8{} : load8(values + std::int64_t{8} * bricks[j]);
@@ -61,5 +62,7 @@ PSK_HD PSK_INLINE void load_lanes(const LevelView& level, std::int64_t brick, co
   PSK_UNROLL for (int i = 0; i < 9; ++i) step_along<1>(out.value + i / 3 * 9 + i % 3, 3);
   PSK_UNROLL for (int i = 0; i < 9; ++i) step_along<2>(out.value + i * 3, 1);
 }
+
+#endif
 
 }  // namespace pointskin::octree

@@ -67,7 +67,8 @@ struct RestrictLevels {
   PSK_HD void operator()(int round, int n, int) const {
     const octree::LevelView& level = tree.levels[first - round];
     const octree::LevelView& below = tree.levels[first - round + 1];
-    if (n < level.nodes()) counts[level.first_node + n] = octree::restricted(level, below, counts + below.first_node, n);
+    if (n < level.nodes())
+      counts[level.first_node + n] = octree::restricted(level, below, counts + below.first_node, n);
   }
 };
 

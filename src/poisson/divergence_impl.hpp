@@ -40,13 +40,12 @@ struct ProlongField {
     const std::int32_t parent = level.parent[n >> 3];
     const int slot = static_cast<int>(n & 7);
     std::int32_t corner[8];
-    PSK_UNROLL for (int s = 0; s < 8; ++s)
-      corner[s] = (s & ~slot) != 0 ? -1 : above.neighbour(parent, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+    PSK_UNROLL for (int s = 0; s < 8; ++s) corner[s] =
+        (s & ~slot) != 0 ? -1 : above.neighbour(parent, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
     const float share = 0.5F / static_cast<float>(1 << count_bits(static_cast<std::uint64_t>(slot)));
     PSK_UNROLL for (int a = 0; a < 3; ++a) {
       float sum = 0;
-      PSK_UNROLL for (int s = 0; s < 8; ++s)
-        if (corner[s] >= 0) sum += above_field.axis[a][corner[s]];
+      PSK_UNROLL for (int s = 0; s < 8; ++s) if (corner[s] >= 0) sum += above_field.axis[a][corner[s]];
       field.axis[a][n] = sum * share;
     }
   }
@@ -73,11 +72,40 @@ struct SplatSource {
 
 /// Adds samples to V at the corners of a brick. A GPU has a kernel of its own for it (splat_kernel.cuh).
 struct SplatToBricks {
-  static constexpr bool kWide = true;
-  static constexpr int kBatch = 64;
-
   SplatSource source;
   VectorField field;
+
+  PSK_HD void operator()(std::int64_t brick) const {
+    const octree::Coordinates origin = brick_origin(source.level, brick);
+    const auto scale = static_cast<float>(1 << source.level.depth);
+    float sum[3][8] = {};
+    bool any = false;
+    for_points_around(source.level, brick, [&](std::int32_t first, std::int32_t last) {
+      const std::int32_t end = source.subset.rank_of(last);
+      for (std::int32_t rank = source.subset.rank_of(first); rank < end; ++rank) {
+        add(source.subset.sample_of(rank), origin, scale, sum);
+        any = true;
+      }
+    });
+    if (!any) return;
+    for (int a = 0; a < 3; ++a)
+      for (int s = 0; s < 8; ++s) field.axis[a][8 * brick + s] += sum[a][s];
+  }
+
+  PSK_HD void add(std::int32_t sample, const octree::Coordinates& origin, float scale, float (&sum)[3][8]) const {
+    if (!source.is_splatted(sample)) return;
+    const BrickSample at(source.samples.positions[sample], origin, scale);
+    if (!at.reaches<QuadraticKernel>()) return;
+    float w[8];
+    at.weights<QuadraticKernel>(w);
+    const Vec3f v = source.vector(sample);
+    for (int s = 0; s < 8; ++s) sum[0][s] += w[s] * v.x;
+    for (int s = 0; s < 8; ++s) sum[1][s] += w[s] * v.y;
+    for (int s = 0; s < 8; ++s) sum[2][s] += w[s] * v.z;
+  }
+
+#if PSK_WIDE
+  static constexpr int kBatch = 64;  ///< samples that are tested before those that reach the brick are added
 
   /// Sums over the samples so far, a lane for each corner.
   struct Sums {
@@ -85,13 +113,13 @@ struct SplatToBricks {
     bool any = false;
   };
 
-  PSK_HD void operator()(std::int64_t brick) const {
+  PSK_INLINE void wide(std::int64_t brick) const {
     const octree::Coordinates origin = brick_origin(source.level, brick);
     Sums sums;
     for_points_around(source.level, brick, [&](std::int32_t first, std::int32_t last) {
       const std::int32_t end = source.subset.rank_of(last);
       for (std::int32_t rank = source.subset.rank_of(first); rank < end; rank += kBatch)
-        add(rank, rank + kBatch < end ? rank + kBatch : end, origin, sums);
+        add_batch(rank, rank + kBatch < end ? rank + kBatch : end, origin, sums);
     });
     if (!sums.any) return;
     PSK_UNROLL for (int a = 0; a < 3; ++a) {
@@ -101,8 +129,8 @@ struct SplatToBricks {
   }
 
   /// Samples of ranks [first, last), at most kBatch: those that reach the brick are listed before they are added.
-  PSK_HD PSK_INLINE void add(std::int32_t first, std::int32_t last, const octree::Coordinates& origin,
-                             Sums& sums) const {
+  PSK_INLINE void add_batch(std::int32_t first, std::int32_t last, const octree::Coordinates& origin,
+                            Sums& sums) const {
     const auto scale = static_cast<float>(1 << source.level.depth);
     std::int32_t reaching[kBatch];
     int count = 0;
@@ -123,6 +151,7 @@ struct SplatToBricks {
       sums.any = true;
     }
   }
+#endif
 };
 
 /// Coefficients of the divergence over single cells: [axis][corner i][corner j], the integral over a unit cell of
@@ -214,11 +243,27 @@ struct Divergence {
   }
 };
 
-/// A brick at a time, all 8 corners at once, for spaces with few threads.
+/// A brick at a time, for spaces with few threads.
 struct DivergenceOfBricks : Divergence {
-  static constexpr bool kWide = true;
-
   PSK_HD void operator()(std::int64_t brick) const {
+    float sum[8] = {};
+    int leaves[8];
+    for (int s = 0; s < 8; ++s) leaves[s] = leaves_around(static_cast<std::int32_t>(8 * brick + s));
+    for (int axis = 0; axis < 3; ++axis) {
+      const octree::Neighbourhood around = octree::load_neighbourhood(level, brick, field.axis[axis].data);
+      PSK_UNROLL for (int s = 0; s < 8; ++s) {
+        const auto v = [&](int x, int y, int z) {
+          return around.at(octree::slot_x(s) + x, octree::slot_y(s) + y, octree::slot_z(s) + z);
+        };
+        sum[s] += along(axis, leaves[s], v);
+      }
+    }
+    for (int s = 0; s < 8; ++s) b[8 * brick + s] = sum[s];
+  }
+
+#if PSK_WIDE
+  /// 8 corners at once.
+  PSK_INLINE void wide(std::int64_t brick) const {
     int inside = 0xff;  // bit s: all cells around corner s are leaves
     int leaves[8];      // of the cells at offset slot(t) - 1: bit s for the one seen from corner s
     find_leaves(brick, leaves);
@@ -239,7 +284,7 @@ struct DivergenceOfBricks : Divergence {
   }
 
  private:
-  PSK_HD PSK_INLINE void find_leaves(std::int64_t brick, int (&leaves)[8]) const {
+  PSK_INLINE void find_leaves(std::int64_t brick, int (&leaves)[8]) const {
     if (finer_cell_bricks == 0 && level.depth > 0) return find_finest_cells(brick, leaves);
     PSK_UNROLL for (int t = 0; t < 8; ++t) leaves[t] = 0;
     for (int s = 0; s < 8; ++s) {
@@ -249,7 +294,7 @@ struct DivergenceOfBricks : Divergence {
   }
 
   /// On the finest level all cells are leaves, and but for the root cells are whole bricks.
-  PSK_HD PSK_INLINE void find_finest_cells(std::int64_t brick, int (&leaves)[8]) const {
+  PSK_INLINE void find_finest_cells(std::int64_t brick, int (&leaves)[8]) const {
     const std::int32_t* bricks = level.neighbours + brick * octree::kNeighbours;
     PSK_UNROLL for (int t = 0; t < 8; ++t) {
       const std::int32_t other =
@@ -264,15 +309,15 @@ struct DivergenceOfBricks : Divergence {
   /// Turns bits of whole bricks (before, own) into those at offsets -1 and 0 along the axis of a slot's bit. All bits
   /// of a brick agree at first.
   template <int Bit>
-  PSK_HD PSK_INLINE static void step_along(int (&leaves)[8]) {
+  PSK_INLINE static void step_along(int (&leaves)[8]) {
     constexpr int kUpper = Bit == 4 ? 0xf0 : Bit == 2 ? 0xcc : 0xaa;  // corners at the upper end of the axis
     PSK_UNROLL for (int t = 0; t < 8; ++t) if ((t & Bit) == 0) leaves[t] =
         (leaves[t] & ~kUpper) | (leaves[t | Bit] & kUpper);
   }
 
   /// divergence_by_cells at all corners.
-  PSK_HD PSK_INLINE static void add_cells(const int (&leaves)[8], const float (&element)[8][8],
-                                          const octree::NeighbourLanes& v, Float8& sum) {
+  PSK_INLINE static void add_cells(const int (&leaves)[8], const float (&element)[8][8],
+                                   const octree::NeighbourLanes& v, Float8& sum) {
     PSK_UNROLL for (int t = 0; t < 8; ++t) {
       if (leaves[t] == 0) continue;
       const int x = octree::slot_x(t) - 1;
@@ -284,6 +329,7 @@ struct DivergenceOfBricks : Divergence {
       sum = select(mask_of_bits(leaves[t]), with_cell, sum);
     }
   }
+#endif
 };
 
 /// A corner at a time, with the same bits, for spaces with many threads.
@@ -332,8 +378,7 @@ struct RestrictLevels {
   PSK_HD void operator()(int round, int n, int) const {
     const octree::LevelView& level = tree.levels[first - round];
     const octree::LevelView& below = tree.levels[first - round + 1];
-    if (n < level.nodes())
-      b[level.first_node + n] = 0.5F * octree::restricted(level, below, b + below.first_node, n);
+    if (n < level.nodes()) b[level.first_node + n] = 0.5F * octree::restricted(level, below, b + below.first_node, n);
   }
 };
 

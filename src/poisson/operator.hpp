@@ -1,6 +1,7 @@
-// The matrix-free operator of one level: Laplacian plus screening, for one corner or for all 8 corners of a brick.
+// The matrix-free operator of one level: Laplacian plus screening, for one corner or for all 8 corners of a brick, one
+// after another or as the lanes of a vector.
 //
-// Both give the same bits. Values and cells around a corner are named by their side along each axis, and every sum is a
+// All give the same bits. Values and cells around a corner are named by their side along each axis, and every sum is a
 // tree that does not change when the two sides of an axis change places. So a thread that has one corner may call the
 // side away from the corner's brick -1, whichever it is, and keep all it loads in registers.
 #pragma once
@@ -344,6 +345,8 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
   return out;
 }
 
+#if PSK_WIDE
+
 /// Residual and bounding diagonal at the 8 corners of a brick, a lane each.
 struct BrickResidual8 {
   Float8 residual, diagonal;
@@ -360,7 +363,7 @@ struct CellsAround {
 
   /// Turns the cells of whole bricks (before, own) into those at offsets -1 and 0 along an axis.
   template <int Axis>
-  PSK_HD PSK_INLINE void step_along() {
+  PSK_INLINE void step_along() {
     constexpr int kBit = 4 >> Axis;
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
       if ((s & kBit) != 0) continue;
@@ -374,7 +377,7 @@ struct CellsAround {
 };
 
 /// Finds the samples around a brick.
-PSK_HD PSK_INLINE void load_cells(const LevelSystem& system, std::int64_t brick, CellsAround& out) {
+PSK_INLINE void load_cells(const LevelSystem& system, std::int64_t brick, CellsAround& out) {
   const std::int32_t* bricks = system.level.neighbours + brick * octree::kNeighbours;
   PSK_UNROLL for (int s = 0; s < 8; ++s) {
     const std::int32_t other =
@@ -395,14 +398,14 @@ PSK_HD PSK_INLINE void load_cells(const LevelSystem& system, std::int64_t brick,
 struct CellCornerLanes {
   const octree::NeighbourLanes& around;
   int s;
-  PSK_HD PSK_INLINE const Float8& operator()(int dx, int dy, int dz) const {
+  PSK_INLINE const Float8& operator()(int dx, int dy, int dz) const {
     return around(octree::slot_x(s) - 1 + dx, octree::slot_y(s) - 1 + dy, octree::slot_z(s) - 1 + dz);
   }
 };
 
 /// Adds the screening of the 8 cells around each corner: load_pulls and screen_corner, 8 corners at once.
-PSK_HD PSK_INLINE void screen_lanes(const LevelSystem& system, std::int64_t brick, const octree::NeighbourLanes& u,
-                                    BrickResidual8& out) {
+PSK_INLINE void screen_lanes(const LevelSystem& system, std::int64_t brick, const octree::NeighbourLanes& u,
+                             BrickResidual8& out) {
   CellsAround cells;
   load_cells(system, brick, cells);
   Float8 residuals[8], diagonals[8];
@@ -422,11 +425,13 @@ PSK_HD PSK_INLINE void screen_lanes(const LevelSystem& system, std::int64_t bric
 }
 
 /// brick_residual, with the same bits, of a brick that does not touch the cube's faces.
-PSK_HD PSK_INLINE void residual_lanes(const LevelSystem& system, std::int64_t brick, const octree::NeighbourLanes& u,
-                                      BrickResidual8& out) {
+PSK_INLINE void residual_lanes(const LevelSystem& system, std::int64_t brick, const octree::NeighbourLanes& u,
+                               BrickResidual8& out) {
   out.residual = load8(system.b + 8 * brick) - laplacian_inside(u);
   out.diagonal = Float8{} + kLargestEigenvalue;
   if (system.screening_scale > 0 && system.screening.corners[brick] != 0) screen_lanes(system, brick, u, out);
 }
+
+#endif
 
 }  // namespace pointskin::poisson

@@ -31,7 +31,8 @@ struct Samples {
   std::uint32_t splat_depth_set = ~0U;
 
   [[nodiscard]] SamplesView view() const {
-    return {positions.cview(), normals.cview(), areas.cview(), splat_depths.cview(), coarsest_splat_depth, splat_depth_set};
+    return {positions.cview(),    normals.cview(),      areas.cview(),
+            splat_depths.cview(), coarsest_splat_depth, splat_depth_set};
   }
 };
 

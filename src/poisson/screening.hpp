@@ -21,9 +21,10 @@ struct CollapsedSample {
 
 /// Collapsed samples of one level, kept for bricks that hold samples.
 struct ScreeningView {
-  const std::int32_t* brick_index = nullptr;  ///< (bricks) place among the bricks of all levels that hold samples, or -1
-  const CollapsedSample* samples = nullptr;   ///< (8 occupied bricks of all levels)
-  const std::uint8_t* corners = nullptr;      ///< (bricks) bit s: some cell around corner s holds a sample with weight
+  const std::int32_t* brick_index =
+      nullptr;                               ///< (bricks) place among the bricks of all levels that hold samples, or -1
+  const CollapsedSample* samples = nullptr;  ///< (8 occupied bricks of all levels)
+  const std::uint8_t* corners = nullptr;     ///< (bricks) bit s: some cell around corner s holds a sample with weight
 };
 
 /// Owns the collapsed samples of all levels.

@@ -135,14 +135,14 @@ struct MarkCorners {
     corners[brick] = static_cast<std::uint8_t>(touched);
   }
 
-  /// Corners of the brick that a cell touches. Along an axis, the last cell of the brick before touches corner 0, cell 0
-  /// both corners, cell 1 corner 1.
+  /// Corners of the brick that a cell touches. Along an axis, the last cell of the brick before touches corner 0, cell
+  /// 0 both corners, cell 1 corner 1.
   PSK_HD static constexpr unsigned corners_of(int cell, int before) {
     unsigned touched = 0;
     for (int corner = 0; corner < 8; ++corner) {
-      const int lower = ~corner & 7;  // axes on which the corner is a lower one
-      const bool beyond = (before & ~lower) != 0;           // the brick before does not reach upper corners
-      const bool past = (cell & ~before & lower) != 0;      // cell 1 does not reach lower corners
+      const int lower = ~corner & 7;                    // axes on which the corner is a lower one
+      const bool beyond = (before & ~lower) != 0;       // the brick before does not reach upper corners
+      const bool past = (cell & ~before & lower) != 0;  // cell 1 does not reach lower corners
       if (!beyond && !past) touched |= 1U << corner;
     }
     return touched;

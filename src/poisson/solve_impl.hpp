@@ -56,8 +56,6 @@ struct RelaxCorners {
 
 /// One iteration a brick at a time, for spaces with few threads.
 struct RelaxBricks {
-  static constexpr bool kWide = true;
-
   LevelSystem system;
   ChebyshevStep chebyshev;
   const float* u;
@@ -66,28 +64,6 @@ struct RelaxBricks {
   PSK_HD void operator()(std::int64_t brick) const {
     const int unknowns = system.level.unknowns[brick];
     if (unknowns == 0) return;  // `next` holds the interpolated values already
-    if (touches_faces(system.level.brick_key[brick], system.level.depth))
-      relax_corners(brick, unknowns);
-    else
-      relax_lanes(brick, unknowns);
-  }
-
- private:
-  /// 8 corners at once: a brick inside the cube.
-  PSK_HD PSK_INLINE void relax_lanes(std::int64_t brick, int unknowns) const {
-    octree::NeighbourLanes around;
-    octree::load_lanes(system.level, brick, u, around);
-    BrickResidual8 r;
-    residual_lanes(system, brick, around, r);
-    Float8 change = chebyshev.gain * (r.residual / r.diagonal);
-    if (chebyshev.momentum != 0) change += chebyshev.momentum * load8(step + 8 * brick);
-    change = select(mask_of_bits(unknowns), change, Float8{});
-    store8(change, step + 8 * brick);
-    store8(around(0, 0, 0) + change, next + 8 * brick);
-  }
-
-  /// One corner after another: a brick at the cube's faces.
-  PSK_HD PSK_OUTLINE void relax_corners(std::int64_t brick, int unknowns) const {
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
     const BrickResidual r = brick_residual(system, brick, around);
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
@@ -98,6 +74,24 @@ struct RelaxBricks {
       next[n] = around.at(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)) + change;
     }
   }
+
+#if PSK_WIDE
+  /// 8 corners at once; bricks at the cube's faces have rows of their own.
+  PSK_INLINE void wide(std::int64_t brick) const {
+    const int unknowns = system.level.unknowns[brick];
+    if (unknowns == 0) return;
+    if (touches_faces(system.level.brick_key[brick], system.level.depth)) return (*this)(brick);
+    octree::NeighbourLanes around;
+    octree::load_lanes(system.level, brick, u, around);
+    BrickResidual8 r;
+    residual_lanes(system, brick, around, r);
+    Float8 change = chebyshev.gain * (r.residual / r.diagonal);
+    if (chebyshev.momentum != 0) change += chebyshev.momentum * load8(step + 8 * brick);
+    change = select(mask_of_bits(unknowns), change, Float8{});
+    store8(change, step + 8 * brick);
+    store8(around(0, 0, 0) + change, next + 8 * brick);
+  }
+#endif
 };
 
 struct SquaredResidual {

@@ -75,8 +75,8 @@ __device__ inline int stage(const SplatSource& source, std::int32_t rank, bool e
     const int place = staged + __popc(lanes & ((1U << lane) - 1));
     float weight[3][2];
     at.weights_by_axis<QuadraticKernel>(weight);
-    PSK_UNROLL for (int a = 0; a < 3; ++a)
-        PSK_UNROLL for (int side = 0; side < 2; ++side) out.weight[a][side][place] = weight[a][side];
+    PSK_UNROLL for (int a = 0; a < 3; ++a) PSK_UNROLL for (int side = 0; side < 2; ++side) out.weight[a][side][place] =
+        weight[a][side];
     const Vec3f v = source.vector(sample);
     out.vector[0][place] = v.x;
     out.vector[1][place] = v.y;

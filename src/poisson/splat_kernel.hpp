@@ -31,11 +31,13 @@ struct QuadraticKernel {
     const float b = 1.5F - a;
     return a < 1.5F ? 0.5F * b * b : 0;
   }
-  PSK_HD PSK_INLINE Float8 operator()(const Float8& x) const {
+#if PSK_WIDE
+  PSK_INLINE Float8 operator()(const Float8& x) const {
     const Float8 a = select(x < 0, -x, x);
     const Float8 b = 1.5F - a;
     return select(a < 0.5F, 0.75F - a * a, select(a < 1.5F, 0.5F * b * b, Float8{}));
   }
+#endif
 };
 
 /// A sample relative to a brick's first corner, in cells.
@@ -59,7 +61,7 @@ struct BrickSample {
 
   /// The same, without branches: of many samples around a brick about a third reaches it, in no order.
   template <class Kernel>
-  [[nodiscard]] PSK_HD PSK_INLINE bool reaches_unordered() const {
+  [[nodiscard]] PSK_HD bool reaches_unordered() const {
     constexpr float kLower = -Kernel::kReach;
     constexpr float kUpper = 1 + Kernel::kReach;
     return (static_cast<int>(rel[0] > kLower) & static_cast<int>(rel[0] < kUpper) & static_cast<int>(rel[1] > kLower) &
@@ -86,13 +88,15 @@ struct BrickSample {
       w[s] = axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
   }
 
+#if PSK_WIDE
   /// The same, a lane each.
   template <class Kernel>
-  PSK_HD PSK_INLINE void weights(Float8& w) const {
+  PSK_INLINE void weights(Float8& w) const {
     const Kernel kernel;
     w = kernel(rel[0] - Float8{0, 0, 0, 0, 1, 1, 1, 1}) * kernel(rel[1] - Float8{0, 0, 1, 1, 0, 0, 1, 1}) *
         kernel(rel[2] - Float8{0, 1, 0, 1, 0, 1, 0, 1});
   }
+#endif
 };
 
 /// Coordinates of a brick's first node.

@@ -78,7 +78,8 @@ class CellTracer {
   PSK_HD void add_quad(int axis, int side, int b, int c, int width, std::uint32_t split_edges) {
     const int a = 2 * side;
     const auto sign = [&](int at_b, int at_c) { return inside_ >> position(axis, a, at_b, at_c) & 1; };
-    const std::uint32_t inside_corners = sign(b, c) + sign(b + width, c) + sign(b, c + width) + sign(b + width, c + width);
+    const std::uint32_t inside_corners =
+        sign(b, c) + sign(b + width, c) + sign(b, c + width) + sign(b + width, c + width);
     if (split_edges == 0 && (inside_corners & 3) == 0) return;  // none or all four: nothing to cut off
     int points[8];
     int count = 0;

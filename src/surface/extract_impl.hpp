@@ -107,7 +107,8 @@ struct ListItems {
     const std::uint64_t before = numbering.before(n);
     std::int32_t vertex = low_count(before);
     for (int axis = 0; axis < 3; ++axis)
-      if ((mark >> axis & 1) != 0) mesh.keys[vertex++] = static_cast<std::uint64_t>(n) << 2 | static_cast<unsigned>(axis);
+      if ((mark >> axis & 1) != 0)
+        mesh.keys[vertex++] = static_cast<std::uint64_t>(n) << 2 | static_cast<unsigned>(axis);
     const int triangles = static_cast<int>((mark & kTriangles) >> kTrianglesShift);
     const std::int32_t first = high_count(before);
     for (int t = 0; t < triangles; ++t) mesh.triangles[first + t] = {static_cast<std::int32_t>(n), signs[n], t};
@@ -338,8 +339,7 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
   for_each(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
   exec::Buffer<std::uint64_t> first_traced;
-  const std::uint64_t more =
-      traced.empty() ? 0 : scan_counts(ex, traced_counts, first_traced, kMostTrianglesPerCell);
+  const std::uint64_t more = traced.empty() ? 0 : scan_counts(ex, traced_counts, first_traced, kMostTrianglesPerCell);
   const std::int64_t vertices = std::int64_t{low_count(table)} + high_count(more);
   const std::int64_t triangles = std::int64_t{high_count(table)} + low_count(more);
   check_size("vertices", vertices);

@@ -59,8 +59,8 @@ class LeafCell {
   [[nodiscard]] PSK_HD CellTracer trace() const {
     const std::uint32_t finer = finer_neighbours();
     std::uint32_t split_edges = 0;
-    PSK_UNROLL for (int e = 0; e < 12; ++e)
-      if (edge_is_split(finer, e / 4, e / 2 & 1, e & 1)) split_edges |= CellTracer::edge_bit(e / 4, e / 2 & 1, e & 1);
+    PSK_UNROLL for (int e = 0; e < 12; ++e) if (edge_is_split(finer, e / 4, e / 2 & 1, e & 1)) split_edges |=
+        CellTracer::edge_bit(e / 4, e / 2 & 1, e & 1);
     CellTracer tracer(grid_signs(split_edges != 0));
     for (int face = 0; face < 6; ++face) {
       int d[3] = {0, 0, 0};

@@ -99,10 +99,11 @@ struct MarkBrick : Marker {
   PSK_HD static unsigned signs_of_cell(std::uint32_t signs, int slot) {
     unsigned corners = 0;
     for (int s = 0; s < 8; ++s)
-      corners |= (signs >> grid_index(octree::slot_x(slot) + octree::slot_x(s), octree::slot_y(slot) + octree::slot_y(s),
-                                      octree::slot_z(slot) + octree::slot_z(s)) &
-                  1)
-                 << s;
+      corners |=
+          (signs >> grid_index(octree::slot_x(slot) + octree::slot_x(s), octree::slot_y(slot) + octree::slot_y(s),
+                               octree::slot_z(slot) + octree::slot_z(s)) &
+           1)
+          << s;
     return corners;
   }
 
@@ -125,7 +126,6 @@ struct MarkBrick : Marker {
     }
     return signs;
   }
-
 };
 
 /// A node at a time, for spaces with many threads.
@@ -140,8 +140,8 @@ struct MarkNode : Marker {
 
   PSK_HD unsigned corner_signs(const octree::LevelView& l, std::int32_t node, bool near_face) const {
     std::int32_t corner[8];
-    PSK_UNROLL for (int s = 0; s < 8; ++s)
-      corner[s] = l.neighbour(node, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+    PSK_UNROLL for (int s = 0; s < 8; ++s) corner[s] =
+        l.neighbour(node, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
     unsigned signs = 0;
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
       const float value = corner[s] < 0 ? 0 : f.value(l.depth, corner[s]);

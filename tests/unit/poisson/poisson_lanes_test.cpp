@@ -4,14 +4,18 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/float8.hpp"
 #include "exec/cpu_primitives.hpp"
+#include "poisson/divergence_impl.hpp"
 #include "poisson/operator.hpp"
 #include "poisson/solve_impl.hpp"
 #include "poisson/splat_kernel.hpp"
 #include "unit/poisson/small_tree.hpp"
+
+#if PSK_WIDE
 
 namespace pointskin {
 namespace {
@@ -125,5 +129,38 @@ TEST(RelaxBricks, HasTheBitsOfOneCornerAfterAnother) {
       });
 }
 
+TEST(DivergenceOfBricks, HasTheBitsOfOneCornerAfterAnother) {
+  namespace divergence = poisson::divergence;
+  for (const int depth : {0, 1, 3, 6}) {
+    test::Random random(29);
+    test::SmallTree tree(test::clustered_points(random, 30, 3, 0.05, 0, 0.9999999), {}, depth);
+    for (int d = 0; d <= depth; ++d) {
+      SCOPED_TRACE("level " + std::to_string(d) + " of " + std::to_string(depth));
+      const octree::LevelView& level = tree.view.levels[d];
+      const auto nodes = static_cast<std::size_t>(level.nodes());
+      std::vector<float> v(3 * nodes);
+      for (float& value : v) value = static_cast<float>(random.in(-1, 1));
+      const auto axis = [&](std::size_t a) { return ArrayView<float>{v.data() + a * nodes, level.nodes()}; };
+      const auto into = [&](std::vector<float>& b) {
+        return divergence::Divergence{level,
+                                      d == depth ? 0 : tree.view.levels[d + 1].cell_bricks,
+                                      {{axis(0), axis(1), axis(2)}},
+                                      divergence::make_coefficients(),
+                                      {b.data(), level.nodes()}};
+      };
+      std::vector<float> one(nodes, 1), plain(nodes, 2), wide(nodes, 3);
+      exec::run_range_plain(divergence::DivergenceOfCorners{into(one)}, 0, level.nodes());
+      exec::run_range_plain(divergence::DivergenceOfBricks{into(plain)}, 0, level.bricks);
+      exec::run_range(divergence::DivergenceOfBricks{into(wide)}, 0, level.bricks);
+      for (std::size_t n = 0; n < nodes; ++n) {
+        ASSERT_EQ(bits_of(plain[n]), bits_of(one[n])) << "node " << n;
+        ASSERT_EQ(bits_of(wide[n]), bits_of(one[n])) << "node " << n;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pointskin
+
+#endif

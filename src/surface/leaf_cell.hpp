@@ -22,19 +22,6 @@ class LeafCell {
   PSK_HD LeafCell(const field::FieldView& f, int level, std::int32_t node)
       : f_(f), level_(level), node_(node), at_(octree::decode(f.tree.levels[level].node_key(node))) {}
 
-  /// Inside bits of the 8 corners, bit = slot.
-  [[nodiscard]] PSK_HD unsigned corner_signs() const {
-    unsigned signs = 0;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const int x = octree::slot_x(s);
-      const int y = octree::slot_y(s);
-      const int z = octree::slot_z(s);
-      const std::int32_t corner = f_.tree.levels[level_].neighbour(node_, x, y, z);
-      if (f_.inside(level_, corner, {at_.x + x, at_.y + y, at_.z + z})) signs |= 1U << s;
-    }
-    return signs;
-  }
-
   /// Bit neighbour_index(dx, dy, dz): the cell there has children. Cells across corners alone do not matter and are
   /// left out.
   [[nodiscard]] PSK_HD std::uint32_t finer_neighbours() const {

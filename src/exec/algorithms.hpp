@@ -10,6 +10,7 @@
 #include "exec/memory.hpp"
 #include "exec/reduce_order.hpp"
 #include "exec/space.hpp"
+#include "exec/sweep.hpp"
 
 namespace pointskin::exec {
 

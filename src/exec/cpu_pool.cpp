@@ -111,6 +111,20 @@ class LargeBlocks {
 
   void trim() noexcept { release(cached_); }
 
+  /// Gives at least `bytes` of what is cached back to the system, or all, the ends of the largest ranges first.
+  void release(std::size_t bytes) noexcept {
+    while (bytes > 0 && !free_.empty()) {
+      const auto largest = std::max_element(free_.begin(), free_.end(),
+                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+      const std::size_t part = std::min(largest->second, round_up(bytes, kHugePage));
+      ::munmap(largest->first + (largest->second - part), part);
+      largest->second -= part;
+      if (largest->second == 0) free_.erase(largest);
+      cached_ -= part;
+      bytes -= std::min(bytes, part);
+    }
+  }
+
  private:
   using Ranges = std::map<char*, std::size_t>;  ///< free bytes by their address; no two of them touch
 
@@ -155,20 +169,6 @@ class LargeBlocks {
     return before;
   }
 
-  /// Gives at least `bytes` of what is cached back to the system, the ends of the largest ranges first.
-  void release(std::size_t bytes) noexcept {
-    while (bytes > 0 && !free_.empty()) {
-      const auto largest = std::max_element(free_.begin(), free_.end(),
-                                            [](const auto& a, const auto& b) { return a.second < b.second; });
-      const std::size_t part = std::min(largest->second, round_up(bytes, kHugePage));
-      ::munmap(largest->first + (largest->second - part), part);
-      largest->second -= part;
-      if (largest->second == 0) free_.erase(largest);
-      cached_ -= part;
-      bytes -= std::min(bytes, part);
-    }
-  }
-
   Ranges free_;
   std::size_t used_ = 0;
   std::size_t cached_ = 0;
@@ -186,6 +186,7 @@ class CpuPool final : public MemoryPool {
     small_.trim();
     large_.trim();
   }
+  void release_cached(std::int64_t bytes) noexcept override { large_.release(static_cast<std::size_t>(bytes)); }
 
  private:
   void* take(std::size_t bytes) override {

@@ -15,6 +15,7 @@
 #include "exec/cpu.hpp"
 #include "exec/memory.hpp"
 #include "exec/reduce_order.hpp"
+#include "exec/sweep.hpp"
 #include "exec/wide.hpp"
 
 namespace pointskin::exec {
@@ -36,6 +37,12 @@ void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
   // Heavy functors over few indices still spread over the threads.
   const std::int64_t block = std::clamp<std::int64_t>(n / 64, 16, kCpuBlock);
   ex.run_blocks(block_count(n, block), [&](std::int64_t b) { run_range(f, b * block, std::min(n, (b + 1) * block)); });
+}
+
+/// The same: on a CPU an index has its thread to itself.
+template <class F>
+void for_each_apart(Cpu& ex, const char* label, std::int64_t n, const F& f) {
+  for_each(ex, label, n, f);
 }
 
 /// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds
@@ -171,15 +178,16 @@ bool sort_pass(Cpu& ex, const Digit& digit_of, ArrayView<const std::uint64_t> ke
 
 }  // namespace detail
 
-/// Sorts (key, value) pairs by the lowest `bits` bits of the keys, ascending and stable. Least significant digit
-/// first, 8 bits a pass, passes in which all keys agree are skipped. O(n bits / 8); n pairs of scratch.
+/// Sorts (key, value) pairs by bits [first_bit, bits) of the keys, ascending and stable. Least significant digit first,
+/// 8 bits a pass, passes in which all keys agree are skipped. O(n (bits - first_bit) / 8); n pairs of scratch.
 template <class Value>
-void sort_pairs(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, Buffer<Value>& values, int bits) {
+void sort_pairs(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, Buffer<Value>& values, int bits,
+                int first_bit = 0) {
   const std::int64_t n = keys.size();
   Buffer<std::uint64_t> other_keys(ex.pool(), n);
   Buffer<Value> other_values(ex.pool(), n);
   std::vector<detail::Histogram> offsets(static_cast<std::size_t>(block_count(n, cpu_sort_block(n))));
-  for (int shift = 0; shift < bits; shift += detail::kDigitBits) {
+  for (int shift = first_bit; shift < bits; shift += detail::kDigitBits) {
     const auto move = [&](std::int64_t from, std::int64_t to) {
       other_keys.data()[to] = keys.data()[from];
       other_values.data()[to] = values.data()[from];
@@ -191,7 +199,7 @@ void sort_pairs(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, Buf
   }
 }
 
-/// Sorts keys alone; otherwise as sort_pairs.
+/// Sorts keys alone, by their lowest `bits` bits; otherwise as sort_pairs.
 inline void sort_keys(Cpu& ex, const char* /*label*/, Buffer<std::uint64_t>& keys, int bits) {
   Buffer<std::uint64_t> other(ex.pool(), keys.size());
   std::vector<detail::Histogram> offsets(

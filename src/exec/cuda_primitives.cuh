@@ -17,10 +17,12 @@
 #include "exec/cuda_check.cuh"
 #include "exec/memory.hpp"
 #include "exec/reduce_order.hpp"
+#include "exec/sweep.hpp"
 
 namespace pointskin::exec {
 
 inline constexpr int kThreadsPerBlock = 128;
+inline constexpr int kWarp = 32;
 
 inline cudaStream_t stream_of(const Cuda& ex) { return static_cast<cudaStream_t>(ex.stream()); }
 
@@ -39,6 +41,47 @@ void for_each(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   cuda_check(cudaGetLastError(), label);
 }
 
+/// Only every `lanes`-th thread has an index.
+template <class F>
+struct OneOfLanes {
+  F f;
+  unsigned lanes;  // a power of two
+  PSK_HD void operator()(std::int64_t i) const {
+    if ((i & (lanes - 1)) == 0) f(i / lanes);
+  }
+};
+
+/// for_each for work that takes another path at every index. Threads of a warp that part wait for each other, so as few
+/// indices share a warp as the GPU has room for.
+template <class F>
+void for_each_apart(Cuda& ex, const char* label, std::int64_t n, const F& f) {
+  constexpr std::int64_t kRoom = 1024;  // threads a multiprocessor
+  unsigned lanes = kWarp;
+  while (lanes > 1 && n * lanes > kRoom * ex.multiprocessors()) lanes /= 2;
+  for_each(ex, label, n * lanes, OneOfLanes<F>{f, lanes});
+}
+
+inline constexpr int kWarpsPerBlock = kThreadsPerBlock / kWarp;
+
+template <class F>
+__global__ void __launch_bounds__(kThreadsPerBlock) for_each_warp_kernel(std::int64_t n, const F f) {
+  using Shared = typename F::Shared;
+  __shared__ alignas(16) unsigned char memory[sizeof(Shared) * kWarpsPerBlock];
+  const int warp = static_cast<int>(threadIdx.x) / kWarp;
+  const std::int64_t i = std::int64_t{blockIdx.x} * kWarpsPerBlock + warp;
+  if (i < n) f(i, static_cast<int>(threadIdx.x) % kWarp, reinterpret_cast<Shared*>(memory)[warp]);
+}
+
+/// Calls f(i, lane, shared) for every i in [0, n) from all 32 lanes of one warp, with an F::Shared of their own in
+/// shared memory, not initialised. Asynchronous.
+template <class F>
+void for_each_warp(Cuda& ex, const char* label, std::int64_t n, const F& f) {
+  if (n <= 0) return;
+  const std::int64_t blocks = (n + kWarpsPerBlock - 1) / kWarpsPerBlock;
+  for_each_warp_kernel<<<static_cast<unsigned>(blocks), kThreadsPerBlock, 0, stream_of(ex)>>>(n, f);
+  cuda_check(cudaGetLastError(), label);
+}
+
 inline constexpr int kSweepThreads = 256;
 
 template <class F>
@@ -52,16 +95,24 @@ __global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n,
   }
 }
 
+inline std::int64_t sweep_threads(const Cuda& ex, std::int64_t n) {
+  return n <= std::int64_t{ex.multiprocessors()} * kThreadsPerBlock ? kThreadsPerBlock : kSweepThreads;
+}
+
+/// True if a sweep over n items takes one launch.
+inline bool is_one_launch(const Cuda& ex, std::int64_t n) {
+  return n <= std::int64_t{ex.multiprocessors()} * kSweepThreads;
+}
+
 /// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds
 /// one after another. Asynchronous. What fits onto the GPU at one block a multiprocessor takes one cooperative launch,
 /// with a barrier between rounds and one call of prepare, whose result stays in registers.
 template <class F>
 void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) {
   if (n <= 0 || rounds <= 0) return;
-  const std::int64_t threads =
-      n <= std::int64_t{ex.multiprocessors()} * kThreadsPerBlock ? kThreadsPerBlock : kSweepThreads;
+  const std::int64_t threads = sweep_threads(ex, n);
   const std::int64_t blocks = (n + threads - 1) / threads;
-  if (blocks > ex.multiprocessors()) {
+  if (!is_one_launch(ex, n)) {
     for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});
     return;
   }
@@ -123,16 +174,26 @@ void copy(Cuda& ex, ArrayView<const T> from, ArrayView<T> to) {
              "copying on the GPU");
 }
 
-/// Waits until the data is there. Small reads go through page-locked memory.
+template <class T>
+__global__ void copy_kernel(const T* from, T* to, int n) {
+  for (int i = static_cast<int>(threadIdx.x); i < n; i += kWarp) to[i] = from[i];
+}
+
+/// Waits until the data is there. Little is written by a kernel into page-locked memory: the copy engine would take
+/// longer to start.
 template <class T>
 void copy_to_host(Cuda& ex, ArrayView<const T> from, T* to) {
   if (from.size == 0) return;
   const std::size_t bytes = static_cast<std::size_t>(from.size) * sizeof(T);
   const bool staged = bytes <= static_cast<std::size_t>(Cuda::kStagingBytes);
-  void* target = staged ? ex.staging() : static_cast<void*>(to);
-  cuda_check(cudaMemcpyAsync(target, from.data, bytes, cudaMemcpyDeviceToHost, stream_of(ex)), "copying to the host");
+  if (staged) {
+    copy_kernel<<<1, kWarp, 0, stream_of(ex)>>>(from.data, static_cast<T*>(ex.staging()), static_cast<int>(from.size));
+    cuda_check(cudaGetLastError(), "copying to the host");
+  } else {
+    cuda_check(cudaMemcpyAsync(to, from.data, bytes, cudaMemcpyDeviceToHost, stream_of(ex)), "copying to the host");
+  }
   ex.synchronize();
-  if (staged) std::memcpy(to, target, bytes);
+  if (staged) std::memcpy(to, ex.staging(), bytes);
 }
 
 /// Returns when `from` may be reused.
@@ -216,16 +277,17 @@ void exclusive_scan(Cuda& ex, const char* label, ArrayView<const T> in, ArrayVie
   });
 }
 
-/// Stable ascending radix sort of (key, value) pairs by the lowest `bits` bits of the keys.
+/// Stable ascending radix sort of (key, value) pairs by bits [first_bit, bits) of the keys.
 template <class Value>
-void sort_pairs(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, Buffer<Value>& values, int bits) {
+void sort_pairs(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, Buffer<Value>& values, int bits,
+                int first_bit = 0) {
   if (keys.empty()) return;
   Buffer<std::uint64_t> other_keys(ex.pool(), keys.size());
   Buffer<Value> other_values(ex.pool(), values.size());
   cub::DoubleBuffer<std::uint64_t> key_buffers(keys.data(), other_keys.data());
   cub::DoubleBuffer<Value> value_buffers(values.data(), other_values.data());
   run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceRadixSort::SortPairs(scratch, bytes, key_buffers, value_buffers, keys.size(), 0, bits,
+    return cub::DeviceRadixSort::SortPairs(scratch, bytes, key_buffers, value_buffers, keys.size(), first_bit, bits,
                                            stream_of(ex));
   });
   if (key_buffers.Current() != keys.data()) keys.swap(other_keys);

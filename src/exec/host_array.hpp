@@ -12,10 +12,12 @@ namespace pointskin::exec {
 /// are first written. Changes no byte.
 void populate(Cpu& ex, void* data, std::size_t bytes);
 
-/// values.resize(size); the pages of new memory are mapped by all threads.
+/// values.resize(size); the pages of new memory are mapped by all threads. The pool gives up as much of what it caches,
+/// so that the process does not grow by both.
 template <class T>
 void resize(Cpu& ex, std::vector<T>& values, std::size_t size) {
   if (size > values.capacity()) {
+    ex.pool()->release_cached(static_cast<std::int64_t>(size * sizeof(T)));
     values.reserve(size);
     populate(ex, values.data(), size * sizeof(T));
   }

@@ -10,17 +10,6 @@
 
 namespace pointskin::exec {
 
-/// One round of a sweep: what for_each calls.
-template <class F>
-struct SweepRound {
-  F f;
-  int round;
-  PSK_HD void operator()(std::int64_t index) const {
-    const int i = static_cast<int>(index);
-    if (f.takes_part(i)) f(round, i, f.prepare(i));
-  }
-};
-
 /// Memory of one space. Freed blocks stay with the pool for the next request; trim() gives them back.
 /// Blocks are aligned to at least 256 bytes. Used from one thread at a time.
 class MemoryPool {
@@ -36,6 +25,9 @@ class MemoryPool {
 
   /// Gives cached blocks back to the system.
   virtual void trim() noexcept = 0;
+  /// The same, but no more than about `bytes` of them: for a caller that is about to take as much of the same memory
+  /// elsewhere.
+  virtual void release_cached(std::int64_t /*bytes*/) noexcept {}
 
   [[nodiscard]] std::int64_t held_bytes() const noexcept { return held_; }
   [[nodiscard]] std::int64_t peak_bytes() const noexcept { return peak_; }

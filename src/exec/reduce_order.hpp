@@ -21,7 +21,7 @@ PSK_HD constexpr std::int64_t reduce_lanes(std::int64_t n) { return n < 2 * kRed
 /// What one lane combines. Values are fetched in batches, so that their latencies overlap.
 template <class F, class Combine>
 PSK_HD auto combine_lane(const F& f, const Combine& combine, std::int64_t n, std::int64_t lanes, std::int64_t lane) {
-  constexpr int kBatch = 8;
+  constexpr int kBatch = 16;
   auto sum = f(lane);
   std::int64_t i = lane + lanes;
   for (; i + (kBatch - 1) * lanes < n; i += kBatch * lanes) {

@@ -3,13 +3,14 @@
 // Primitives, found by argument-dependent lookup on the space (exec/cpu_primitives.hpp, exec/cuda_primitives.cuh):
 //
 //   for_each(ex, "label", n, f)                f(i) for every i in [0, n)
+//   for_each_apart(ex, "label", n, f)          the same, for f that takes another path for every i
 //   sweep(ex, "label", rounds, n, f)           f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i),
 //                                              rounds one after another; what prepare returns must not change meanwhile
 //   reduce_tail(ex, "label", values, out, combine)  the last step of reduce: few values to one
 //   select(ex, "label", n, keep)               Buffer<int32> of the i in [0, n) with keep(i), ascending
 //   exclusive_scan(ex, "label", in, out)       out[i] = in[0] + ... + in[i-1]; out may have one element more: the total
-//   sort_pairs(ex, "label", keys, values, bits)  stable ascending radix sort by the lowest `bits` bits of uint64 keys
-//   sort_keys(ex, "label", keys, bits)           the same for keys alone
+//   sort_pairs(ex, "label", keys, values, bits, first_bit)  stable ascending radix sort by these bits of uint64 keys
+//   sort_keys(ex, "label", keys, bits)         the same for keys alone, by the lowest `bits` bits
 //   copy_to_host / copy_to_device / copy       checked copies on the space's stream
 //   copy_constant_to_device                    of what never changes: does not wait
 //

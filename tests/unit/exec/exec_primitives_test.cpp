@@ -1,10 +1,15 @@
 // The primitives on the CPU: the bodies that all spaces share, and what only threads can get wrong.
 #include "unit/exec/primitives_tests.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
+#include <fstream>
 #include <stdexcept>
 #include <string>
+
+#include "exec/host_array.hpp"
 
 namespace pointskin::test {
 
@@ -217,6 +222,31 @@ TEST(CpuPool, CutsBlocksFromAFreedLargerOneAndMergesThemAgain) {
   third.reset();
   second.reset();
   EXPECT_EQ(exec::make_buffer<char>(ex, kLarge).data(), data);
+}
+
+/// Bytes of this process that are in memory now.
+std::int64_t resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::int64_t all = 0;
+  std::int64_t resident = 0;
+  statm >> all >> resident;
+  return resident * sysconf(_SC_PAGESIZE);
+}
+
+TEST(PoolOfACpu, GivesUpWhatItCachesForVectorsOfTheHost) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer watches blocks of malloc, which are not given up one by one";
+#endif
+  constexpr std::int64_t kBytes = std::int64_t{64} << 20;
+  exec::Cpu ex(2);
+  {
+    auto block = exec::make_buffer<char>(ex, kBytes);
+    exec::fill(ex, block.view(), 'x');
+  }
+  const std::int64_t cached = resident_bytes();
+  std::vector<char> values;
+  exec::resize(ex, values, static_cast<std::size_t>(kBytes));
+  EXPECT_LT(resident_bytes(), cached + kBytes / 4);
 }
 
 }  // namespace

@@ -30,15 +30,67 @@ struct PointKey {
   }
 };
 
-/// 1 where a point has the key of the one before it.
-struct RepeatsKey {
+/// Puts points sorted by the upper bits of their keys into the order of whole keys and, where those are equal, of the
+/// tie break. Points whose upper bits agree are few: each counts those that belong before it.
+struct SettleRuns {
+  static constexpr int kLongest = 32;
+
+  int low_bits;  // that the points are not sorted by yet
   ArrayView<const std::uint64_t> keys;
-  PSK_HD std::int32_t operator()(std::int64_t i) const { return i > 0 && keys[i] == keys[i - 1] ? 1 : 0; }
+  ArrayView<const std::int32_t> order;
+  ArrayView<const std::uint64_t> tie_break;
+  ArrayView<std::uint64_t> settled_keys;
+  ArrayView<std::int32_t> settled_order;
+  std::uint32_t* too_long;  // becomes 1 if there are runs of more than kLongest, which stay as they are
+
+  [[nodiscard]] PSK_HD bool in_run(std::int64_t i, std::int64_t j) const {
+    return j >= 0 && j < keys.size && keys[i] >> low_bits == keys[j] >> low_bits;
+  }
+  /// True if i belongs before j; of points the same in both, the earlier.
+  [[nodiscard]] PSK_HD bool precedes(std::int64_t i, std::int64_t j) const {
+    if (keys[i] != keys[j]) return keys[i] < keys[j];
+    const std::uint64_t tie_i = tie_break[order[i]];
+    const std::uint64_t tie_j = tie_break[order[j]];
+    return tie_i != tie_j ? tie_i < tie_j : i < j;
+  }
+
+  PSK_HD void operator()(std::int64_t i) const {
+    std::int64_t first = i;
+    std::int64_t last = i;
+    while (i - first < kLongest && in_run(i, first - 1)) --first;
+    while (last - i < kLongest && in_run(i, last + 1)) ++last;
+    std::int64_t at = i;
+    if (last - first >= kLongest) {
+      exec::set_bits(too_long, 1);
+    } else {
+      at = first;
+      for (std::int64_t j = first; j <= last; ++j)
+        if (j != i && precedes(j, i)) ++at;
+    }
+    settled_keys[at] = keys[i];
+    settled_order[at] = order[i];
+  }
 };
 
-struct Larger {
-  PSK_HD std::int32_t operator()(std::int32_t a, std::int32_t b) const { return a > b ? a : b; }
-};
+/// Sorts points by bits [low_bits, all) of their keys and settles what shares them.
+/// @returns false if too many points do
+template <exec::Space Exec>
+bool sort_by_upper_bits(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break,
+                        int low_bits, SortedPoints& sorted) {
+  constexpr int kKeyBits = 3 * kPointBits;
+  const std::int64_t n = positions.size;
+  auto keys = exec::make_buffer<std::uint64_t>(ex, n);
+  exec::Buffer<std::int32_t> order = exec::iota(ex, n);
+  for_each(ex, "octree.keys", n, PointKey{positions, keys.view()});
+  sort_pairs(ex, "octree.sort", keys, order, kKeyBits, low_bits);
+  sorted = {exec::make_buffer<std::uint64_t>(ex, n), exec::make_buffer<std::int32_t>(ex, n)};
+  auto too_long = exec::make_buffer<std::uint32_t>(ex, 1);
+  exec::fill(ex, too_long.view(), 0U);
+  for_each(ex, "octree.settle", n,
+           SettleRuns{low_bits, keys.cview(), order.cview(), tie_break, sorted.keys.view(), sorted.order.view(),
+                      too_long.data()});
+  return exec::read_element(ex, too_long.cview(), 0) == 0;
+}
 
 /// Node with this key among the nodes of bricks with sorted keys; it must exist. O(log bricks).
 PSK_HD inline std::int64_t find_node(ArrayView<const std::uint64_t> brick_keys, std::uint64_t node_key) {
@@ -54,17 +106,56 @@ PSK_HD inline std::int64_t find_node(ArrayView<const std::uint64_t> brick_keys, 
   return 8 * low + static_cast<std::int64_t>(node_key & 7);
 }
 
-/// Parent node of a cell brick: the node of the level above whose key is the brick's.
-struct FindParent {
-  ArrayView<const std::uint64_t> keys;        // of this level's cell bricks
-  ArrayView<const std::uint64_t> above_keys;  // of the cell bricks above
-  ArrayView<std::int32_t> parent;
-  ArrayView<std::int32_t> child_brick_above;
+/// Levels that one launch works on; indices count from the first to the last.
+struct LevelRange {
+  int first, last;
+  std::int64_t begin[kMaxDepth + 2];  // of level first + i
+
+  [[nodiscard]] std::int64_t size() const { return begin[last - first + 1]; }
+
+  /// Level of an index, which is made to count from there. Most are on the last one.
+  [[nodiscard]] PSK_HD int locate(std::int64_t& i) const {
+    int depth = last;
+    while (i < begin[depth - first]) --depth;
+    i -= begin[depth - first];
+    return depth;
+  }
+};
+
+/// @param count  indices of a level
+template <class Count>
+LevelRange make_range(int first, int last, const Count& count) {
+  LevelRange range{first, last, {}};
+  for (int d = first; d <= last; ++d) range.begin[d - first + 1] = range.begin[d - first] + count(d);
+  return range;
+}
+
+/// No node has a brick below.
+struct ClearChildren {
+  LevelRange nodes;
+  std::int32_t* child_brick[kMaxDepth + 1];
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const int depth = nodes.locate(i);
+    child_brick[depth][i] = -1;
+  }
+};
+
+/// Keys and parent nodes of cell bricks: the parent is the node of the level above whose key is the brick's.
+struct FindParents {
+  LevelRange bricks;
+  ArrayView<const std::uint64_t> keys[kMaxDepth + 1];  // of the cell bricks, also of the level above the first
+  std::uint64_t* brick_key[kMaxDepth + 1];
+  std::int32_t* parent[kMaxDepth + 1];
+  std::int32_t* child_brick[kMaxDepth + 1];
 
   PSK_HD void operator()(std::int64_t b) const {
-    const auto node = static_cast<std::int32_t>(find_node(above_keys, keys[b]));
-    parent[b] = node;
-    child_brick_above[node] = static_cast<std::int32_t>(b);
+    const int depth = bricks.locate(b);
+    const std::uint64_t key = keys[depth][b];
+    const auto node = static_cast<std::int32_t>(find_node(keys[depth - 1], key));
+    brick_key[depth][b] = key;
+    parent[depth][b] = node;
+    child_brick[depth - 1][node] = static_cast<std::int32_t>(b);
   }
 };
 
@@ -136,10 +227,16 @@ struct FindNeighbour : FindNeighbours {
 
 /// A corner is an unknown if all cells around it that lie in the cube are cells of this level.
 struct FindUnknowns {
-  LevelView level;
-  ArrayView<std::uint8_t> unknowns;
+  LevelRange bricks;
+  LevelView levels[kMaxDepth + 1];
+  std::uint8_t* unknowns[kMaxDepth + 1];
 
   PSK_HD void operator()(std::int64_t b) const {
+    const int depth = bricks.locate(b);
+    unknowns[depth][b] = static_cast<std::uint8_t>(unknowns_of(levels[depth], b));
+  }
+
+  PSK_HD static int unknowns_of(const LevelView& level, std::int64_t b) {
     const Coordinates c = decode(level.brick_key[b]);
     const std::int32_t bricks_per_axis = 1 << (level.depth - 1);
     unsigned missing = 0;  // bricks in the cube whose nodes are no cells of this level, by neighbour index
@@ -154,18 +251,18 @@ struct FindUnknowns {
     }
     const std::int32_t last = 1 << level.depth;
     int mask = 0;
-    for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL for (int s = 0; s < 8; ++s) {
       const bool in_grid = 2 * c.x + slot_x(s) <= last && 2 * c.y + slot_y(s) <= last && 2 * c.z + slot_z(s) <= last;
       if (in_grid && (missing & bricks_of_cells_around(s)) == 0) mask |= 1 << s;
     }
-    unknowns[b] = static_cast<std::uint8_t>(mask);
+    return mask;
   }
 
   /// Bricks that the 8 cells around corner `slot` of a brick belong to: itself and, on lower sides, those before it.
   PSK_HD static unsigned bricks_of_cells_around(int slot) {
     unsigned bricks = 0;
-    for (int s = 0; s < 8; ++s)
-      if ((s & slot) == 0) bricks |= 1U << neighbour_index(-slot_x(s), -slot_y(s), -slot_z(s));
+    PSK_UNROLL for (int s = 0; s < 8; ++s) if ((s & slot) == 0) bricks |=
+        1U << neighbour_index(-slot_x(s), -slot_y(s), -slot_z(s));
     return bricks;
   }
 };
@@ -185,15 +282,13 @@ PSK_HD inline std::int32_t end_of_cell(ArrayView<const std::uint64_t> point_keys
 
 /// First points of the cells of all levels at once, for spaces with many threads.
 struct FindAllPoints {
+  LevelRange entries;
   OctreeView tree;
   std::int32_t* point_begin[kMaxDepth + 1];
   ArrayView<const std::uint64_t> point_keys;
 
-  PSK_HD void operator()(std::int64_t i) const {
-    int depth = tree.depth;  // most cells are there; entries are counted from the finest level
-    std::int64_t cell = i;
-    while (cell > 8 * std::int64_t{tree.levels[depth].cell_bricks})
-      cell -= 8 * std::int64_t{tree.levels[depth--].cell_bricks} + 1;
+  PSK_HD void operator()(std::int64_t cell) const {
+    const int depth = entries.locate(cell);
     const LevelView& level = tree.levels[depth];
     const auto points = static_cast<std::int32_t>(point_keys.size);
     std::int32_t first = points;
@@ -235,60 +330,108 @@ struct RootPoints {
   PSK_HD void operator()(std::int64_t i) const { point_begin[i] = i == 0 ? 0 : points; }
 };
 
-/// Ghost bricks, ids, neighbours and unknowns of level `d`, whose cell brick keys are given. Levels above are complete.
+/// Ids and parents of the cell bricks of levels first..last, with room for the ghosts that are known. Three launches.
 template <exec::Space Exec>
-void link_level(Exec& ex, OctreeData& tree, int d, const BrickSets& sets) {
-  const exec::Buffer<std::uint64_t>& cell_keys = sets.keys[static_cast<std::size_t>(d)];
-  LevelData& above = tree.levels[static_cast<std::size_t>(d - 1)];
+void link_cells(Exec& ex, OctreeData& tree, int first, int last, BrickSets& sets) {
+  const auto data = [&](int d) -> LevelData& { return tree.levels[static_cast<std::size_t>(d)]; };
+  FindParents parents{};
+  ClearChildren clear{};
+  parents.keys[first - 1] = data(first - 1).brick_key.cview().part(0, data(first - 1).cell_bricks);
+  for (int d = first; d <= last; ++d) {
+    LevelData& level = data(d);
+    LevelData& above = data(d - 1);
+    const exec::Buffer<std::uint64_t>& keys = sets.keys[static_cast<std::size_t>(d)];
+    const std::int64_t bricks = keys.size() + (sets.has_ghosts(d) ? sets.ghosts_of(d).size : 0);
+    check_limit(bricks, d);
+    level.cell_bricks = static_cast<std::int32_t>(keys.size());
+    level.bricks = static_cast<std::int32_t>(bricks);
+    level.brick_key = exec::make_buffer<std::uint64_t>(ex, bricks);
+    level.parent = exec::make_buffer<std::int32_t>(ex, bricks);
+    above.child_brick = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * above.bricks);
+    parents.keys[d] = keys.cview();
+    parents.brick_key[d] = level.brick_key.data();
+    parents.parent[d] = level.parent.data();
+    parents.child_brick[d - 1] = clear.child_brick[d - 1] = above.child_brick.data();
+  }
+  clear.nodes = make_range(first - 1, last - 1, [&](int d) { return data(d).child_brick.size(); });
+  parents.bricks = make_range(first, last, [&](int d) { return data(d).cell_bricks; });
+  for_each(ex, "octree.parents", clear.nodes.size(), clear);
+  for_each(ex, "octree.parents", parents.bricks.size(), parents);
+  for (int d = first; d <= last; ++d) sets.keys[static_cast<std::size_t>(d)].reset();
+}
+
+/// Makes an array longer; what is new is not initialised.
+template <class T, exec::Space Exec>
+void extend(Exec& ex, exec::Buffer<T>& array, std::int64_t size) {
+  if (size == array.size()) return;
+  auto longer = exec::make_buffer<T>(ex, size);
+  copy(ex, array.cview(), longer.view().part(0, array.size()));
+  array = std::move(longer);
+}
+
+/// Ghost bricks of a level whose cell bricks are linked and whose level above is complete.
+template <exec::Space Exec>
+void add_ghosts(Exec& ex, OctreeData& tree, int d, const BrickSets& sets) {
+  LevelData& above = tree.levels[static_cast<std::size_t>(d) - 1];
   LevelData& level = tree.levels[static_cast<std::size_t>(d)];
-  const auto cell_bricks = static_cast<std::int32_t>(cell_keys.size());
-
-  above.child_brick = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * above.bricks);
-  exec::fill(ex, above.child_brick.view(), std::int32_t{-1});
-  auto cell_parents = exec::make_buffer<std::int32_t>(ex, cell_bricks);
-  const ArrayView<const std::uint64_t> above_keys = above.brick_key.cview().part(0, above.cell_bricks);
-  for_each(ex, "octree.parent", cell_bricks,
-           FindParent{cell_keys.cview(), above_keys, cell_parents.view(), above.child_brick.view()});
-
   const LevelView above_view = tree.view().levels[d - 1];
-  const bool has_ghosts = sets.has_ghosts(d);
-  exec::Buffer<std::int32_t> ghost_parents;
-  if (!has_ghosts) ghost_parents = select(ex, "octree.ghosts", above_view.nodes(), NeedsGhost{above_view});
-  const ArrayView<const std::int32_t> ghosts = has_ghosts ? sets.ghosts_of(d) : ghost_parents.cview();
-  check_limit(cell_bricks + ghosts.size, d);
-  level.cell_bricks = cell_bricks;
-  level.bricks = static_cast<std::int32_t>(cell_bricks + ghosts.size);
-  level.brick_key = exec::make_buffer<std::uint64_t>(ex, level.bricks);
-  level.parent = exec::make_buffer<std::int32_t>(ex, level.bricks);
-  copy(ex, cell_keys.cview(), level.brick_key.view().part(0, cell_bricks));
-  copy(ex, cell_parents.cview(), level.parent.view().part(0, cell_bricks));
+  const bool is_known = sets.has_ghosts(d);
+  exec::Buffer<std::int32_t> parents;
+  if (!is_known) parents = select(ex, "octree.ghosts", above_view.nodes(), NeedsGhost{above_view});
+  const ArrayView<const std::int32_t> ghosts = is_known ? sets.ghosts_of(d) : parents.cview();
+  check_limit(level.cell_bricks + ghosts.size, d);
+  level.bricks = static_cast<std::int32_t>(level.cell_bricks + ghosts.size);
+  extend(ex, level.brick_key, level.bricks);
+  extend(ex, level.parent, level.bricks);
   for_each(ex, "octree.ghosts", ghosts.size,
-           AddGhost{above_view, ghosts, has_ghosts, cell_bricks, level.brick_key.view(), level.parent.view(),
+           AddGhost{above_view, ghosts, is_known, level.cell_bricks, level.brick_key.view(), level.parent.view(),
                     above.child_brick.view()});
+}
 
+template <exec::Space Exec>
+void find_neighbours(Exec& ex, OctreeData& tree, int d) {
+  LevelData& level = tree.levels[static_cast<std::size_t>(d)];
   level.neighbours = exec::make_buffer<std::int32_t>(ex, std::int64_t{kNeighbours} * level.bricks);
-  const FindNeighbours find{above_view, level.parent.cview(), level.neighbours.view()};
+  const FindNeighbours find{tree.view().levels[d - 1], level.parent.cview(), level.neighbours.view()};
   if constexpr (Exec::kManyThreads)
     for_each(ex, "octree.neighbours", level.neighbours.size(), FindNeighbour{find});
   else
     for_each(ex, "octree.neighbours", level.bricks, FindNeighboursOfBrick{find, kNeighbourTables});
-  level.unknowns = exec::make_buffer<std::uint8_t>(ex, level.bricks);
-  for_each(ex, "octree.unknowns", level.bricks, FindUnknowns{tree.view().levels[d], level.unknowns.view()});
+}
+
+/// Levels first..last, given the keys of their cell bricks; levels above are complete. Unless first = last, their
+/// ghosts are known.
+template <exec::Space Exec>
+void link_levels(Exec& ex, OctreeData& tree, int first, int last, BrickSets& sets) {
+  if (first > last) return;
+  link_cells(ex, tree, first, last, sets);
+  FindUnknowns find{};
+  for (int d = first; d <= last; ++d) {
+    add_ghosts(ex, tree, d, sets);
+    find_neighbours(ex, tree, d);
+    LevelData& level = tree.levels[static_cast<std::size_t>(d)];
+    level.unknowns = exec::make_buffer<std::uint8_t>(ex, level.bricks);
+    find.unknowns[d] = level.unknowns.data();
+  }
+  const OctreeView view = tree.view();
+  std::copy_n(view.levels, last + 1, find.levels);
+  find.bricks = make_range(first, last, [&](int d) { return view.levels[d].bricks; });
+  for_each(ex, "octree.unknowns", find.bricks.size(), find);
 }
 
 /// Point ranges of all cells.
 template <exec::Space Exec>
 void assign_points(Exec& ex, OctreeData& tree, ArrayView<const std::uint64_t> point_keys) {
-  FindAllPoints find{tree.view(), {}, point_keys};
-  std::int64_t entries = 0;
+  FindAllPoints find{{}, tree.view(), {}, point_keys};
   for (int d = 0; d <= tree.depth; ++d) {
     LevelData& level = tree.levels[static_cast<std::size_t>(d)];
     level.point_begin = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * level.cell_bricks + 1);
     find.point_begin[d] = level.point_begin.data();
-    entries += level.point_begin.size();
   }
   if constexpr (Exec::kManyThreads) {
-    for_each(ex, "octree.points", entries, find);
+    find.entries =
+        make_range(0, tree.depth, [&](int d) { return tree.levels[static_cast<std::size_t>(d)].point_begin.size(); });
+    for_each(ex, "octree.points", find.entries.size(), find);
   } else {
     const LevelData& root = tree.levels.front();
     for_each(ex, "octree.points", root.point_begin.size(),
@@ -308,16 +451,15 @@ template <exec::Space Exec>
 SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break) {
   using namespace build;
   constexpr int kKeyBits = 3 * kPointBits;
+  constexpr int kSettledBits =
+      15;  // of 63: points within 2^-16 of the cube are few, and two passes of the sort are saved
   const std::int64_t n = positions.size;
-  SortedPoints sorted{exec::make_buffer<std::uint64_t>(ex, n), exec::iota(ex, n)};
-  for_each(ex, "octree.keys", n, PointKey{positions, sorted.keys.view()});
-  sort_pairs(ex, "octree.sort", sorted.keys, sorted.order, kKeyBits);
-  if (n < 2 || exec::reduce<std::int32_t>(ex, "octree.ties", n, RepeatsKey{sorted.keys.cview()}, Larger{}) == 0)
-    return sorted;
+  SortedPoints sorted;
+  for (const int low_bits : {kSettledBits, 0})
+    if (sort_by_upper_bits(ex, positions, tie_break, low_bits, sorted)) return sorted;
 
-  // Points share a key: sort by the tie break first, then, stably, by key again.
-  sorted.keys.reset();
-  sorted.order.reset();
+  // Many points share a key: sort by the tie break first, then, stably, by key.
+  sorted = {};
   auto ties = exec::make_buffer<std::uint64_t>(ex, n);
   copy(ex, tie_break, ties.view());
   sorted.order = exec::iota(ex, n);
@@ -344,13 +486,9 @@ OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int
 
   // Level order (Listing 2): who is whose neighbour.
   build_complete_levels(ex, tree, std::min(depth, kCompleteDepth));
-  for (int d = kCompleteDepth + 1; d <= depth; ++d) {
-    link_level(ex, tree, d, sets);
-    sets.keys[static_cast<std::size_t>(d)].reset();
-  }
-  LevelData& finest = tree.levels.back();
-  finest.child_brick = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * finest.bricks);
-  exec::fill(ex, finest.child_brick.view(), std::int32_t{-1});
+  const int together = std::min(depth, sets.last_with_ghosts);
+  link_levels(ex, tree, kCompleteDepth + 1, together, sets);
+  for (int d = std::max(together, kCompleteDepth) + 1; d <= depth; ++d) link_levels(ex, tree, d, d, sets);
   assign_points(ex, tree, point_keys);
   return tree;
 }

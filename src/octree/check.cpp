@@ -95,8 +95,8 @@ class Checker {
       const std::size_t bricks = index(std::max(level.bricks, 0));
       expect(d, "arrays over bricks have their shape",
              level.brick_key.size() == bricks && level.parent.size() == bricks &&
-                 level.neighbours.size() == bricks * kNeighbours && level.child_brick.size() == bricks * 8 &&
-                 level.unknowns.size() == bricks);
+                 level.neighbours.size() == bricks * kNeighbours &&
+                 level.child_brick.size() == (d == tree_.depth ? 0 : bricks * 8) && level.unknowns.size() == bricks);
       expect(d, "there is one point range per cell",
              level.point_begin.size() == index(std::max(level.cell_bricks, 0)) * 8 + 1);
     }
@@ -111,7 +111,7 @@ class Checker {
       const std::int64_t children = d == tree_.depth ? 0 : host(d + 1).bricks;
       expect_all(d, "parents are nodes of the level above (-1 for the root)", 0, level.bricks,
                  [&](std::int64_t b) { return in(level.parent[index(b)], d == 0 ? -1 : 0, parents); });
-      expect_all(d, "children are bricks of the level below or -1", 0, std::int64_t{8} * level.bricks,
+      expect_all(d, "children are bricks of the level below or -1", 0, std::ssize(level.child_brick),
                  [&](std::int64_t n) { return in(level.child_brick[index(n)], -1, children); });
       expect_all(d, "neighbours are bricks of the level or -1", 0, std::int64_t{kNeighbours} * level.bricks,
                  [&](std::int64_t i) { return in(level.neighbours[index(i)], -1, level.bricks); });
@@ -174,7 +174,7 @@ class Checker {
       expect_all(d, "cell bricks lie below cells", 0, level.cell_bricks,
                  [&](std::int64_t b) { return view_.levels[d - 1].is_cell(level.parent[index(b)]); });
     }
-    expect_all(d, "a node is the parent of its child", 0, std::int64_t{8} * level.bricks, [&](std::int64_t n) {
+    expect_all(d, "a node is the parent of its child", 0, std::ssize(level.child_brick), [&](std::int64_t n) {
       const std::int32_t child = level.child_brick[index(n)];
       return child < 0 || host(d + 1).parent[index(child)] == n;
     });

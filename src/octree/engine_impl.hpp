@@ -83,6 +83,7 @@ class OctreeOn final : public Octree::Impl {
     level.parents = engine::to_vector(*ex_, data.parent);
     level.neighbours = engine::to_vector(*ex_, data.neighbours);
     level.child_bricks = engine::to_vector(*ex_, data.child_brick);
+    level.child_bricks.resize(static_cast<std::size_t>(level.nodes), -1);  // the finest level has none
     level.point_begin = engine::to_vector(*ex_, data.point_begin);
     level.point_begin.resize(static_cast<std::size_t>(level.cells) + 1);
     return level;

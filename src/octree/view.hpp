@@ -23,7 +23,7 @@ struct LevelView {
   const std::uint64_t* brick_key = nullptr;   ///< (bricks) key of the parent node, i.e. of the brick's own coordinates
   const std::int32_t* parent = nullptr;       ///< (bricks) parent node on level depth - 1
   const std::int32_t* neighbours = nullptr;   ///< (bricks, 27) bricks around, by neighbour_index
-  const std::int32_t* child_brick = nullptr;  ///< (8 bricks) brick below the node on level depth + 1, cell or ghost
+  const std::int32_t* child_brick = nullptr;  ///< (8 bricks) brick, cell or ghost, below the node; the finest has none
   const std::uint8_t* unknowns = nullptr;     ///< (bricks) bit s: the corner of node s has all its cells of this level
   const std::int32_t* point_begin = nullptr;  ///< (8 cell_bricks + 1) first point of each cell, in point order
 

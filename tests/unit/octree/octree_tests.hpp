@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -375,9 +376,46 @@ TYPED_TEST_P(OctreeOn, SortsPointsByKeyAndTieBreakFromAnyOrder) {
   }
 }
 
+/// Groups of 1, 2, ... `most` points so close that only the lowest bits of their keys differ, some with equal keys.
+inline std::vector<Vec3f> tight_groups(int most, Random& random) {
+  std::vector<Vec3f> points;
+  for (int size = 1; size <= most; ++size) {
+    const double at[3] = {random.in(0.1, 0.9), random.in(0.1, 0.9), random.in(0.1, 0.9)};
+    const auto near = [&](double x) { return static_cast<float>(x + static_cast<double>(random.below(5)) * 0x1p-21); };
+    for (int i = 0; i < size; ++i) points.push_back({near(at[0]), near(at[1]), near(at[2])});
+  }
+  return points;
+}
+
+TYPED_TEST_P(OctreeOn, SortsPointsThatAreNearlyTheSame) {
+  auto& ex = this->space();
+  for (const int most : {1, 2, 31, 32, 33, 34, 80}) {
+    SCOPED_TRACE(::testing::Message() << "groups of up to " << most << ", seed " << kSeed);
+    Random random(kSeed);
+    const std::vector<Vec3f> points = reordered(tight_groups(most, random), kSeed);
+    std::vector<std::uint64_t> ties;
+    for (std::size_t i = 0; i < points.size(); ++i) ties.push_back(hash(i / 2));
+    const auto key = [&](std::int32_t i) {
+      return morton(cell_of(points[static_cast<std::size_t>(i)], octree::kPointBits));
+    };
+    std::vector<std::int32_t> expected(points.size());
+    std::iota(expected.begin(), expected.end(), 0);
+    std::stable_sort(expected.begin(), expected.end(), [&](std::int32_t a, std::int32_t b) {
+      return std::pair(key(a), ties[static_cast<std::size_t>(a)]) <
+             std::pair(key(b), ties[static_cast<std::size_t>(b)]);
+    });
+    const octree::SortedPoints sorted = sort_cloud(ex, points, ties);
+    EXPECT_EQ(to_host(ex, sorted.order), expected);
+    const std::vector<std::uint64_t> keys = to_host(ex, sorted.keys);
+    ASSERT_EQ(keys.size(), points.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) ASSERT_EQ(keys[i], key(expected[i]));
+  }
+}
+
 REGISTER_TYPED_TEST_SUITE_P(OctreeOn, HoldsTheCellsOfItsDefinition, CountsThePointsOfEveryCell, KeepsEveryInvariant,
                             CountsItsNodesAndCells, LocatesTheDeepestCellOfAPoint, InterpolatesInTheDeepestCellOfAPoint,
                             ReproducesLinearFunctions, ProlongsLinearFunctionsExactly,
-                            RestrictsByTheTransposeOfProlongation, SortsPointsByKeyAndTieBreakFromAnyOrder);
+                            RestrictsByTheTransposeOfProlongation, SortsPointsByKeyAndTieBreakFromAnyOrder,
+                            SortsPointsThatAreNearlyTheSame);
 
 }  // namespace pointskin::test

@@ -17,7 +17,8 @@ constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
 constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
 
 // Bytes a brick.
-constexpr std::int64_t kBrick = 153;             // key, parent, 27 neighbours, 8 children, unknowns
+constexpr std::int64_t kBrick = 121;             // key, parent, 27 neighbours, unknowns
+constexpr std::int64_t kChildren = 32;           // of bricks above the finest level
 constexpr std::int64_t kPointRanges = 32;        // of cell bricks
 constexpr std::int64_t kNodeValue = 32;          // one float a node
 constexpr std::int64_t kScreening = 5;           // place of the collapsed samples, corners that they touch
@@ -66,7 +67,9 @@ struct Model {
   [[nodiscard]] int counted_depth() const { return std::max(0, depth() - 2); }
   [[nodiscard]] const octree::BrickCounts& level(int d) const { return size.levels[static_cast<std::size_t>(d)]; }
 
-  [[nodiscard]] std::int64_t tree() const { return kBrick * bricks + kPointRanges * cell_bricks; }
+  [[nodiscard]] std::int64_t tree() const {
+    return kBrick * bricks + kChildren * (bricks - level(depth()).bricks) + kPointRanges * cell_bricks;
+  }
   [[nodiscard]] std::int64_t kept_counts() const { return options.density ? kNodeValue * counted_bricks : 0; }
 
   [[nodiscard]] std::int64_t sort() const { return kSorting * points; }
@@ -93,11 +96,11 @@ struct Model {
     return kWeighed * points + tree() + kept_counts() + 4 * kNodeValue * bricks;
   }
 
-  /// Divergence and solution of all levels; the other solution and the last step of one level.
+  /// Divergence and solution of all levels; the other solution of one level.
   [[nodiscard]] std::int64_t solve() const {
     const std::int64_t screening =
         options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
-    return kCollapsed * points + tree() + kept_counts() + screening + 2 * kNodeValue * (bricks + most_bricks);
+    return kCollapsed * points + tree() + kept_counts() + screening + kNodeValue * (2 * bricks + most_bricks);
   }
 
   [[nodiscard]] std::int64_t isovalue() const {

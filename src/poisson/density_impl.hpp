@@ -57,14 +57,12 @@ struct RestrictCounts {
 };
 
 /// The complete levels, one a round: each is done in less time than a launch takes.
-struct RestrictLevels {
+struct RestrictLevels : exec::SweepAll {
   octree::OctreeView tree;
   int first;  // depth of round 0
   float* counts;
 
-  PSK_HD bool takes_part(int) const { return true; }
-  PSK_HD int prepare(int) const { return 0; }
-  PSK_HD void operator()(int round, int n, int) const {
+  PSK_HD void operator()(int round, int n, Nothing) const {
     const octree::LevelView& level = tree.levels[first - round];
     const octree::LevelView& below = tree.levels[first - round + 1];
     if (n < level.nodes())
@@ -164,7 +162,7 @@ Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const 
   }
   if (complete >= 0)
     sweep(ex, "density.restrict", complete + 1, view.levels[complete].nodes(),
-          density::RestrictLevels{view, complete, result.counts.data()});
+          density::RestrictLevels{{}, view, complete, result.counts.data()});
   return result;
 }
 

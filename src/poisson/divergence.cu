@@ -1,5 +1,6 @@
 #include "exec/cuda_primitives.cuh"
 #include "poisson/divergence_impl.hpp"
+#include "poisson/divergence_kernel.cuh"
 #include "poisson/splat_kernel.cuh"
 
 namespace pointskin::poisson {

@@ -243,7 +243,7 @@ struct Divergence {
   }
 };
 
-/// A brick at a time, for spaces with few threads.
+/// A brick at a time. A GPU has a kernel of its own for it (divergence_kernel.cuh).
 struct DivergenceOfBricks : Divergence {
   PSK_HD void operator()(std::int64_t brick) const {
     float sum[8] = {};
@@ -332,29 +332,6 @@ struct DivergenceOfBricks : Divergence {
 #endif
 };
 
-/// A corner at a time, with the same bits, for spaces with many threads.
-struct DivergenceOfCorners : Divergence {
-  PSK_HD void operator()(std::int64_t n) const {
-    std::int32_t around[27];
-    PSK_UNROLL for (int x = -1; x <= 1; ++x) PSK_UNROLL for (int y = -1; y <= 1; ++y)
-        PSK_UNROLL for (int z = -1; z <= 1; ++z) around[octree::neighbour_index(x, y, z)] =
-            level.neighbour(static_cast<std::int32_t>(n), x, y, z);
-    int leaves = 0;
-    PSK_UNROLL for (int t = 0; t < 8;
-                    ++t) if (is_leaf(around[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1,
-                                                                    octree::slot_z(t) - 1)])) leaves |= 1 << t;
-    float sum = 0;
-    if (leaves != 0) {
-      PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
-        float value[27];
-        PSK_UNROLL for (int j = 0; j < 27; ++j) value[j] = around[j] < 0 ? 0 : field.axis[axis][around[j]];
-        sum += along(axis, leaves, [&](int x, int y, int z) { return value[octree::neighbour_index(x, y, z)]; });
-      }
-    }
-    b[n] = sum;
-  }
-};
-
 /// Adds the restriction of the finer level's b. It conserves the integral; in units of h, b halves.
 struct AddRestriction {
   octree::LevelView level, below;
@@ -368,14 +345,12 @@ struct AddRestriction {
 };
 
 /// The complete levels above all samples' splat depths, one a round.
-struct RestrictLevels {
+struct RestrictLevels : exec::SweepAll {
   octree::OctreeView tree;
   int first;  // depth of round 0
   float* b;
 
-  PSK_HD bool takes_part(int) const { return true; }
-  PSK_HD int prepare(int) const { return 0; }
-  PSK_HD void operator()(int round, int n, int) const {
+  PSK_HD void operator()(int round, int n, Nothing) const {
     const octree::LevelView& level = tree.levels[first - round];
     const octree::LevelView& below = tree.levels[first - round + 1];
     if (n < level.nodes()) b[level.first_node + n] = 0.5F * octree::restricted(level, below, b + below.first_node, n);
@@ -413,6 +388,11 @@ ChosenSamples choose_samples(Exec& ex, const SamplesView& samples, int depth) {
 template <exec::Space Exec>
 void splat_to_bricks(Exec& ex, const SplatSource& source, const VectorField& field) {
   for_each(ex, "splat.normals", source.level.bricks, SplatToBricks{source, field});
+}
+
+template <exec::Space Exec>
+void find_divergence(Exec& ex, const Divergence& divergence) {
+  for_each(ex, "splat.divergence", divergence.level.bricks, DivergenceOfBricks{divergence});
 }
 
 /// Adds the samples of splat depth `level.depth` to V.
@@ -474,10 +454,7 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
     if (has_field) {
       const Divergence divergence{level, finest ? 0 : view.levels[d + 1].cell_bricks,
                                   field[static_cast<std::size_t>(d)].view(), make_coefficients(), own};
-      if constexpr (Exec::kManyThreads)
-        for_each(ex, "splat.divergence", level.nodes(), DivergenceOfCorners{divergence});
-      else
-        for_each(ex, "splat.divergence", level.bricks, DivergenceOfBricks{divergence});
+      find_divergence(ex, divergence);
     }
     field[static_cast<std::size_t>(d)] = {};
     if (finest) continue;
@@ -486,7 +463,8 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
              AddRestriction{level, below, b.data() + below.first_node, has_field, own});
   }
   if (complete >= 0)
-    sweep(ex, "splat.restrict", complete + 1, view.levels[complete].nodes(), RestrictLevels{view, complete, b.data()});
+    sweep(ex, "splat.restrict", complete + 1, view.levels[complete].nodes(),
+          RestrictLevels{{}, view, complete, b.data()});
   return b;
 }
 

@@ -137,13 +137,49 @@ struct CornerResidual {
   }
 };
 
+/// Laplacian at corner `slot` of a brick.
+/// @param mirrored  u calls the side away from the brick -1, on every axis
+template <class Values>
+PSK_HD PSK_INLINE float laplacian_at(const LevelSystem& system, std::uint64_t brick_key, int slot, bool mirrored,
+                                     const Values& u) {
+  const int depth = system.level.depth;
+  if (!touches_faces(brick_key, depth)) return laplacian_inside(u);
+  const octree::Coordinates at = octree::decode(brick_key);
+  const auto along = [&](std::int32_t brick_coordinate, int upper) {
+    return AxisCoefficients(system.rows, side_of(2 * brick_coordinate + upper, depth), mirrored && upper != 0);
+  };
+  return laplacian_at_face(u, along(at.x, octree::slot_x(slot)), along(at.y, octree::slot_y(slot)),
+                           along(at.z, octree::slot_z(slot)));
+}
+
+/// What a collapsed sample does at a corner.
+/// @param side      bit 4, 2, 1: on which side of the corner the cell lies along x, y, z, in the words of u
+/// @param at_upper  bit 4, 2, 1: the corner is the cell's upper end along x, y, z
+template <class Values>
+PSK_HD PSK_INLINE Pull pull_at_corner(const CollapsedSample& sample, float screening_scale, int side, int at_upper,
+                                      const Values& u) {
+  if (!(sample.weight > 0)) return {};
+  const float local[3] = {sample.x, sample.y, sample.z};
+  float weight[3][2];
+  PSK_UNROLL for (int a = 0; a < 3; ++a) {
+    const bool upper = (at_upper >> (2 - a) & 1) != 0;
+    weight[a][0] = upper ? local[a] : 1 - local[a];
+    weight[a][1] = upper ? 1 - local[a] : local[a];
+  }
+  const float value = value_in_cell(weight, u, 2 * octree::slot_x(side) - 1, 2 * octree::slot_y(side) - 1,
+                                    2 * octree::slot_z(side) - 1);
+  const float total = screening_scale * sample.weight;
+  const float own = weight[0][0] * weight[1][0] * weight[2][0];
+  return {own * (total * (0.5F - value)), own * total};
+}
+
 /// The operator at one unknown corner, for spaces with many threads. What does not change from iteration to iteration
 /// is looked up once.
 class CornerOperator {
  public:
   PSK_HD CornerOperator(const LevelSystem& system, std::int64_t node)
       : system_(system),
-        slot_{octree::slot_x(node & 7), octree::slot_y(node & 7), octree::slot_z(node & 7)},
+        slot_(static_cast<int>(node & 7)),
         b_(system.b[node]),
         brick_key_(system.level.brick_key[node >> 3]) {
     const std::int32_t* bricks = system.level.neighbours + (node >> 3) * octree::kNeighbours;
@@ -157,7 +193,7 @@ class CornerOperator {
     const CornerValues values = load(u);
     value = values(0, 0, 0);
     CornerResidual out;
-    out.residual = b_ - laplacian(values);
+    out.residual = b_ - laplacian_at(system_, brick_key_, slot_, true, values);
     if (any_samples_) screen(values, out);
     return out;
   }
@@ -166,8 +202,7 @@ class CornerOperator {
   /// Bricks that hold the values around: the corner's own (0) and the seven beyond the corner. The side away from the
   /// own brick is called -1 here. Beyond the cube there is none: the own one stands in, its values will count zero.
   PSK_HD void find_bricks(const std::int32_t* bricks, std::int32_t own) {
-    int step[3];
-    PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = slot_[a] == 0 ? -1 : 1;
+    const int step[3] = {2 * octree::slot_x(slot_) - 1, 2 * octree::slot_y(slot_) - 1, 2 * octree::slot_z(slot_) - 1};
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
       const std::int32_t brick = bricks[octree::neighbour_index(
           octree::slot_x(s) * step[0], octree::slot_y(s) * step[1], octree::slot_z(s) * step[2])];
@@ -177,7 +212,6 @@ class CornerOperator {
 
   [[nodiscard]] PSK_HD CornerValues load(const float* u) const {
     CornerValues values;
-    const int here = octree::slot_of(slot_[0], slot_[1], slot_[2]);
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
       const int dx = octree::slot_x(s);
       const int dy = octree::slot_y(s);
@@ -188,7 +222,7 @@ class CornerOperator {
         PSK_UNROLL for (int y = -1; y <= 1; ++y) {
           PSK_UNROLL for (int z = -1; z <= 1; ++z) {
             if ((x == -1) != (dx != 0) || (y == -1) != (dy != 0) || (z == -1) != (dz != 0)) continue;
-            const int other = here ^ octree::slot_of(x != 0 ? 1 : 0, y != 0 ? 1 : 0, z != 0 ? 1 : 0);
+            const int other = slot_ ^ octree::slot_of(x != 0 ? 1 : 0, y != 0 ? 1 : 0, z != 0 ? 1 : 0);
             values.value[octree::neighbour_index(x, y, z)] = corners[other];
           }
         }
@@ -197,24 +231,14 @@ class CornerOperator {
     return values;
   }
 
-  [[nodiscard]] PSK_HD float laplacian(const CornerValues& u) const {
-    if (!touches_faces(brick_key_, system_.level.depth)) return laplacian_inside(u);
-    const octree::Coordinates at = octree::decode(brick_key_);
-    return laplacian_at_face(u, coefficients(2 * at.x, 0), coefficients(2 * at.y, 1), coefficients(2 * at.z, 2));
-  }
-  [[nodiscard]] PSK_HD AxisCoefficients coefficients(std::int32_t brick_corner, int axis) const {
-    return {system_.rows, side_of(brick_corner + slot_[axis], system_.level.depth), slot_[axis] != 0};
-  }
-
   /// Collapsed samples of the 8 cells around, by side: 0 beyond the corner, 1 on the brick's side. A cell belongs to
   /// the node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
   PSK_HD void find_samples(const std::int32_t* bricks) {
     std::int32_t place[8];
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const int side[3] = {octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)};
-      int step[3];
-      PSK_UNROLL for (int a = 0; a < 3; ++a) step[a] = side[a] == 0 && slot_[a] == 0 ? -1 : 0;
-      const std::int32_t brick = bricks[octree::neighbour_index(step[0], step[1], step[2])];
+      const int before = ~(s | slot_) & 7;  // axes along which the cell is of the brick before
+      const std::int32_t brick =
+          bricks[octree::neighbour_index(-octree::slot_x(before), -octree::slot_y(before), -octree::slot_z(before))];
       place[s] = brick < 0 ? -1 : system_.screening.brick_index[brick];
     }
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
@@ -226,32 +250,16 @@ class CornerOperator {
   PSK_HD void screen(const CornerValues& u, CornerResidual& out) const {
     float residuals[8], diagonals[8];
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const Pull pull = pull_of(sample_[s], octree::slot_x(s), octree::slot_y(s), octree::slot_z(s), u);
+      const int at_upper = ~(s ^ slot_) & 7;  // cells beyond a lower corner end there, so do those beside an upper one
+      const Pull pull = pull_at_corner(sample_[s], system_.screening_scale, s, at_upper, u);
       residuals[s] = pull.residual;
       diagonals[s] = pull.diagonal;
     }
     out.add(residuals, diagonals);
   }
 
-  [[nodiscard]] PSK_HD Pull pull_of(const CollapsedSample& sample, int side_x, int side_y, int side_z,
-                                    const CornerValues& u) const {
-    if (!(sample.weight > 0)) return {};
-    const int side[3] = {side_x, side_y, side_z};
-    const float local[3] = {sample.x, sample.y, sample.z};
-    float weight[3][2];
-    PSK_UNROLL for (int a = 0; a < 3; ++a) {
-      const bool at_upper_end = (side[a] == 0) == (slot_[a] == 0);  // the corner is its cell's upper end along a
-      weight[a][0] = at_upper_end ? local[a] : 1 - local[a];
-      weight[a][1] = at_upper_end ? 1 - local[a] : local[a];
-    }
-    const float value = value_in_cell(weight, u, 2 * side_x - 1, 2 * side_y - 1, 2 * side_z - 1);
-    const float total = system_.screening_scale * sample.weight;
-    const float own = weight[0][0] * weight[1][0] * weight[2][0];
-    return {own * (total * (0.5F - value)), own * total};
-  }
-
   const LevelSystem& system_;
-  int slot_[3];
+  int slot_;
   float b_;
   std::uint64_t brick_key_;
   std::int32_t brick_[8];
@@ -321,19 +329,10 @@ PSK_HD inline void screen_corner(const BrickPulls& pulls, int x, int y, int z, C
 PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64_t brick,
                                            const octree::Neighbourhood& u) {
   BrickResidual out;
-  const octree::Coordinates at = octree::decode(system.level.brick_key[brick]);
-  const int depth = system.level.depth;
-  const bool faces = touches_faces(system.level.brick_key[brick], depth);
+  const std::uint64_t brick_key = system.level.brick_key[brick];
   PSK_UNROLL for (int s = 0; s < 8; ++s) {
-    const int x = octree::slot_x(s);
-    const int y = octree::slot_y(s);
-    const int z = octree::slot_z(s);
-    const BrickCornerValues values{u, x, y, z};
-    const auto coefficients = [&](std::int32_t c) { return AxisCoefficients(system.rows, side_of(c, depth), false); };
-    out.corner[s].residual =
-        system.b[8 * brick + s] - (faces ? laplacian_at_face(values, coefficients(2 * at.x + x),
-                                                             coefficients(2 * at.y + y), coefficients(2 * at.z + z))
-                                         : laplacian_inside(values));
+    const BrickCornerValues values{u, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)};
+    out.corner[s].residual = system.b[8 * brick + s] - laplacian_at(system, brick_key, s, false, values);
   }
   if (!(system.screening_scale > 0) || system.screening.corners[brick] == 0) return out;
   BrickPulls pulls;

@@ -93,15 +93,13 @@ struct CollapseChildren {
 };
 
 /// The complete levels above all splat depths, one a round.
-struct CollapseLevels {
+struct CollapseLevels : exec::SweepAll {
   octree::OctreeView tree;
   int first;  // depth of round 0
   std::int32_t* brick_index;
   CollapsedSample* samples;
 
-  PSK_HD bool takes_part(int) const { return true; }
-  PSK_HD int prepare(int) const { return 0; }
-  PSK_HD void operator()(int round, int cell, int) const {
+  PSK_HD void operator()(int round, int cell, Nothing) const {
     const octree::LevelView& level = tree.levels[first - round];
     const octree::LevelView& below = tree.levels[first - round + 1];
     if (cell < 8 * level.cell_bricks)
@@ -179,7 +177,7 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
   }
   if (complete >= 0)
     sweep(ex, "screening.collapse", complete + 1, std::int64_t{8} * view.levels[complete].cell_bricks,
-          CollapseLevels{view, complete, result.brick_index.data(), result.samples.data()});
+          CollapseLevels{{}, view, complete, result.brick_index.data(), result.samples.data()});
   result.corners = exec::make_buffer<std::uint8_t>(ex, bricks);
   for_each(ex, "screening.corners", bricks,
            MarkCorners{view, result.brick_index.data(), result.samples.data(), result.corners.view()});

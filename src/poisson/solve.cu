@@ -1,4 +1,5 @@
 #include "exec/cuda_primitives.cuh"
+#include "poisson/relax_kernel.cuh"
 #include "poisson/solve_impl.hpp"
 
 namespace pointskin::poisson {

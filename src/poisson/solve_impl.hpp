@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
@@ -23,55 +25,34 @@ struct Prolong {
   }
 };
 
-/// One Chebyshev iteration:  step = momentum step + gain diagonal^-1 (b - A u);  next = u + step.
+/// One Chebyshev iteration:  step = momentum step + gain diagonal^-1 (b - A u);  u = u + step. The last step is the
+/// difference of the last two u: one is read, the other is there, to be written.
 struct ChebyshevStep {
   float momentum, gain;
-  PSK_HD float change(float residual, float diagonal, const float* last_step) const {
-    const float change = gain * (residual / diagonal);
-    return momentum != 0 ? change + momentum * *last_step : change;
+
+  template <class Float>
+  PSK_HD PSK_INLINE Float next(const Float& value, const Float& before, const Float& residual,
+                               const Float& diagonal) const {
+    return value + (gain * (residual / diagonal) + momentum * (value - before));
   }
 };
 
-/// Iterations one corner at a time, for spaces with many threads. Corners that are no unknowns hold the interpolated
-/// value in both arrays.
-struct RelaxCorners {
-  static constexpr int kMostRounds = 64;
-
-  LevelSystem system;
-  float* u[2];  // round k reads the one of its parity
-  float* step;
-  ChebyshevStep steps[kMostRounds];
-
-  [[nodiscard]] PSK_HD bool takes_part(int n) const { return (system.level.unknowns[n >> 3] >> (n & 7) & 1) != 0; }
-  [[nodiscard]] PSK_HD CornerOperator prepare(int n) const { return {system, n}; }
-
-  PSK_HD void operator()(int round, int n, const CornerOperator& corner) const {
-    float value;
-    const CornerResidual r = corner.residual(u[round & 1], value);
-    const float change = steps[round].change(r.residual, r.diagonal, step + n);
-    step[n] = change;
-    u[~round & 1][n] = value + change;
-  }
-};
-
-/// One iteration a brick at a time, for spaces with few threads.
+/// One iteration a brick at a time. A GPU has a kernel of its own for it (relax_kernel.cuh).
 struct RelaxBricks {
   LevelSystem system;
   ChebyshevStep chebyshev;
   const float* u;
-  float* step;
-  float* next;
+  float* next;  // holds the u before
   PSK_HD void operator()(std::int64_t brick) const {
     const int unknowns = system.level.unknowns[brick];
     if (unknowns == 0) return;  // `next` holds the interpolated values already
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
     const BrickResidual r = brick_residual(system, brick, around);
     PSK_UNROLL for (int s = 0; s < 8; ++s) {
-      const std::int64_t n = 8 * brick + s;
-      const bool unknown = (unknowns >> s & 1) != 0;
-      const float change = unknown ? chebyshev.change(r.corner[s].residual, r.corner[s].diagonal, step + n) : 0;
-      step[n] = change;
-      next[n] = around.at(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)) + change;
+      if ((unknowns >> s & 1) == 0) continue;
+      const float value = around.at(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+      float& out = next[8 * brick + s];
+      out = chebyshev.next(value, out, r.corner[s].residual, r.corner[s].diagonal);
     }
   }
 
@@ -85,11 +66,10 @@ struct RelaxBricks {
     octree::load_lanes(system.level, brick, u, around);
     BrickResidual8 r;
     residual_lanes(system, brick, around, r);
-    Float8 change = chebyshev.gain * (r.residual / r.diagonal);
-    if (chebyshev.momentum != 0) change += chebyshev.momentum * load8(step + 8 * brick);
-    change = select(mask_of_bits(unknowns), change, Float8{});
-    store8(change, step + 8 * brick);
-    store8(around(0, 0, 0) + change, next + 8 * brick);
+    float* out = next + 8 * brick;
+    const Float8 before = load8(out);
+    store8(select(mask_of_bits(unknowns), chebyshev.next(around(0, 0, 0), before, r.residual, r.diagonal), before),
+           out);
   }
 #endif
 };
@@ -132,13 +112,14 @@ struct Schedule {
 };
 
 /// Complete levels are iterated longer, over their whole spectrum, whose lower end is about 2 / cells^2: they carry the
-/// far field, and they are cheap. The finest of them mends what the few iterations above left. Finer levels only have
-/// to resolve what their own cells add to the interpolated field.
+/// far field, and they are cheap. The finest of them mends what the few iterations above left; levels 0 and 1 only give
+/// it a start. Finer levels only have to resolve what their own cells add to the interpolated field.
 inline Schedule schedule_for(int depth, int iterations) {
   if (depth > octree::kCompleteDepth)
     return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};
-  const double cells = std::pow(2.0, depth);
-  return {std::max(iterations, static_cast<int>(2 * cells)), std::min(0.1, 2.0 / (cells * cells))};
+  const int cells = 1 << depth;  // along an axis
+  const int asked = depth < 2 ? iterations / 4 : iterations;
+  return {std::max(asked, 2 * cells), std::min(0.1, 2.0 / (cells * cells))};
 }
 
 /// Coefficients of Chebyshev iterations on [lower, 1].
@@ -167,25 +148,23 @@ double residual_norm(Exec& ex, const LevelSystem& system, const float* u) {
   return std::sqrt(exec::reduce<double>(ex, "solve.residual", system.level.bricks, SquaredResidual{system, u}, Plus{}));
 }
 
+/// Iterations one after another, from one array into the other and back.
+template <exec::Space Exec>
+void relax(Exec& ex, const LevelSystem& system, const std::vector<ChebyshevStep>& steps, float* from, float* to) {
+  for (const ChebyshevStep& chebyshev : steps) {
+    for_each(ex, "solve.relax", system.level.bricks, RelaxBricks{system, chebyshev, from, to});
+    std::swap(from, to);
+  }
+}
+
 /// The iterations of a schedule; the result ends in `u`.
 template <exec::Space Exec>
-void iterate(Exec& ex, const LevelSystem& system, const Schedule& schedule, float* step, float* u, float* other) {
+void iterate(Exec& ex, const LevelSystem& system, const Schedule& schedule, float* u, float* other) {
   Chebyshev chebyshev(schedule.lower);
-  float* from = schedule.iterations % 2 == 0 ? u : other;
-  float* to = schedule.iterations % 2 == 0 ? other : u;
-  if constexpr (Exec::kManyThreads) {
-    for (int done = 0; done < schedule.iterations; done += RelaxCorners::kMostRounds) {  // an even number a sweep
-      RelaxCorners relax{system, {from, to}, step, {}};
-      const int rounds = std::min(schedule.iterations - done, RelaxCorners::kMostRounds);
-      std::generate_n(relax.steps, rounds, [&] { return chebyshev.next(); });
-      sweep(ex, "solve.relax", rounds, system.level.nodes(), relax);
-    }
-  } else {
-    for (int k = 0; k < schedule.iterations; ++k) {
-      for_each(ex, "solve.relax", system.level.bricks, RelaxBricks{system, chebyshev.next(), from, step, to});
-      std::swap(from, to);
-    }
-  }
+  std::vector<ChebyshevStep> steps(static_cast<std::size_t>(schedule.iterations));
+  std::generate(steps.begin(), steps.end(), [&] { return chebyshev.next(); });
+  const bool even = schedule.iterations % 2 == 0;
+  relax(ex, system, steps, even ? u : other, even ? other : u);
 }
 
 /// Iterates one level; the result ends in `u`. Both arrays hold the interpolated values before.
@@ -199,8 +178,7 @@ LevelSolve solve_level(Exec& ex, const LevelSystem& system, const SolveOptions& 
         exec::reduce<std::int64_t>(ex, "solve.unknowns", level.bricks, CountUnknowns{level.unknowns}, Plus{});
     report.residual_before = residual_norm(ex, system, u);
   }
-  auto step = exec::make_buffer<float>(ex, level.nodes());
-  iterate(ex, system, schedule, step.data(), u, other);
+  iterate(ex, system, schedule, u, other);
   if (options.residuals) report.residual_after = residual_norm(ex, system, u);
   return report;
 }

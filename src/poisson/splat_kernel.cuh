@@ -1,8 +1,9 @@
 // Splatting normals on a GPU, one warp a brick, with the bits of SplatToBricks.
 //
-// The samples of the 27 bricks around are one list. 32 lanes look at 32 of them at once and stage those in reach in
-// shared memory, in the list's order; then 24 lanes, one for each corner and axis, add up what is staged. A thread a
-// brick would wait for one sample after another, a thread a corner would test every sample eight times.
+// The samples of the 27 bricks around are one list. 32 lanes look at 32 of them at once and note those in reach, about
+// a third; of 32 in reach they stage the weights in shared memory, one each; then 24 lanes, one for each corner and
+// axis, add up what is staged, in the list's order. A thread a brick would wait for one sample after another, a thread
+// a corner would test every sample eight times.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +13,30 @@
 
 namespace pointskin::poisson::divergence {
 
-inline constexpr int kWarp = 32;
-inline constexpr int kSplatWarps = 4;  // per block
+using exec::kWarp;
 
-/// A warp's staged samples: weights along the axes on lower and upper corners, and what the samples add to V.
+/// A warp's staged samples: weights on the brick's corners, and what the samples add to V.
 struct StagedSamples {
-  static constexpr int kCapacity = 2 * kWarp + 1;  // odd: rows start in different banks
-  float weight[3][2][kCapacity];
-  float vector[3][kCapacity];
+  static constexpr int kStride = kWarp + 4;  // rows start at multiples of 16 bytes, each in other banks
+  alignas(16) float weight[8][kStride];
+  alignas(16) float vector[3][kStride];
+
+  /// sum + the first `count` products of a corner and an axis, one after another.
+  [[nodiscard]] __device__ float add(int corner, int axis, int count, float sum) const {
+    const float* w = weight[corner];
+    const float* v = vector[axis];
+    int i = 0;
+    for (; i + 4 <= count; i += 4) {
+      const float4 w4 = *reinterpret_cast<const float4*>(w + i);
+      const float4 v4 = *reinterpret_cast<const float4*>(v + i);
+      sum += w4.x * v4.x;
+      sum += w4.y * v4.y;
+      sum += w4.z * v4.z;
+      sum += w4.w * v4.w;
+    }
+    for (; i < count; ++i) sum += w[i] * v[i];
+    return sum;
+  }
 };
 
 /// The list of the samples around a brick.
@@ -59,72 +76,98 @@ __device__ inline std::int32_t list_samples(const SplatSource& source, std::int6
   return __shfl_sync(~0U, sum, kWarp - 1);
 }
 
-/// Stages the sample if it reaches the brick. All lanes of a warp call it. @returns the number staged then
-__device__ inline int stage(const SplatSource& source, std::int32_t rank, bool exists,
-                            const octree::Coordinates& origin, float scale, int lane, int staged, StagedSamples& out) {
-  std::int32_t sample = 0;
-  BrickSample at({}, origin, scale);
-  bool reaches = false;
-  if (exists) {
-    sample = source.subset.sample_of(rank);
-    at = BrickSample(source.samples.positions[sample], origin, scale);
-    reaches = at.reaches<QuadraticKernel>() && source.is_splatted(sample);
-  }
-  const unsigned lanes = __ballot_sync(~0U, reaches);
-  if (reaches) {
-    const int place = staged + __popc(lanes & ((1U << lane) - 1));
-    float weight[3][2];
-    at.weights_by_axis<QuadraticKernel>(weight);
-    PSK_UNROLL for (int a = 0; a < 3; ++a) PSK_UNROLL for (int side = 0; side < 2; ++side) out.weight[a][side][place] =
-        weight[a][side];
-    const Vec3f v = source.vector(sample);
-    out.vector[0][place] = v.x;
-    out.vector[1][place] = v.y;
-    out.vector[2][place] = v.z;
-  }
-  __syncwarp();
-  return staged + __popc(lanes);
-}
-
-__global__ void __launch_bounds__(kSplatWarps* kWarp) splat_bricks_kernel(const SplatSource source, VectorField field) {
-  __shared__ StagedSamples all_staged[kSplatWarps];
-  __shared__ SampleList all_lists[kSplatWarps];
-  const int warp = static_cast<int>(threadIdx.x) / kWarp;
-  const int lane = static_cast<int>(threadIdx.x) % kWarp;
-  const std::int64_t brick = std::int64_t{blockIdx.x} * kSplatWarps + warp;
-  if (brick >= source.level.bricks) return;
-  StagedSamples& staged = all_staged[warp];
-  SampleList& list = all_lists[warp];
-  const std::int32_t length = list_samples(source, brick, lane, list);
-  if (length == 0) return;
-
-  const octree::Coordinates origin = brick_origin(source.level, brick);
-  const auto scale = static_cast<float>(1 << source.level.depth);
-  const int corner = lane & 7;
-  const int axis = lane < 24 ? lane >> 3 : 2;
-  float sum = 0;
-  int count = 0;
-  const auto add_staged = [&] {
-    const float* x = staged.weight[0][octree::slot_x(corner)];
-    const float* y = staged.weight[1][octree::slot_y(corner)];
-    const float* z = staged.weight[2][octree::slot_z(corner)];
-    for (int i = 0; i < count; ++i) sum += x[i] * y[i] * z[i] * staged.vector[axis][i];
-    count = 0;
-    __syncwarp();
+/// One warp's work on a brick.
+class SplatToBrick {
+ public:
+  struct Shared {
+    SampleList list;
+    std::int32_t reaching[2 * kWarp];  // samples that reach the brick, in the list's order
+    StagedSamples staged;
   };
-  for (std::int32_t k = 0; k < length; k += kWarp) {
-    const bool exists = k + lane < length;
-    count = stage(source, exists ? list[k + lane] : 0, exists, origin, scale, lane, count, staged);
-    if (count >= kWarp) add_staged();
+
+  __device__ SplatToBrick(const SplatSource& source, std::int64_t brick, int lane, Shared& shared)
+      : source_(source),
+        shared_(shared),
+        lane_(lane),
+        origin_(brick_origin(source.level, brick)),
+        scale_(static_cast<float>(1 << source.level.depth)) {}
+
+  /// Looks at sample `rank` of the list, if the lane has one.
+  __device__ void test(std::int32_t rank, bool exists) {
+    std::int32_t sample = 0;
+    bool reaches = false;
+    if (exists) {
+      sample = source_.subset.sample_of(rank);
+      reaches = at(sample).reaches_unordered<QuadraticKernel>() && source_.is_splatted(sample);
+    }
+    const unsigned lanes = __ballot_sync(~0U, reaches);
+    if (reaches) shared_.reaching[count_ + __popc(lanes & ((1U << lane_) - 1))] = sample;
+    count_ += __popc(lanes);
+    __syncwarp();
+    if (count_ >= kWarp) add();
   }
-  add_staged();
-  if (lane < 24) field.axis[axis][8 * brick + corner] += sum;
-}
+
+  /// Adds the first 32 samples that reach the brick, or all of them.
+  __device__ void add() {
+    const int adding = count_ < kWarp ? count_ : kWarp;
+    if (lane_ < adding) stage(shared_.reaching[lane_]);
+    count_ -= adding;
+    const std::int32_t next = lane_ < count_ ? shared_.reaching[kWarp + lane_] : 0;
+    __syncwarp();
+    sum_ = shared_.staged.add(corner(), axis(), adding, sum_);
+    if (lane_ < count_) shared_.reaching[lane_] = next;
+    __syncwarp();
+  }
+
+  [[nodiscard]] __device__ int corner() const { return lane_ & 7; }
+  [[nodiscard]] __device__ int axis() const { return lane_ < 24 ? lane_ >> 3 : 2; }
+  [[nodiscard]] __device__ float sum() const { return sum_; }
+
+ private:
+  [[nodiscard]] __device__ BrickSample at(std::int32_t sample) const {
+    return {source_.samples.positions[sample], origin_, scale_};
+  }
+
+  __device__ void stage(std::int32_t sample) const {
+    float weight[8];
+    at(sample).weights<QuadraticKernel>(weight);
+    PSK_UNROLL for (int s = 0; s < 8; ++s) shared_.staged.weight[s][lane_] = weight[s];
+    const Vec3f v = source_.vector(sample);
+    shared_.staged.vector[0][lane_] = v.x;
+    shared_.staged.vector[1][lane_] = v.y;
+    shared_.staged.vector[2][lane_] = v.z;
+  }
+
+  const SplatSource& source_;
+  Shared& shared_;
+  int lane_;
+  octree::Coordinates origin_;
+  float scale_;
+  int count_ = 0;  // of samples in `reaching`
+  float sum_ = 0;  // for the lane's corner and axis
+};
+
+struct SplatByWarps {
+  SplatSource source;
+  VectorField field;
+
+  using Shared = SplatToBrick::Shared;
+
+  __device__ void operator()(std::int64_t brick, int lane, Shared& shared) const {
+    const std::int32_t length = list_samples(source, brick, lane, shared.list);
+    if (length == 0) return;
+    SplatToBrick splat(source, brick, lane, shared);
+    for (std::int32_t k = lane; k - lane < length; k += kWarp) {
+      const bool exists = k < length;
+      splat.test(exists ? shared.list[k] : 0, exists);
+    }
+    splat.add();
+    if (lane < 24) field.axis[splat.axis()][8 * brick + splat.corner()] += splat.sum();
+  }
+};
 
 inline void splat_to_bricks(exec::Cuda& ex, const SplatSource& source, const VectorField& field) {
-  const std::int64_t blocks = (std::int64_t{source.level.bricks} + kSplatWarps - 1) / kSplatWarps;
-  splat_bricks_kernel<<<static_cast<unsigned>(blocks), kSplatWarps * kWarp, 0, exec::stream_of(ex)>>>(source, field);
-  exec::cuda_check(cudaGetLastError(), "splat.normals");
+  for_each_warp(ex, "splat.normals", source.level.bricks, SplatByWarps{source, field});
 }
 
 }  // namespace pointskin::poisson::divergence

@@ -69,23 +69,17 @@ struct BrickSample {
             static_cast<int>(rel[2] < kUpper)) != 0;
   }
 
-  /// Weights along every axis on the brick's lower and upper corners.
+  /// Weights on the brick's 8 corners.
   template <class Kernel>
-  PSK_HD void weights_by_axis(float (&axis)[3][2]) const {
+  PSK_HD void weights(float (&w)[8]) const {
     const Kernel kernel;
+    float axis[3][2];  // on lower and upper corners
     PSK_UNROLL for (int a = 0; a < 3; ++a) {
       axis[a][0] = kernel(rel[a]);
       axis[a][1] = kernel(rel[a] - 1);
     }
-  }
-
-  /// Weights on the brick's 8 corners.
-  template <class Kernel>
-  PSK_HD void weights(float (&w)[8]) const {
-    float axis[3][2];
-    weights_by_axis<Kernel>(axis);
-    for (int s = 0; s < 8; ++s)
-      w[s] = axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
+    PSK_UNROLL for (int s = 0; s < 8; ++s) w[s] =
+        axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
   }
 
 #if PSK_WIDE

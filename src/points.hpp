@@ -29,8 +29,9 @@ template <exec::Space Exec>
 poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
                                 exec::Buffer<std::uint64_t>& keys);
 
-/// Copies a surface to the host, into world coordinates relative to `origin` and the memory that `mesh` has.
+/// Copies a surface to the host, into world coordinates relative to `origin` and the memory that `mesh` has. Every
+/// array is freed as soon as it is copied.
 template <exec::Space Exec>
-void download(Exec& ex, const surface::Surface& surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh);
+void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh);
 
 }  // namespace pointskin::detail

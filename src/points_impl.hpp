@@ -18,9 +18,8 @@ namespace points {
 
 struct ToWorld {
   octree::Frame frame;
-  ArrayView<const Vec3f> in;
-  ArrayView<Vec3f> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_world(in[i]); }
+  ArrayView<Vec3f> positions;
+  PSK_HD void operator()(std::int64_t i) const { positions[i] = frame.to_world(positions[i]); }
 };
 
 /// Mixes the bits of a point; equal points have equal hashes. Source: the finaliser of MurmurHash3.
@@ -64,14 +63,15 @@ struct AddFlaws {
   }
 };
 
-/// Copies to the host, into memory that `to` may have already.
+/// Moves to the host, into memory that `to` may have already.
 template <class T, exec::Space Exec>
-void download_array(Exec& ex, ArrayView<const T> from, std::vector<T>& to) {
+void download_array(Exec& ex, exec::Buffer<T>& from, std::vector<T>& to) {
   if constexpr (std::is_same_v<Exec, exec::Cpu>)
-    exec::resize(ex, to, static_cast<std::size_t>(from.size));
+    exec::resize(ex, to, static_cast<std::size_t>(from.size()));
   else
-    to.resize(static_cast<std::size_t>(from.size));
-  copy_to_host(ex, from, to.data());
+    to.resize(static_cast<std::size_t>(from.size()));
+  copy_to_host(ex, from.cview(), to.data());
+  from.reset();
 }
 
 }  // namespace points
@@ -119,15 +119,14 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
 }
 
 template <exec::Space Exec>
-void download(Exec& ex, const surface::Surface& surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh) {
-  const std::int64_t n = surface.positions.size();
-  auto world = exec::make_buffer<Vec3f>(ex, n);
-  for_each(ex, "download.world", n, points::ToWorld{frame, surface.positions.cview(), world.view()});
+void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh) {
+  const ArrayView<Vec3f> positions = surface.positions.view();
+  for_each(ex, "download.world", positions.size, points::ToWorld{frame, positions});
   mesh.origin = origin;
   mesh.attributes.clear();
-  points::download_array(ex, world.cview(), mesh.vertices);
-  points::download_array(ex, surface.normals.cview(), mesh.normals);
-  points::download_array(ex, surface.triangles.cview(), mesh.triangles);
+  points::download_array(ex, surface.positions, mesh.vertices);
+  points::download_array(ex, surface.normals, mesh.normals);
+  points::download_array(ex, surface.triangles, mesh.triangles);
 }
 
 }  // namespace pointskin::detail

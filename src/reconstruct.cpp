@@ -62,7 +62,7 @@ void Reconstructor::reconstruct(const Cloud& cloud, const Options& options, Mesh
   const std::shared_ptr<detail::FieldImpl> field = impl_->solve(cloud, options);
   if (options.progress && !options.progress({"extract", 0.8}))
     throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
-  field->extract(mesh, &impl_->report_);
+  field->extract_and_release(mesh, impl_->report_);
 }
 
 std::vector<RunTimes> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
@@ -83,7 +83,7 @@ std::vector<float> Field::values(const std::vector<Vec3d>& points_world) const {
 
 Mesh Field::extract() const {
   Mesh mesh;
-  impl_->extract(mesh, nullptr);
+  impl_->extract(mesh);
   return mesh;
 }
 

@@ -18,9 +18,11 @@ class FieldImpl {
   [[nodiscard]] virtual double cube_size_world() const = 0;
   [[nodiscard]] virtual Vec3d cube_lower_world() const = 0;
   [[nodiscard]] virtual std::vector<float> values(const std::vector<Vec3d>& points_world) const = 0;
-  /// @param report  if not null, receives extract_ms, download_ms and the peak memory
   /// @param mesh  receives the mesh; its memory is used again
-  virtual void extract(Mesh& mesh, RunReport* report) const = 0;
+  virtual void extract(Mesh& mesh) const = 0;
+  /// The same, for the last time: all else is freed before the mesh is copied.
+  /// @param report  receives extract_ms, download_ms and the peak memory
+  virtual void extract_and_release(Mesh& mesh, RunReport& report) = 0;
 };
 
 /// The pipeline on one space.

@@ -167,27 +167,41 @@ class FieldOn final : public FieldImpl {
     return result;
   }
 
-  void extract(Mesh& mesh, RunReport* report) const override {
-    ex_->activate();
+  void extract(Mesh& mesh) const override {
+    surface::Surface surface = extract_surface();
+    const std::vector<Attribute> attributes = attributes_at(surface);
+    download(*ex_, std::move(surface), data_.frame, origin_, mesh);
+    mesh.attributes = attributes;
+  }
+
+  void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
-    const surface::Surface surface = detail::extract(*ex_, data_, options_);
-    double extract_ms = 0;
-    double download_ms = 0;
-    clock.lap(extract_ms);
-    if (surface.triangles.empty())
-      throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
-    download(*ex_, surface, data_.frame, origin_, mesh);
-    if (options_.density) mesh.attributes.push_back(density_at(surface));
-    clock.lap(download_ms);
+    surface::Surface surface = extract_surface();
+    clock.lap(report.extract_ms);
+    const std::vector<Attribute> attributes = attributes_at(surface);
+    const octree::Frame frame = data_.frame;
+    data_ = {};
+    download(*ex_, std::move(surface), frame, origin_, mesh);
+    mesh.attributes = attributes;
+    clock.lap(report.download_ms);
     clock.read();
-    if (report != nullptr) {
-      report->extract_ms = extract_ms;
-      report->download_ms = download_ms;
-      report->device_peak_bytes = ex_->pool()->peak_bytes();
-    }
+    report.device_peak_bytes = ex_->pool()->peak_bytes();
   }
 
  private:
+  [[nodiscard]] surface::Surface extract_surface() const {
+    ex_->activate();
+    surface::Surface surface = detail::extract(*ex_, data_, options_);
+    if (surface.triangles.empty())
+      throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
+    return surface;
+  }
+
+  [[nodiscard]] std::vector<Attribute> attributes_at(const surface::Surface& surface) const {
+    if (!options_.density) return {};
+    return {density_at(surface)};
+  }
+
   /// Samples per unit of area at the vertices.
   [[nodiscard]] Attribute density_at(const surface::Surface& surface) const {
     const std::int64_t n = surface.positions.size();

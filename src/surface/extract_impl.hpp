@@ -337,7 +337,7 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   counts.reset();
   const exec::Buffer<std::int32_t> traced = select(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()});
   auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
-  for_each(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
+  for_each_apart(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
   exec::Buffer<std::uint64_t> first_traced;
   const std::uint64_t more = traced.empty() ? 0 : scan_counts(ex, traced_counts, first_traced, kMostTrianglesPerCell);
   const std::int64_t vertices = std::int64_t{low_count(table)} + high_count(more);
@@ -355,8 +355,9 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   signs.reset();
   for_each(ex, "extract.vertices", low_count(table), EmitVertex{f, options.linear_fit, mesh});
   for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh.triangles});
-  for_each(ex, "extract.traced", traced.size(),
-           EmitTraced{f, vertex_on, traced.cview(), first_traced.cview(), low_count(table), high_count(table), mesh});
+  for_each_apart(
+      ex, "extract.traced", traced.size(),
+      EmitTraced{f, vertex_on, traced.cview(), first_traced.cview(), low_count(table), high_count(table), mesh});
   marks.reset();
   first.reset();
   return sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth);

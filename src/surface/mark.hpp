@@ -29,11 +29,17 @@ struct Marker {
   ArrayView<std::uint8_t> marks;
   ArrayView<std::uint8_t> signs;  ///< inside bits of the corners of cells with triangles; undefined for others
 
-  /// True if cells of the brick touch a face of the cube.
+  /// True if cells of the brick touch a face of the cube. Read off the key, without decoding it.
   PSK_HD static bool is_near_face(const octree::LevelView& l, std::int64_t brick) {
-    const octree::Coordinates b = octree::decode(l.brick_key[brick]);
-    const std::int32_t last = l.depth == 0 ? 0 : (1 << (l.depth - 1)) - 1;
-    return b.x == 0 || b.y == 0 || b.z == 0 || b.x >= last || b.y >= last || b.z >= last;
+    if (l.depth == 0) return true;
+    const std::uint64_t key = l.brick_key[brick];
+    const std::uint64_t last = octree::kEveryThirdBit & ((std::uint64_t{1} << 3 * (l.depth - 1)) - 1);
+    bool near = false;
+    PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+      const std::uint64_t coordinate = key >> axis & octree::kEveryThirdBit;
+      near = near || coordinate == 0 || coordinate >= last;
+    }
+    return near;
   }
 
   /// @param signs  inside bits of the cell's corners, bit = slot

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "property/reconstruction.hpp"
@@ -61,30 +62,43 @@ struct NamedCloud {
   std::string name;
   Cloud cloud;
 };
-std::vector<NamedCloud> clouds() {
-  std::vector<NamedCloud> all;
-  all.push_back({"sphere", test::sphere_cloud(20'000, 1)});
-  all.push_back({"linked tori", test::linked_tori_cloud(30'000, 2)});
-  all.push_back({"box", test::box_cloud(20'000, 3)});
-  all.push_back({"thin plate", test::thin_plate_cloud(30'000, 4, 0.05)});
-  all.push_back({"plane", test::plane_cloud(10'000, 5)});
-  all.push_back({"noisy sphere", test::jittered(test::sphere_cloud(20'000, 6), 7, 0.03)});
+NamedCloud cloud_number(int i) {
+  switch (i) {
+    case 0:
+      return {"sphere", test::sphere_cloud(20'000, 1)};
+    case 1:
+      return {"linked tori", test::linked_tori_cloud(30'000, 2)};
+    case 2:
+      return {"box", test::box_cloud(20'000, 3)};
+    case 3:
+      return {"thin plate", test::thin_plate_cloud(30'000, 4, 0.05)};
+    case 4:
+      return {"plane", test::plane_cloud(10'000, 5)};
+    case 5:
+      return {"noisy sphere", test::jittered(test::sphere_cloud(20'000, 6), 7, 0.03)};
+    default:
+      break;
+  }
   Cloud repeated = test::sphere_cloud(3'000, 8);
   test::append(repeated, test::sphere_cloud(3'000, 8));
-  all.push_back({"repeated points", test::shuffled(repeated, 9)});
-  return all;
+  return {"repeated points", test::shuffled(repeated, 9)};
+}
+constexpr int kClouds = 7;
+
+/// Small tests of their own, so that slow checkers can run many at once.
+class GpuOnCloud : public Gpu, public testing::WithParamInterface<std::tuple<int, int>> {};
+
+TEST_P(GpuOnCloud, GivesTheSameBytesAsTheCpu) {
+  const auto [number, depth] = GetParam();
+  const NamedCloud c = cloud_number(number);
+  SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
+  expect_parity(c.cloud, {.depth = depth});
 }
 
-TEST_F(Gpu, GivesTheSameBytesAsTheCpuForEveryShapeAndDepth) {
-  for (const NamedCloud& c : clouds())
-    for (const int depth : {1, 2, 4, 5, 7, 9}) {
-      SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
-      expect_parity(c.cloud, {.depth = depth});
-    }
-}
+INSTANTIATE_TEST_SUITE_P(EveryShapeAndDepth, GpuOnCloud,
+                         testing::Combine(testing::Range(0, kClouds), testing::Values(1, 2, 4, 5, 7, 9)));
 
-TEST_F(Gpu, GivesTheSameBytesAsTheCpuForEveryOption) {
-  const Cloud cloud = test::jittered(test::torus_cloud(20'000, 10), 11, 0.01);
+std::vector<Options> options_to_try() {
   std::vector<Options> all;
   for (const double screening : {0.0, 50.0}) all.push_back({.depth = 7, .screening = screening});
   for (const int iterations : {1, 7, 40}) all.push_back({.depth = 7, .iterations = iterations});
@@ -96,11 +110,19 @@ TEST_F(Gpu, GivesTheSameBytesAsTheCpuForEveryOption) {
   all.push_back({.depth = 7, .normals = false});
   all.push_back({.depth = 7, .domain_faces = DomainFaces::open});
   all.push_back({.depth = 7, .residuals = true});
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    SCOPED_TRACE("options number " + std::to_string(i));
-    expect_parity(cloud, all[i]);
-  }
+  return all;
 }
+constexpr int kOptions = 15;
+
+class GpuWithOptions : public Gpu, public testing::WithParamInterface<int> {};
+
+TEST_P(GpuWithOptions, GivesTheSameBytesAsTheCpu) {
+  const std::vector<Options> all = options_to_try();
+  ASSERT_EQ(all.size(), kOptions);
+  expect_parity(test::jittered(test::torus_cloud(20'000, 10), 11, 0.01), all[static_cast<std::size_t>(GetParam())]);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryOption, GpuWithOptions, testing::Range(0, kOptions));
 
 TEST_F(Gpu, EndsTinyCloudsAsTheCpuDoes) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -188,19 +210,18 @@ TEST_F(Gpu, ReportsErrorsAsTheCpuDoes) {
   EXPECT_TRUE(measure(r.reconstruct(test::sphere_cloud(5'000, 20), {.depth = 6})).watertight());
 }
 
-TEST_F(Gpu, GivesTheSameBytesAsTheCpuOnPublicScans) {
-  int found = 0;
-  for (const char* name : {"bunny_scans", "armadillo_oriented", "srb_anchor", "srb_dc"}) {
-    const auto cloud = test::shared_cloud(name);
-    if (!cloud) continue;
-    ++found;
-    for (const int depth : {6, 8, 9}) {
-      SCOPED_TRACE(std::string(name) + ", depth " + std::to_string(depth));
-      expect_parity(*cloud, {.depth = depth});
-    }
-  }
-  if (found == 0) GTEST_SKIP() << "no clouds in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
+class GpuOnScan : public Gpu, public testing::WithParamInterface<std::tuple<std::string, int>> {};
+
+TEST_P(GpuOnScan, GivesTheSameBytesAsTheCpu) {
+  const auto [name, depth] = GetParam();
+  const auto cloud = test::shared_cloud(name);
+  if (!cloud) GTEST_SKIP() << "no " << name << " in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
+  expect_parity(*cloud, {.depth = depth});
 }
+
+INSTANTIATE_TEST_SUITE_P(PublicScans, GpuOnScan,
+                         testing::Combine(testing::Values("bunny_scans", "armadillo_oriented", "srb_anchor", "srb_dc"),
+                                          testing::Values(6, 8, 9)));
 
 }  // namespace
 }  // namespace pointskin

@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -62,6 +63,9 @@ void Input::read_all(int fd) {
   std::size_t used = 0;
   while (true) {
     if (used == memory_.size()) memory_.resize(std::max(kFirstStep, 2 * used));
+    // Signals are taken while waiting here: ThreadSanitizer holds them back during read.
+    pollfd input = {fd, POLLIN, 0};
+    if (::poll(&input, 1, -1) < 0 && errno == EINTR) continue;
     const ssize_t got = ::read(fd, memory_.data() + used, memory_.size() - used);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail_to_read(name_, errno);

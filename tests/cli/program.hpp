@@ -8,6 +8,13 @@
 
 namespace pointskin::test {
 
+/// How many times longer programs take under the tool that the tests were compiled for.
+#ifdef __SANITIZE_THREAD__
+inline constexpr int kSlowdown = 4;
+#else
+inline constexpr int kSlowdown = 1;
+#endif
+
 struct Result {
   int exit_code = -1;      ///< -1 if a signal ended it
   int signal = 0;          ///< 0 unless a signal ended it
@@ -27,7 +34,7 @@ struct Start {
   std::string folder;                         ///< working folder; empty: the test's own
   int signal = 0;                             ///< signal to send...
   std::chrono::milliseconds signal_after{0};  ///< ...after this time
-  std::chrono::seconds limit{60};
+  std::chrono::seconds limit{60 * kSlowdown};
 };
 
 Result run_program(const Start& start);

@@ -24,11 +24,12 @@ inline std::int64_t tiles_of(const LevelView& level) {
 /// Values at the 64 corners around each of 4 bricks.
 class CornerTile {
  public:
+  /// Values around one corner, all fetched at once.
   struct ValuesInRegisters {
     float value[kNeighbours];
     __device__ float operator()(int x, int y, int z) const { return value[neighbour_index(x, y, z)]; }
   };
-  /// Values around one corner.
+  /// Values around one corner, at offsets -1, 0, 1 along each axis.
   struct Values {
     const float* centre;
     __device__ float operator()(int x, int y, int z) const { return centre[16 * x + 4 * y + z]; }

@@ -45,7 +45,9 @@ struct SortedPoints {
 /// result does not depend on the caller's order unless two points are the same in every bit.
 /// @param positions  shape (n), in the unit cube
 /// @param tie_break  shape (n); equal only for points that may be exchanged
-/// O(n), 24 n bytes of scratch.
+/// O(n), 24 n bytes of scratch; one more sort where more than 32 points share the upper 48 bits of a key, two more
+/// again where that many share a key. Deterministic, the same order on every device. @throws Error over_limit if memory
+/// runs out
 template <exec::Space Exec>
 SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break);
 
@@ -57,7 +59,8 @@ SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<c
 /// @param point_keys  shape (n), ascending, n >= 0
 /// @param depth       D in [1, kMaxDepth]
 /// @throws Error over_limit if a level would need more than 2^31 / 8 bricks, or memory runs out
-/// O(n + nodes log nodes); two host round trips a level. Integers only: the same on every device.
+/// O(n + nodes log nodes); two host round trips for all levels that have bitmaps (brick_sets.hpp), two for every level
+/// that has none. Integers only: the same on every device.
 template <exec::Space Exec>
 OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth);
 

@@ -30,6 +30,7 @@ __device__ inline int leaves_around_corners(const Divergence& divergence, std::i
   return leaves;
 }
 
+/// All corners of 4 bricks, a lane each.
 struct DivergenceOfTile {
   Divergence divergence;
 

@@ -147,6 +147,7 @@ class SplatToBrick {
   float sum_ = 0;  // for the lane's corner and axis
 };
 
+/// Adds samples to V at the corners of a brick: SplatToBricks, a warp a brick.
 struct SplatByWarps {
   SplatSource source;
   VectorField field;

@@ -93,6 +93,8 @@ void validate(const Options& options) {
   require(options.iterations >= 1 && options.iterations <= 1000, "iterations", "in 1..1000");
   require(options.scale >= 1 && options.scale <= 100, "scale", "in 1..100");
   require(options.samples_per_node >= 0 && options.samples_per_node <= 100, "samples-per-node", "in 0..100");
+  require(options.trim >= 0 && options.trim < 1, "trim", "in [0, 1)");
+  require(options.island_ratio >= 0 && options.island_ratio < 1, "island-ratio", "in [0, 1)");
   require(options.max_memory_bytes >= 0, "max-memory", "at least 0");
 }
 

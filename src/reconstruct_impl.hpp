@@ -21,6 +21,7 @@
 #include "poisson/solve.hpp"
 #include "reconstruct_engine.hpp"
 #include "surface/extract.hpp"
+#include "trim_to_samples.hpp"
 
 namespace pointskin::detail {
 
@@ -66,6 +67,7 @@ struct FieldData {
   exec::Buffer<float> values;
   poisson::Density density;
   double isovalue = 0;
+  float trim_limit = 0;  // spacing in finest cells, with Options::trim
 
   [[nodiscard]] field::FieldView view(DomainFaces faces) const {
     return {tree.view(), values.data(), static_cast<float>(isovalue), faces == DomainFaces::closed};
@@ -102,7 +104,8 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
   announce(options, "splat", 0.25);
   field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
   poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
-  if (!options.density) field.density.counts.reset();
+  if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
+  if (!options.density && options.trim == 0) field.density.counts.reset();
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view());
   samples.normals.reset();
   poisson::Screening screening;
@@ -128,9 +131,19 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
 }
 
 /// Implicit function to mesh, on the device.
+/// @param trimmed  receives what was cut, with Options::trim
 template <exec::Space Exec>
-surface::Surface extract(Exec& ex, const FieldData& field, const Options& options) {
-  return surface::extract_surface(ex, field.view(options.domain_faces), {options.linear_fit, options.normals});
+surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, TrimReport& trimmed) {
+  const bool trim = options.trim > 0;  // which needs normals
+  surface::Surface surface =
+      surface::extract_surface(ex, field.view(options.domain_faces), {options.linear_fit, options.normals || trim});
+  if (!trim) return surface;
+  surface::TrimCounts counts;
+  surface = trim_to_samples(ex, field.tree, field.density, std::move(surface), {field.trim_limit, options.island_ratio},
+                            counts);
+  trimmed = trim_report(counts, field.frame, field.tree.depth, field.trim_limit);
+  if (!options.normals) surface.normals.reset();
+  return surface;
 }
 
 template <exec::Space Exec>
@@ -168,7 +181,8 @@ class FieldOn final : public FieldImpl {
   }
 
   void extract(Mesh& mesh) const override {
-    surface::Surface surface = extract_surface();
+    TrimReport trimmed;
+    surface::Surface surface = extract_surface(trimmed);
     const std::vector<Attribute> attributes = attributes_at(surface);
     download(*ex_, std::move(surface), data_.frame, origin_, mesh);
     mesh.attributes = attributes;
@@ -176,7 +190,7 @@ class FieldOn final : public FieldImpl {
 
   void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
-    surface::Surface surface = extract_surface();
+    surface::Surface surface = extract_surface(report.trim);
     clock.lap(report.extract_ms);
     const std::vector<Attribute> attributes = attributes_at(surface);
     const octree::Frame frame = data_.frame;
@@ -189,9 +203,12 @@ class FieldOn final : public FieldImpl {
   }
 
  private:
-  [[nodiscard]] surface::Surface extract_surface() const {
+  [[nodiscard]] surface::Surface extract_surface(TrimReport& trimmed) const {
     ex_->activate();
-    surface::Surface surface = detail::extract(*ex_, data_, options_);
+    surface::Surface surface = detail::extract(*ex_, data_, options_, trimmed);
+    if (surface.triangles.empty() && trimmed.triangles_before > 0)
+      throw Error(ErrorCode::empty_result,
+                  "all of the surface was trimmed away; choose a smaller trim quantile or island ratio");
     if (surface.triangles.empty())
       throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
     return surface;
@@ -245,7 +262,7 @@ class EngineOn final : public Engine {
       PhaseClock clock(*ex_);
       RunReport report;
       const FieldData data = fit_field(*ex_, points, true, options, report);
-      const surface::Surface surface = detail::extract(*ex_, data, options);
+      const surface::Surface surface = detail::extract(*ex_, data, options, report.trim);
       RunTimes run{report.octree_ms, report.splat_ms, report.solve_ms};
       clock.lap(run.total_ms);
       clock.read();

@@ -26,6 +26,8 @@ Json options_json(const Record& record) {
                {"density", options.density},
                {"normals", options.normals},
                {"open", options.domain_faces == DomainFaces::open},
+               {"trim", options.trim},
+               {"island_ratio", options.island_ratio},
                {"max_memory_bytes", options.max_memory_bytes}};
   json.update(record.other_options);
   return json;
@@ -47,6 +49,17 @@ Json solve_json(const RunReport& run) {
                       {"residual_after", level.residual_after}});
   }
   return {{"levels", levels}};
+}
+
+Json trim_json(const TrimReport& trim) {
+  return {{"density", trim.density},
+          {"area_before", trim.area_before},
+          {"area_removed", trim.area_removed},
+          {"triangles_before", trim.triangles_before},
+          {"triangles_removed", trim.triangles_removed},
+          {"triangles_split", trim.triangles_split},
+          {"islands_removed", trim.islands_removed},
+          {"holes_filled", trim.holes_filled}};
 }
 
 Json mesh_json(const MeshReport& mesh) {
@@ -76,6 +89,7 @@ Json to_json(const Record& record) {
   json["octree"] = octree_json(record.run);
   json["solve"] = solve_json(record.run);
   json["isovalue"] = record.run.isovalue;
+  if (record.options.trim > 0) json["trim"] = trim_json(record.run.trim);
   json["mesh"] = mesh_json(record.mesh);
   json["ms"] = ms_json(record);
   if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
@@ -92,6 +106,11 @@ std::string summary(const Record& record) {
       record.points - record.dropped, run.depth, record.mesh.triangles, run.octree_ms, function_ms, run.extract_ms,
       record.total_ms, format_bytes(static_cast<double>(run.device_peak_bytes)),
       format_bytes(static_cast<double>(record.host_peak_bytes)));
+  if (record.options.trim > 0) {
+    const double share = run.trim.area_before > 0 ? run.trim.area_removed / run.trim.area_before : 0;
+    line +=
+        fmt::format("; trimmed {:.1f} % of the area, below {:.4g} points per unit^2", 100 * share, run.trim.density);
+  }
   if (!record.repeat_ms.empty()) {
     const double ms = spread_of(record.repeat_ms).median;
     line +=

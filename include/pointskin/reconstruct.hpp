@@ -39,7 +39,11 @@ struct Options {
   bool density = false;     ///< true: the mesh carries "density", samples per unit of area (world units^-2)
   bool normals = true;      ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;
-  bool residuals = false;             ///< true: measure the residual of every level before and after its solve
+  double trim = 0;  ///< > 0: the mesh ends where samples lie 1.75 times farther apart than at the sparsest samples,
+                    ///< this share of all; in [0, 1); 0: off, the mesh is closed. 0.01 to 0.1 suit open scans
+  double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,
+                                ///< islands are removed and pinholes stay closed; in [0, 1)
+  bool residuals = false;       ///< true: measure the residual of every level before and after its solve
   std::int64_t max_memory_bytes = 0;  ///< refuse to start when the estimate is larger; 0: no limit
 
   /// Called a few times per run from the calling thread; returning false cancels the run (Error interrupted).
@@ -55,6 +59,17 @@ struct LevelReport {
   double residual_after = 0;
 };
 
+/// What Options::trim did. All zero without it.
+struct TrimReport {
+  double density = 0;  ///< samples per unit of area (world units^-2) below which the surface was cut away
+  double area_before = 0, area_removed = 0;  ///< world units^2
+  std::int64_t triangles_before = 0;
+  std::int64_t triangles_removed = 0;  ///< wholly
+  std::int64_t triangles_split = 0;    ///< by the cut, into one or two
+  std::int64_t islands_removed = 0;    ///< kept pieces below Options::island_ratio, which were cut away, too
+  std::int64_t holes_filled = 0;       ///< cut pieces below Options::island_ratio, which were kept
+};
+
 /// What a run did and what it cost. Times are milliseconds on the device's clock.
 struct RunReport {
   std::int64_t points = 0;  ///< points used
@@ -62,6 +77,7 @@ struct RunReport {
   std::int64_t nodes = 0;           ///< cells of all depths
   std::vector<LevelReport> levels;  ///< depth 0 first
   double isovalue = 0;              ///< weighted mean of the field over the samples
+  TrimReport trim;                  ///< with Options::trim
   double upload_ms = 0, octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0, download_ms = 0;
   std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
 };

@@ -18,4 +18,32 @@ PSK_HD inline void set_bits(std::uint32_t* word, std::uint32_t bits) {
 #endif
 }
 
+/// Adds to a word that other threads add to, too.
+PSK_HD inline void add(std::uint64_t* word, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  atomicAdd(reinterpret_cast<unsigned long long*>(word), static_cast<unsigned long long>(value));
+#else
+  std::atomic_ref<std::uint64_t>(*word).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
+/// What is in a word that other threads may be changing.
+PSK_HD inline std::int32_t load(const std::int32_t* word) {
+#ifdef __CUDA_ARCH__
+  return *static_cast<const volatile std::int32_t*>(word);
+#else
+  return std::atomic_ref<std::int32_t>(*const_cast<std::int32_t*>(word)).load(std::memory_order_relaxed);
+#endif
+}
+
+/// Writes `desired` if the word holds `expected`. @returns what it held before
+PSK_HD inline std::int32_t compare_exchange(std::int32_t* word, std::int32_t expected, std::int32_t desired) {
+#ifdef __CUDA_ARCH__
+  return atomicCAS(word, expected, desired);
+#else
+  std::atomic_ref<std::int32_t>(*word).compare_exchange_strong(expected, desired, std::memory_order_relaxed);
+  return expected;
+#endif
+}
+
 }  // namespace pointskin::exec

@@ -12,8 +12,9 @@
 #include <numeric>
 #include <vector>
 
+#include "exec/algorithms.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "mesh/disjoint_sets.hpp"
+#include "exec/disjoint_sets.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/vec3d.hpp"
 
@@ -22,8 +23,8 @@ namespace {
 
 using exec::Buffer;
 using exec::Cpu;
+using exec::DisjointSets;
 using mesh_detail::cross;
-using mesh_detail::DisjointSets;
 using mesh_detail::dot;
 using mesh_detail::minus;
 using mesh_detail::to_double;
@@ -200,7 +201,8 @@ MeshReport measure(const Mesh& mesh, int threads) {
   report.vertices = static_cast<std::int64_t>(mesh.vertices.size());
   report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
 
-  const DisjointSets sets(ex, report.vertices);
+  const Buffer<std::int32_t> parents = exec::iota(ex, report.vertices);
+  const DisjointSets sets{parents.view()};
   exec::for_each(ex, "components", report.triangles, [&](std::int64_t i) {
     const Triangle& t = mesh.triangles[static_cast<std::size_t>(i)];
     sets.unite(t[0], t[1]);

@@ -15,6 +15,7 @@ constexpr std::int64_t kSorted = 24;               // position in the cube, norm
 constexpr std::int64_t kKey = 8;
 constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
 constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
+constexpr std::int64_t kSpacing = 16;               // trimming: key, and both again
 
 // Bytes a brick.
 constexpr std::int64_t kBrick = 121;             // key, parent, 27 neighbours, unknowns
@@ -36,6 +37,8 @@ constexpr std::int64_t kPosition = 12;  // as large as a normal
 constexpr std::int64_t kTriangle = 12;
 constexpr std::int64_t kVertexKey = 8;
 constexpr std::int64_t kOrder = 4;
+constexpr std::int64_t kSides = 5;       // trimming: spacing, whether it stays
+constexpr std::int64_t kPieces = 4 + 8;  // trimming: piece, its area
 
 /// Nodes a vertex: 6 to 9 for scans and common shapes, whose nodes are a band of cells around the surface; 4 where the
 /// surface fills the cube like a sponge. Meshes have two triangles a vertex.
@@ -70,7 +73,15 @@ struct Model {
   [[nodiscard]] std::int64_t tree() const {
     return kBrick * bricks + kChildren * (bricks - level(depth()).bricks) + kPointRanges * cell_bricks;
   }
-  [[nodiscard]] std::int64_t kept_counts() const { return options.density ? kNodeValue * counted_bricks : 0; }
+  [[nodiscard]] bool trims() const { return options.trim > 0; }
+  [[nodiscard]] std::int64_t kept_counts() const {
+    return options.density || trims() ? kNodeValue * counted_bricks : 0;
+  }
+  [[nodiscard]] std::int64_t vertices() const { return 8 * bricks / kNodesPerVertex; }
+  [[nodiscard]] std::int64_t vertex() const { return options.normals || trims() ? 2 * kPosition : kPosition; }
+  [[nodiscard]] std::int64_t mesh() const { return (vertex() + kTrianglesPerVertex * kTriangle) * vertices(); }
+  /// The solved field.
+  [[nodiscard]] std::int64_t field() const { return tree() + kept_counts() + kNodeValue * bricks; }
 
   [[nodiscard]] std::int64_t sort() const { return kSorting * points; }
 
@@ -110,13 +121,22 @@ struct Model {
 
   /// The largest of: marks with their counts and sums; the mesh as it is made; the mesh as its vertices are sorted.
   [[nodiscard]] std::int64_t extract() const {
-    const std::int64_t vertices = 8 * bricks / kNodesPerVertex;
-    const std::int64_t vertex = options.normals ? 2 * kPosition : kPosition;
-    const std::int64_t mesh = (vertex + kTrianglesPerVertex * kTriangle) * vertices;
     const std::int64_t mark = (kMarks + 2 * kNumbering) * bricks;
-    const std::int64_t make = mesh + kVertexKey * vertices + (kMarks + kNumbering) * bricks;
-    const std::int64_t sort = mesh + (std::max(2 * kVertexKey + kOrder, vertex) + kOrder) * vertices;
-    return tree() + kept_counts() + kNodeValue * bricks + std::max({mark, make, sort});
+    const std::int64_t make = mesh() + kVertexKey * vertices() + (kMarks + kNumbering) * bricks;
+    const std::int64_t sort = mesh() + (std::max(2 * kVertexKey + kOrder, vertex()) + kOrder) * vertices();
+    return field() + std::max({mark, make, sort});
+  }
+
+  /// Spacing at the samples.
+  [[nodiscard]] std::int64_t trim_limit() const {
+    return trims() ? (kWeighed + kSpacing) * points + tree() + kept_counts() : 0;
+  }
+
+  /// The larger of: pieces and their areas; the triangles that stay, as if all did.
+  [[nodiscard]] std::int64_t trim() const {
+    if (!trims()) return 0;
+    const std::int64_t stay = 2 * kOrder + kTrianglesPerVertex * (kOrder + kTriangle);
+    return field() + mesh() + (kSides + std::max(kPieces, stay)) * vertices();
   }
 };
 
@@ -124,14 +144,10 @@ struct Model {
 
 std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options) {
   const Model model(size, options);
-  return {{"sort", model.sort()},
-          {"find bricks", model.find_bricks()},
-          {"build tree", model.build_tree()},
-          {"density", model.density()},
-          {"splat", model.splat()},
-          {"solve", model.solve()},
-          {"isovalue", model.isovalue()},
-          {"extract", model.extract()}};
+  return {{"sort", model.sort()},       {"find bricks", model.find_bricks()}, {"build tree", model.build_tree()},
+          {"density", model.density()}, {"trim limit", model.trim_limit()},   {"splat", model.splat()},
+          {"solve", model.solve()},     {"isovalue", model.isovalue()},       {"extract", model.extract()},
+          {"trim", model.trim()}};
 }
 
 std::int64_t uploaded_bytes(std::int64_t points) { return kUploaded * points; }

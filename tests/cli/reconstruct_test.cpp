@@ -204,6 +204,50 @@ TEST_F(ReconstructCommand, OpenLeavesAHalfSphereOpenAndClosedDoesNot) {
   EXPECT_EQ(open.exit_code, 0) << open.err;
 }
 
+TEST_F(ReconstructCommand, TrimCutsAHalfSphereOpenAndReportsIt) {
+  std::vector<Sample> half = sphere(20'000);
+  std::erase_if(half, [](const Sample& s) { return s.position.z > 0; });
+  write_file(input_, ply_bytes(half));
+  EXPECT_FALSE(report_with({}).contains("trim"));
+  const Json report = report_with({"--trim", "0.3", "--island-ratio", "0.002"});
+  EXPECT_EQ(schema_violations(Json::parse(read_file(POINTSKIN_SOURCE_DIR "/docs/report.schema.json")), report),
+            std::vector<std::string>{});
+  EXPECT_EQ(report["options"]["trim"], 0.3);
+  EXPECT_EQ(report["options"]["island_ratio"], 0.002);
+  EXPECT_FALSE(report["mesh"]["closed"]);
+  EXPECT_TRUE(report["mesh"]["manifold"]);
+  EXPECT_EQ(report["mesh"]["euler"], 1);
+  EXPECT_GT(report["trim"]["triangles_removed"], 0);
+  const MeshReport mesh = measure(read_mesh(output_));
+  EXPECT_NEAR(mesh.area, 2 * std::acos(-1.0), 0.6);
+  EXPECT_NEAR(mesh.area, report["trim"]["area_before"].get<double>() - report["trim"]["area_removed"].get<double>(),
+              1e-3);
+  EXPECT_EQ(pointskin_run({"check", output_}).exit_code, 5) << "it is not watertight";
+  EXPECT_NE(reconstruct({"--trim", "0.3"}).err.find("trimmed"), std::string::npos);
+}
+
+TEST_F(ReconstructCommand, TrimLeavesAClosedSphereAndChecksItsRange) {
+  EXPECT_EQ(bytes_with({"--depth", "5", "--trim", "0.01"}), bytes_with({"--depth", "5"}));
+  for (const char* option : {"--trim", "--island-ratio"})
+    for (const char* bad : {"1", "-0.1", "nan", "much"})
+      EXPECT_EQ(pointskin_run({"reconstruct", input_, "-o", output_, option, bad}).exit_code, 2) << option << bad;
+}
+
+/// A spot with most of the points, which is too small to stay.
+TEST_F(ReconstructCommand, TrimmingAllAwayIsAnEmptyResult) {
+  std::vector<Sample> samples = sphere(5000);
+  const std::vector<Sample> fine = sphere(400'000);
+  for (const Sample& s : fine)
+    if (s.position.z > 0.99)
+      for (int copy = 0; copy < 10; ++copy) samples.push_back(s);
+  write_file(input_, ply_bytes(samples));
+  std::filesystem::remove(output_);
+  const Result result = reconstruct({"--trim", "0.9", "--island-ratio", "0.2"});
+  EXPECT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_NE(result.err.find("trim"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(output_));
+}
+
 TEST_F(ReconstructCommand, LinearFitCanBeSwitched) {
   const std::string expected = bytes_with({"--depth", "5"});
   EXPECT_EQ(bytes_with({"--depth", "5", "--linear-fit", "off"}), expected);

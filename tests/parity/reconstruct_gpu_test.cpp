@@ -47,6 +47,12 @@ class Gpu : public testing::Test {
     expect_same_bytes(on_gpu.reconstruct(cloud, options), expected);
     EXPECT_EQ(on_gpu.report().isovalue, on_cpu.report().isovalue);
     EXPECT_EQ(on_gpu.report().nodes, on_cpu.report().nodes);
+    const TrimReport& trimmed = on_gpu.report().trim;
+    EXPECT_EQ(trimmed.density, on_cpu.report().trim.density);
+    EXPECT_EQ(trimmed.area_removed, on_cpu.report().trim.area_removed);
+    EXPECT_EQ(trimmed.triangles_split, on_cpu.report().trim.triangles_split);
+    EXPECT_EQ(trimmed.islands_removed, on_cpu.report().trim.islands_removed);
+    EXPECT_EQ(trimmed.holes_filled, on_cpu.report().trim.holes_filled);
     ASSERT_EQ(on_gpu.report().levels.size(), on_cpu.report().levels.size());
     for (std::size_t d = 0; d < on_cpu.report().levels.size(); ++d) {
       EXPECT_EQ(on_gpu.report().levels[d].nodes, on_cpu.report().levels[d].nodes) << "level " << d;
@@ -110,9 +116,11 @@ std::vector<Options> options_to_try() {
   all.push_back({.depth = 7, .normals = false});
   all.push_back({.depth = 7, .domain_faces = DomainFaces::open});
   all.push_back({.depth = 7, .residuals = true});
+  all.push_back({.depth = 7, .trim = 0.3});
+  all.push_back({.depth = 7, .density = true, .normals = false, .trim = 0.9, .island_ratio = 0});
   return all;
 }
-constexpr int kOptions = 15;
+constexpr int kOptions = 17;
 
 class GpuWithOptions : public Gpu, public testing::WithParamInterface<int> {};
 
@@ -123,6 +131,18 @@ TEST_P(GpuWithOptions, GivesTheSameBytesAsTheCpu) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryOption, GpuWithOptions, testing::Range(0, kOptions));
+
+TEST_P(GpuOnCloud, TrimsToTheSameBytesAsTheCpu) {
+  const auto [number, depth] = GetParam();
+  const NamedCloud c = cloud_number(number);
+  SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
+  const auto cpu_error =
+      test::error_of([&] { (void)test::reconstructed(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01}); });
+  const auto gpu_error = test::error_of(
+      [&] { (void)Reconstructor(gpu_).reconstruct(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01}); });
+  EXPECT_EQ(gpu_error, cpu_error);
+  if (!cpu_error) expect_parity(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01});
+}
 
 TEST_F(Gpu, EndsTinyCloudsAsTheCpuDoes) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -217,6 +237,13 @@ TEST_P(GpuOnScan, GivesTheSameBytesAsTheCpu) {
   const auto cloud = test::shared_cloud(name);
   if (!cloud) GTEST_SKIP() << "no " << name << " in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
   expect_parity(*cloud, {.depth = depth});
+}
+
+TEST_P(GpuOnScan, TrimsToTheSameBytesAsTheCpu) {
+  const auto [name, depth] = GetParam();
+  const auto cloud = test::shared_cloud(name);
+  if (!cloud) GTEST_SKIP() << "no " << name << " in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
+  expect_parity(*cloud, {.depth = depth, .trim = 0.1});
 }
 
 INSTANTIATE_TEST_SUITE_P(PublicScans, GpuOnScan,

@@ -110,6 +110,14 @@ TEST(MemoryEstimate, FollowsTheOptions) {
   expect_good_estimate(cloud, {.depth = 8, .density = true, .normals = false}, "density, no normals");
 }
 
+TEST(MemoryEstimate, IsWithin15PercentWhenTrimming) {
+  for (const int depth : {5, 7, 8}) {
+    expect_good_estimate(test::plane_cloud(60'000, 20), {.depth = depth, .trim = 0.05}, "plane");
+    expect_good_estimate(test::torus_cloud(60'000, 21), {.depth = depth, .trim = 0.01}, "torus");
+    expect_good_estimate(test::plane_cloud(500'000, 22), {.depth = depth, .normals = false, .trim = 0.05}, "plane");
+  }
+}
+
 TEST(MemoryEstimate, IsWithin15PercentWherePointsShareTheirPlaces) {
   const Cloud once = test::sphere_cloud(100'000, 16);
   Cloud cloud = once;

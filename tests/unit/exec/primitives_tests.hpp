@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "exec/disjoint_sets.hpp"
 #include "support/spaces.hpp"
 
 namespace pointskin::test {
@@ -333,6 +334,61 @@ TYPED_TEST_P(Primitives, MoreBytesThan64BitsCountIsOverTheLimit) {
   expect_over_limit(this->space(), std::int64_t{1} << 61);  // 2^64 bytes
 }
 
+/// Joins i with another index of the same residue, chosen without structure.
+struct UniteResidues {
+  exec::DisjointSets sets;
+  std::int64_t residues;
+  PSK_HD void operator()(std::int64_t i) const {
+    const std::int64_t n = sets.parents.size;
+    const auto other = static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) % static_cast<std::uint64_t>(n));
+    const std::int64_t same = other - other % residues + i % residues;
+    const std::int64_t before = i - residues;
+    if (same < n) sets.unite(static_cast<std::int32_t>(same), static_cast<std::int32_t>(i));
+    if (before >= 0) sets.unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(before));
+  }
+};
+struct StoreRoot {
+  exec::DisjointSets sets;
+  ArrayView<std::int32_t> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = sets.root(static_cast<std::int32_t>(i)); }
+};
+
+TYPED_TEST_P(Primitives, DisjointSetsEndAtTheirSmallestMembers) {
+  auto& ex = this->space();
+  for (const std::int64_t n : {1, 2, 129, 65'537, 1'000'000})
+    for (const std::int64_t residues : {1, 2, 1000}) {
+      const auto parents = exec::iota(ex, n);
+      const exec::DisjointSets sets{parents.view()};
+      for_each(ex, "test", n, UniteResidues{sets, residues});
+      auto roots = exec::make_buffer<std::int32_t>(ex, n);
+      for_each(ex, "test", n, StoreRoot{sets, roots.view()});
+      std::vector<std::int32_t> expected = counted(n);
+      for (std::int32_t& root : expected) root = static_cast<std::int32_t>(root % residues);
+      expect_same(to_host(ex, roots), expected);
+    }
+}
+
+/// All indices add to a few words.
+struct AddHashes {
+  ArrayView<std::uint64_t> words;
+  PSK_HD void operator()(std::int64_t i) const {
+    exec::add(words.data + i % words.size, hash(static_cast<std::uint64_t>(i)));
+  }
+};
+
+TYPED_TEST_P(Primitives, AddToSharedWordsWithoutLosingAny) {
+  auto& ex = this->space();
+  constexpr std::int64_t kCount = 300'000;
+  for (const std::int64_t words : {1, 7, 1000}) {
+    auto sums = exec::make_buffer<std::uint64_t>(ex, words);
+    exec::fill<std::uint64_t>(ex, sums.view(), 0);
+    for_each(ex, "test", kCount, AddHashes{sums.view()});
+    std::vector<std::uint64_t> expected(index(words));
+    for (std::int64_t i = 0; i < kCount; ++i) expected[index(i % words)] += hash(static_cast<std::uint64_t>(i));
+    expect_same(to_host(ex, sums), expected);
+  }
+}
+
 TYPED_TEST_P(Primitives, BuffersMoveTheirMemoryAndKeepTheirPool) {
   auto& ex = this->space();
   exec::Buffer<std::int32_t> a = upload(ex, counted(100));
@@ -367,6 +423,7 @@ REGISTER_TYPED_TEST_SUITE_P(Primitives, CallEveryIndexOnce, SelectKeptIndicesInA
                             SortPairsStably, SortPairsByTheirLowestBitsAlone, SortPairsWhoseKeysAgreeInSomeDigits,
                             SortKeys, SortKeysByTheirLowestBitsAlone, CopyToTheSpaceWithinItAndBack, FillGatherAndCount,
                             ReduceByTheDocumentedTree, FindWhereRunsStart, SortUniqueLeavesEveryKeyOnce,
+                            DisjointSetsEndAtTheirSmallestMembers, AddToSharedWordsWithoutLosingAny,
                             PoolsCountWhatIsHeldAndItsPeak, MoreMemoryThanThereIsIsOverTheLimit,
                             MoreBytesThan64BitsCountIsOverTheLimit, BuffersMoveTheirMemoryAndKeepTheirPool);
 

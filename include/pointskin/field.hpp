@@ -34,8 +34,8 @@ class Field {
   [[nodiscard]] std::vector<float> values(const std::vector<Vec3d>& points_world) const;
 
   /// The level set u = isovalue() as a 2-manifold, outward-oriented mesh with vertices in Morton order, closed
-  /// unless Options::domain_faces is open.
-  /// @throws Error empty_result if nothing crosses the isovalue
+  /// unless Options::domain_faces is open or Options::trim cuts it: new vertices at the cut then come last.
+  /// @throws Error empty_result if nothing crosses the isovalue, or nothing is left after Options::trim
   [[nodiscard]] Mesh extract() const;
 
  private:

@@ -52,11 +52,9 @@ void define_surface(CLI::App& command, ReconstructArgs& args) {
       ->group("Surface");
   command.add_flag("--open", args.open, "leave the surface open at the cube's faces, instead of closed")
       ->group("Surface");
-  add_value(command, "--trim", options.trim,
-            "cut where samples lie 1.75 times farther apart than this share's sparsest, 0 (off) to below 1")
+  add_value(command, "--trim", options.trim, "cut where samples end: share that counts as sparse, 0 (off) to below 1")
       ->type_name("Q");
-  add_value(command, "--island-ratio", options.island_ratio,
-            "with --trim: pieces below this share of the area change sides, 0 to below 1")
+  add_value(command, "--island-ratio", options.island_ratio, "trim: smallest piece, share of the area, 0 to below 1")
       ->type_name("R");
   command.add_flag("--density", options.density, "add the property density, points per world unit^2")->group("Surface");
   command.add_flag("--no-normals", args.no_normals, "leave vertex normals out of the mesh")->group("Surface");

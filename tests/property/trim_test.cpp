@@ -245,6 +245,36 @@ TEST(Trim, OfScansLeavesAManifoldWithABorder) {
   }
 }
 
+TEST(Trim, OfTinyCloudsEndsInAManifoldOrAnEmptyResult) {
+  int meshes = 0;
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    test::Random random(seed);
+    Cloud cloud;
+    for (std::int64_t i = 1 + random.below(60); i > 0; --i) {
+      const Vec3d p = random.direction();
+      const Vec3d n = random.direction();
+      cloud.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+      cloud.normals.push_back({static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])});
+    }
+    const Options options{.depth = 1 + static_cast<int>(random.below(9)),
+                          .scale = seed % 5 == 0 ? 1.0 : 1.1,
+                          .domain_faces = seed % 3 == 0 ? DomainFaces::open : DomainFaces::closed,
+                          .trim = random.in(0.001, 0.999),
+                          .island_ratio = seed % 2 == 0 ? 0 : random.in(0, 0.5)};
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", depth " + std::to_string(options.depth));
+    const auto code = error_of([&] {
+      const MeshReport report = measure(run(cloud, options, 1).mesh);
+      EXPECT_TRUE(report.manifold());
+      EXPECT_TRUE(report.oriented());
+      EXPECT_EQ(report.used_vertices, report.vertices);
+      EXPECT_GT(report.triangles, 0);
+    });
+    EXPECT_EQ(code.value_or(ErrorCode::empty_result), ErrorCode::empty_result);
+    meshes += code ? 0 : 1;
+  }
+  EXPECT_GT(meshes, 75);
+}
+
 TEST(Trim, IsCheckedToBeAShareBelowOne) {
   for (const double bad : {-0.1, 1.0, 7.0, std::nan("")}) {
     EXPECT_EQ(error_of([&] { validate({.trim = bad}); }), ErrorCode::usage) << bad;

@@ -15,7 +15,8 @@ constexpr std::int64_t kSorted = 24;               // position in the cube, norm
 constexpr std::int64_t kKey = 8;
 constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
 constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
-constexpr std::int64_t kSpacing = 16;               // trimming: key, and both again
+constexpr std::int64_t kTrust = 4;
+constexpr std::int64_t kSpacing = 16;  // trimming: key, and both again
 
 // Bytes a brick.
 constexpr std::int64_t kBrick = 121;             // key, parent, 27 neighbours, unknowns
@@ -104,7 +105,8 @@ struct Model {
 
   /// The vector field, as if there were samples for the coarsest levels too, and its divergence.
   [[nodiscard]] std::int64_t splat() const {
-    return kWeighed * points + tree() + kept_counts() + 4 * kNodeValue * bricks;
+    const bool trusts = options.screening > 0 && !options.fixed_screening;
+    return (kWeighed + (trusts ? kTrust : 0)) * points + tree() + kept_counts() + 4 * kNodeValue * bricks;
   }
 
   /// Divergence and solution of all levels; the other solution of one level.

@@ -19,6 +19,7 @@
 #include "poisson/divergence.hpp"
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
+#include "poisson/trust.hpp"
 #include "reconstruct_engine.hpp"
 #include "surface/extract.hpp"
 #include "trim_to_samples.hpp"
@@ -106,10 +107,12 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
   poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
   if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
   if (!options.density && options.trim == 0) field.density.counts.reset();
+  if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view());
   samples.normals.reset();
   poisson::Screening screening;
   if (options.screening > 0) screening = poisson::collapse_samples(ex, field.tree, samples.view());
+  samples.trust.reset();
   clock.lap(report.splat_ms);
 
   const auto before_level = [&](int depth) {  // every level costs about four times the one before
@@ -130,13 +133,18 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
   return field;
 }
 
+/// Share of curvature that a crossing takes (surface/edge_vertex.hpp). The screening pulls the trilinear function to
+/// the samples, whose own crossing is linear; the smooth function that it stands for is curved. Halfway is nearest to
+/// the surface (docs/decisions/0017-noise-and-smoothness.md).
+inline constexpr float kCurvature = 0.5F;
+
 /// Implicit function to mesh, on the device.
 /// @param trimmed  receives what was cut, with Options::trim
 template <exec::Space Exec>
 surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, TrimReport& trimmed) {
   const bool trim = options.trim > 0;  // which needs normals
-  surface::Surface surface =
-      surface::extract_surface(ex, field.view(options.domain_faces), {options.linear_fit, options.normals || trim});
+  surface::Surface surface = surface::extract_surface(ex, field.view(options.domain_faces),
+                                                      {options.linear_fit ? 0 : kCurvature, options.normals || trim});
   if (!trim) return surface;
   surface::TrimCounts counts;
   surface = trim_to_samples(ex, field.tree, field.density, std::move(surface), {field.trim_limit, options.island_ratio},

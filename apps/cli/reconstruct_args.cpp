@@ -48,6 +48,8 @@ void define_surface(CLI::App& command, ReconstructArgs& args) {
       ->type_name("N");
   command.add_flag("--confidence", args.confidence, "the length of a normal is the weight of its point")
       ->group("Surface");
+  command.add_flag("--fixed-screening", options.fixed_screening, "weigh all points alike, however much they scatter")
+      ->group("Surface");
   command.add_flag("--linear-fit", options.linear_fit, "place vertices by linear interpolation (also =on, =off)")
       ->group("Surface");
   command.add_flag("--open", args.open, "leave the surface open at the cube's faces, instead of closed")

@@ -22,6 +22,7 @@ Json options_json(const Record& record) {
                {"scale", options.scale},
                {"samples_per_node", options.samples_per_node},
                {"confidence", options.confidence},
+               {"fixed_screening", options.fixed_screening},
                {"linear_fit", options.linear_fit},
                {"density", options.density},
                {"normals", options.normals},

@@ -29,9 +29,11 @@ struct Progress {
 struct Options {
   int depth = 8;         ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
   double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
-  int iterations = 8;    ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
-                         ///< max(this, twice their cells along an axis)
-  double scale = 1.1;    ///< working cube / bounding cube of the points, in [1, 100]
+  bool fixed_screening = false;  ///< true: all samples weigh alike; false: samples that scatter across the surface
+                                 ///< weigh less, those that agree more (0.05 to 3.1 times `screening`)
+  int iterations = 8;  ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
+                       ///< max(this, twice their cells along an axis)
+  double scale = 1.1;  ///< working cube / bounding cube of the points, in [1, 100]
   double samples_per_node =
       1.5;  ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
   bool confidence = false;  ///< true: a normal's length, relative to the mean length, is the weight of its point

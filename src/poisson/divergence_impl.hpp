@@ -154,13 +154,14 @@ struct SplatToBricks {
 #endif
 };
 
-/// Coefficients of the divergence over single cells: [axis][corner i][corner j], the integral over a unit cell of
-/// phi_j d phi_i / d axis.
+/// Coefficients of the divergence over single cells: [axis][corner i][corner j] of D S S and its permutations. With M
+/// in place of S they would be the integral over a unit cell of phi_j d phi_i / d axis; S also averages across the
+/// axis.
 struct Coefficients {
   float element[3][8][8];
 };
 constexpr Coefficients make_coefficients() {
-  constexpr double kMass[2][2] = {{2 / 6.0, 1 / 6.0}, {1 / 6.0, 2 / 6.0}};
+  constexpr double kSpread[2][2] = {{1 / 6.0, 2 / 6.0}, {2 / 6.0, 1 / 6.0}};
   Coefficients c{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 8; ++i)
@@ -169,31 +170,32 @@ constexpr Coefficients make_coefficients() {
         for (int a = 0; a < 3; ++a) {
           const int bi = i >> (2 - a) & 1;
           const int bj = j >> (2 - a) & 1;
-          product *= a == static_cast<int>(axis) ? (bi != 0 ? 0.5 : -0.5) : kMass[bi][bj];
+          product *= a == static_cast<int>(axis) ? (bi != 0 ? 0.5 : -0.5) : kSpread[bi][bj];
         }
         c.element[axis][i][j] = static_cast<float>(product);
       }
   return c;
 }
 
-/// D M M and its permutations around a corner whose 8 cells are all leaves; v(x, y, z) at offsets -1, 0, 1.
+/// D S S and its permutations around a corner whose 8 cells are all leaves; v(x, y, z) at offsets -1, 0, 1.
 template <class Values>
 PSK_HD PSK_INLINE auto divergence_inside(int axis, const Values& v) {
   using Float = std::decay_t<decltype(v(0, 0, 0))>;
-  constexpr auto kEnd = static_cast<float>(kAxisRows.mass[0][0]);
-  constexpr auto kMiddle = static_cast<float>(kAxisRows.mass[0][1]);
-  constexpr auto kDerivative = static_cast<float>(kAxisRows.derivative[0][2]);
+  constexpr auto kWeight =
+      static_cast<float>(kAxisRows.derivative[0][2] * kAxisRows.spread[0][0] * kAxisRows.spread[0][0]);
   static_assert(kAxisRows.derivative[0][1] == 0 && kAxisRows.derivative[0][0] == -kAxisRows.derivative[0][2]);
-  const auto mass = [](const Float(&u)[3]) { return kEnd * (u[0] + u[2]) + kMiddle * u[1]; };
+  static_assert(nearly(kAxisRows.spread[0][0], kAxisRows.spread[0][1]) &&
+                nearly(kAxisRows.spread[0][0], kAxisRows.spread[0][2]));
+  const auto sum = [](const Float(&u)[3]) { return (u[0] + u[2]) + u[1]; };
   Float along[3];
   PSK_UNROLL for (int j = -1; j <= 1; ++j) {
     Float slope[3];
     PSK_UNROLL for (int k = -1; k <= 1; ++k) slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
                                                             : axis == 1 ? v(j, 1, k) - v(j, -1, k)
                                                                         : v(j, k, 1) - v(j, k, -1);
-    along[j + 1] = mass(slope);
+    along[j + 1] = sum(slope);
   }
-  return kDerivative * mass(along);
+  return kWeight * sum(along);
 }
 
 /// Sum over the leaf cells around a corner of their element matrices' rows. Bit t of `leaves`: the cell at offset

@@ -64,7 +64,8 @@ struct CollapsePoints {
 
   PSK_HD float weight(std::int32_t p) const {
     const int sparser = level.depth - samples.splat_depths[p];
-    return samples.areas[p] / static_cast<float>(sparser > 0 ? std::int64_t{1} << 2 * sparser : 1);
+    const float area = samples.areas[p] / static_cast<float>(sparser > 0 ? std::int64_t{1} << 2 * sparser : 1);
+    return samples.trust.empty() ? area : samples.trust[p] * area;
   }
 };
 

@@ -4,6 +4,8 @@
 //   mass        M = h / 6 [ 2  1;  1  2]
 //   stiffness   K = 1 / h [ 1 -1; -1  1]
 //   derivative  D[i][j] = integral phi_j phi_i' = 1 / 2 [-1 -1; 1 1]
+//   spread      S = h / 6 [ 1  2;  2  1]: the mass matrix with the ends of its columns exchanged. Summed, its row takes
+//               the mean of a corner and its two neighbours (docs/decisions/0017-noise-and-smoothness.md)
 // Summed over the cells around a corner, tensor products of these give operators on the 27 corners around it.
 // Everything is in units of h: the Laplacian is divided by h, the divergence by h^2. Source: Zhou et al. 2010,
 // section 4.1 (the same products for hats at cell centres).
@@ -23,12 +25,13 @@ using Row = std::array<double, 3>;
 
 /// One-dimensional rows, one per AxisSide.
 struct AxisRows {
-  std::array<Row, 3> mass, stiffness, derivative;
+  std::array<Row, 3> mass, stiffness, derivative, spread;
 };
 
 /// Assembles the rows of a corner from the element matrices of the cells that exist around it.
 constexpr AxisRows make_axis_rows() {
   constexpr double kMass[2][2] = {{2 / 6.0, 1 / 6.0}, {1 / 6.0, 2 / 6.0}};
+  constexpr double kSpread[2][2] = {{1 / 6.0, 2 / 6.0}, {2 / 6.0, 1 / 6.0}};
   constexpr double kStiffness[2][2] = {{1, -1}, {-1, 1}};
   constexpr double kDerivative[2][2] = {{-0.5, -0.5}, {0.5, 0.5}};
   AxisRows rows{};
@@ -40,11 +43,13 @@ constexpr AxisRows make_axis_rows() {
         rows.mass[side][other] += kMass[1][other];
         rows.stiffness[side][other] += kStiffness[1][other];
         rows.derivative[side][other] += kDerivative[1][other];
+        rows.spread[side][other] += kSpread[1][other];
       }
       if (has_upper) {  // and end 0 of its upper cell, whose ends are at 0 and +1
         rows.mass[side][other + 1] += kMass[0][other];
         rows.stiffness[side][other + 1] += kStiffness[0][other];
         rows.derivative[side][other + 1] += kDerivative[0][other];
+        rows.spread[side][other + 1] += kSpread[0][other];
       }
     }
   }
@@ -65,11 +70,11 @@ constexpr double laplacian_coefficient(const std::array<std::size_t, 3>& sides, 
   return sum;
 }
 
-/// Divergence coefficient along `axis`: D M M and its permutations.
+/// Divergence coefficient along `axis`: D S S and its permutations.
 constexpr double divergence_coefficient(std::size_t axis, const std::array<std::size_t, 3>& at) {
   double product = 1;
   for (std::size_t other = 0; other < 3; ++other)
-    product *= (other == axis ? kAxisRows.derivative : kAxisRows.mass)[0][at[other]];
+    product *= (other == axis ? kAxisRows.derivative : kAxisRows.spread)[0][at[other]];
   return product;
 }
 

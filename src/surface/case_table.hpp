@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "core/host_device.hpp"
+
 namespace pointskin::surface {
 
 /// Triangles of one of the 256 cases. Edges are numbered axis * 4 + side_b * 2 + side_c (CellTracer::edge_bit).
@@ -12,6 +14,12 @@ struct Case {
 
   std::uint8_t triangles = 0;
   std::uint8_t edges[3 * kMaxTriangles] = {};
+
+  /// True for a single quadrilateral, with the corners edges[3], edges[0], edges[1], edges[2] in order. Neither of its
+  /// diagonals lies in a face of the cell.
+  [[nodiscard]] PSK_HD constexpr bool is_quadrilateral() const {
+    return triangles == 2 && edges[0] == edges[4] && edges[2] == edges[5];
+  }
 };
 static_assert(sizeof(Case) == 16);
 

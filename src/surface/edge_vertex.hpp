@@ -49,7 +49,8 @@ PSK_HD inline float quadratic_root(float u0, float s0, float d) {
 
 /// Parameter in (0, 1) of the crossing. With neighbours on both sides, slopes from central differences, rescaled so
 /// that their mean is the difference of the ends, give a quadratic; else linear interpolation.
-PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedEdge& e, bool linear_fit) {
+/// @param curvature  share of the quadratic's second derivative that is taken, 0: linear
+PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedEdge& e, float curvature) {
   const float u0 = f.value(e.level, e.start) - f.isovalue;
   const float u1 = f.value(e.level, e.end) - f.isovalue;
   // Closed at the cube's faces: a corner there counts as outside whatever its value, and the cap lies next to it.
@@ -59,11 +60,11 @@ PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedE
   }
   const float d = u1 - u0;
   float t = -u0 / d;
-  if (!linear_fit && e.before >= 0 && e.after >= 0) {
+  if (curvature > 0 && e.before >= 0 && e.after >= 0) {
     const float s0 = 0.5F * (u1 - (f.value(e.level, e.before) - f.isovalue));
     const float s1 = 0.5F * ((f.value(e.level, e.after) - f.isovalue) - u0);
     const float mean = 0.5F * (s0 + s1);
-    if (mean != 0) t = quadratic_root(u0, s0 * (d / mean), d);
+    if (mean != 0) t = quadratic_root(u0, d + curvature * (s0 * (d / mean) - d), d);
   }
   return t < kCrossingMargin ? kCrossingMargin : t > 1 - kCrossingMargin ? 1 - kCrossingMargin : t;
 }

@@ -15,8 +15,8 @@
 namespace pointskin::surface {
 
 struct ExtractOptions {
-  bool linear_fit = false;  ///< crossings by linear instead of rescaled quadratic interpolation
-  bool normals = true;      ///< vertex normals from the field's gradient
+  float curvature = 1;  ///< crossings by the rescaled quadratic with this share of its curvature; 0: linear
+  bool normals = true;  ///< vertex normals from the field's gradient
 };
 
 /// A mesh in the space it was made in.

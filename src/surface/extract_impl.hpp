@@ -118,7 +118,7 @@ struct ListItems {
 /// A vertex on an edge that ListItems has noted.
 struct EmitVertex {
   field::FieldView f;
-  bool linear_fit;
+  float curvature;
   MeshView mesh;
 
   PSK_HD void operator()(std::int64_t vertex) const {
@@ -129,7 +129,7 @@ struct EmitVertex {
 
   PSK_HD void emit(const EdgeOwner& owner, std::int32_t vertex) const {
     const CrossedEdge edge = crossed_edge(f.tree, owner);
-    const float t = crossing_parameter(f, edge, linear_fit);
+    const float t = crossing_parameter(f, edge, curvature);
     const octree::LevelView& l = f.tree.levels[owner.level];
     const octree::Coordinates c = octree::decode(l.node_key(owner.node));
     const float width = 1.0F / static_cast<float>(1 << owner.level);
@@ -153,20 +153,47 @@ struct VertexLookup {
   }
 };
 
-/// A triangle of a leaf without finer neighbours that ListItems has noted.
+/// A triangle of a leaf without finer neighbours that ListItems has noted. Needs all positions.
 struct EmitTriangle {
   field::FieldView f;
   const Case* cases;
   VertexLookup vertex_on;
-  ArrayView<Triangle> triangles;
+  MeshView mesh;
 
   PSK_HD void operator()(std::int64_t t) const {
-    const std::int32_t* item = triangles[t].data();
+    const std::int32_t* item = mesh.triangles[t].data();
     const Place place = place_of(f.tree, item[0]);
     const LeafCell cell(f, place.level, place.node);
-    const std::uint8_t* edges = cases[item[1]].edges + 3 * item[2];
-    triangles[t] = {vertex_on(cell.owner_of_edge(edges[0])), vertex_on(cell.owner_of_edge(edges[1])),
-                    vertex_on(cell.owner_of_edge(edges[2]))};
+    const Case& c = cases[item[1]];
+    if (c.is_quadrilateral()) {
+      mesh.triangles[t] = half_of(cell, place, c, item[2]);
+      return;
+    }
+    const std::uint8_t* edges = c.edges + 3 * item[2];
+    mesh.triangles[t] = {vertex_on(cell.owner_of_edge(edges[0])), vertex_on(cell.owner_of_edge(edges[1])),
+                         vertex_on(cell.owner_of_edge(edges[2]))};
+  }
+
+  /// One of the two triangles of a quadrilateral, cut along the diagonal whose middle is nearer to the surface.
+  [[nodiscard]] PSK_HD Triangle half_of(const LeafCell& cell, const Place& place, const Case& c, int half) const {
+    const std::int32_t a = vertex_on(cell.owner_of_edge(c.edges[3]));
+    const std::int32_t b = vertex_on(cell.owner_of_edge(c.edges[0]));
+    const std::int32_t d = vertex_on(cell.owner_of_edge(c.edges[1]));
+    const std::int32_t e = vertex_on(cell.owner_of_edge(c.edges[2]));
+    if (distance_between(place, a, d) < distance_between(place, b, e))
+      return half == 0 ? Triangle{a, b, d} : Triangle{a, d, e};
+    return half == 0 ? Triangle{b, d, e} : Triangle{a, b, e};
+  }
+
+  /// How far the field is from the isovalue in the middle of two vertices of a cell.
+  [[nodiscard]] PSK_HD float distance_between(const Place& place, std::int32_t a, std::int32_t b) const {
+    const Vec3f p = mesh.positions[a];
+    const Vec3f q = mesh.positions[b];
+    const Vec3f middle{0.5F * (p.x + q.x), 0.5F * (p.y + q.y), 0.5F * (p.z + q.z)};
+    const octree::LevelView& l = f.tree.levels[place.level];
+    const Vec3f local = octree::local_in_cell(middle, octree::decode(l.node_key(place.node)), l.depth);
+    const float off = octree::interpolated(l, f.values + l.first_node, place.node, local) - f.isovalue;
+    return off < 0 ? -off : off;
   }
 };
 
@@ -353,8 +380,8 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   const VertexLookup vertex_on{f.tree, numbering};
   for_each(ex, "extract.list", f.tree.nodes, ListItems{numbering, signs.cview(), mesh});
   signs.reset();
-  for_each(ex, "extract.vertices", low_count(table), EmitVertex{f, options.linear_fit, mesh});
-  for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh.triangles});
+  for_each(ex, "extract.vertices", low_count(table), EmitVertex{f, options.curvature, mesh});
+  for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh});
   for_each_apart(
       ex, "extract.traced", traced.size(),
       EmitTraced{f, vertex_on, traced.cview(), first_traced.cview(), low_count(table), high_count(table), mesh});

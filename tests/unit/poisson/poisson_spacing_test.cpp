@@ -117,7 +117,9 @@ TEST(Spacing, IsContinuousAlongAnyLine) {
           n);
       // Steps are at most 1/2300 of the cube, 1/36 of a cell of the finest counted level; the smallest jump between
       // levels would be of 41 %.
-      if (i > 0) ASSERT_LT(std::abs(here - last), 0.15F * std::min(here, last)) << "line " << line << ", step " << i;
+      if (i > 0) {
+        ASSERT_LT(std::abs(here - last), 0.15F * std::min(here, last)) << "line " << line << ", step " << i;
+      }
       last = here;
     }
   }

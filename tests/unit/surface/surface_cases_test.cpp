@@ -114,6 +114,24 @@ TEST(CaseTable, HasNoDiagonalInAFaceOfTheCell) {
   }
 }
 
+TEST(CaseTable, LetsQuadrilateralsBeCutAlongEitherDiagonal) {
+  int quadrilaterals = 0;
+  for (unsigned corners = 0; corners < 256; ++corners) {
+    const Case& c = cases()[corners];
+    if (!c.is_quadrilateral()) continue;
+    ++quadrilaterals;
+    const std::array<std::uint8_t, 4> loop{c.edges[3], c.edges[0], c.edges[1], c.edges[2]};
+    Case other;
+    other.triangles = 2;
+    const std::array<int, 6> cut{0, 1, 2, 0, 2, 3};
+    for (std::size_t i = 0; i < cut.size(); ++i) other.edges[i] = loop[static_cast<std::size_t>(cut[i])];
+    ASSERT_EQ(boundary_of(other), boundary_of(c)) << "case " << corners;
+    ASSERT_TRUE(common_faces(loop[0], loop[2]).empty()) << "case " << corners;
+    ASSERT_TRUE(common_faces(loop[1], loop[3]).empty()) << "case " << corners;
+  }
+  EXPECT_GE(quadrilaterals, 6 + 12 + 12);  // four corners of a face; the two of an edge, inside or outside
+}
+
 /// (b - a) x (p - a) along `axis`, doubled coordinates.
 int turn(std::size_t axis, const Point& a, const Point& b, const Point& p) {
   const std::size_t u = (axis + 1) % 3;

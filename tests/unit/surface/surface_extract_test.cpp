@@ -51,7 +51,7 @@ const std::vector<PlaneCase>& plane_cases() {
   return cases;
 }
 
-class PlaneExtract : public testing::TestWithParam<bool> {};  // linear_fit
+class PlaneExtract : public testing::TestWithParam<float> {};  // curvature
 
 // A linear function is its own interpolant on all levels and has constant slopes, so both fits find the plane exactly;
 // the values' rounding (2^-24 of about 1) over the slope per edge (at least 2^-7) leaves 2^-17 of an edge.
@@ -60,7 +60,7 @@ TEST_P(PlaneExtract, LiesInThePlaneOfALinearFunctionAcrossAllLevels) {
   for (const PlaneCase& c : plane_cases()) {
     const auto values = test::continuous_values(
         tree.view, test::at_positions([&](const Vec3d& p) { return plane(c.direction, c.offset, p); }));
-    const Mesh mesh = test::extracted(tree, values, 0, false, {.linear_fit = GetParam()});
+    const Mesh mesh = test::extracted(tree, values, 0, false, {.curvature = GetParam()});
     ASSERT_FALSE(mesh.triangles.empty());
     // Where the plane passes within kCrossingMargin of a corner, vertices are moved by up to that part of a coarse
     // edge.
@@ -74,7 +74,7 @@ TEST_P(PlaneExtract, FacesDownTheGradientWithNormalsAlongIt) {
   for (const PlaneCase& c : plane_cases()) {
     const auto values = test::continuous_values(
         tree.view, test::at_positions([&](const Vec3d& p) { return plane(c.direction, c.offset, p); }));
-    const Mesh mesh = test::extracted(tree, values, 0, false, {.linear_fit = GetParam()});
+    const Mesh mesh = test::extracted(tree, values, 0, false, {.curvature = GetParam()});
     double twice_area = 0;
     for (const Triangle& t : mesh.triangles) twice_area -= triangle_normal_dot(mesh, t, c.direction);
     EXPECT_GT(twice_area, 0);
@@ -88,8 +88,9 @@ TEST_P(PlaneExtract, FacesDownTheGradientWithNormalsAlongIt) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Fits, PlaneExtract, testing::Bool(),
-                         [](const auto& info) { return info.param ? "Linear" : "RescaledQuadratic"; });
+INSTANTIATE_TEST_SUITE_P(Fits, PlaneExtract, testing::Values(0.0F, 0.5F, 1.0F), [](const auto& info) {
+  return info.param == 0 ? "Linear" : info.param == 1 ? "RescaledQuadratic" : "Halfway";
+});
 
 /// Distance to a sphere about the centre of the cube, positive inside.
 test::CornerValue sphere_distance(double radius) {
@@ -108,11 +109,11 @@ double worst_radius_error(const Mesh& mesh, double radius) {
 // h^2 / (8 r) along the axes; the slope is 1. h = 1/16 is the coarsest leaf.
 TEST(SphereExtract, IsAClosedSphereOnAnAdaptiveTreeWithinTheInterpolationError) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5})
-    for (const bool linear_fit : {false, true}) {
+    for (const float curvature : {1.0F, 0.5F, 0.0F}) {
       SmallTree tree = adaptive_tree(seed, 8);
       const double radius = 0.31;
       const Mesh mesh = test::extracted(tree, test::continuous_values(tree.view, sphere_distance(radius)), 0, true,
-                                        {.linear_fit = linear_fit});
+                                        {.curvature = curvature});
       const MeshReport report = measure(mesh);
       EXPECT_TRUE(report.watertight()) << "seed " << seed;
       EXPECT_EQ(report.components, 1) << "seed " << seed;
@@ -128,8 +129,8 @@ TEST(SphereExtract, IsFarCloserToTheSphereOnUniformCellsWithTheQuadraticFit) {
   SmallTree tree(test::clustered_points(random, 1, 1, 0), {}, octree::kCompleteDepth);
   const double radius = 0.31;
   const auto values = test::continuous_values(tree.view, sphere_distance(radius));
-  const double linear = worst_radius_error(test::extracted(tree, values, 0, true, {.linear_fit = true}), radius);
-  const double quadratic = worst_radius_error(test::extracted(tree, values, 0, true, {.linear_fit = false}), radius);
+  const double linear = worst_radius_error(test::extracted(tree, values, 0, true, {.curvature = 0}), radius);
+  const double quadratic = worst_radius_error(test::extracted(tree, values, 0, true, {.curvature = 1}), radius);
   EXPECT_LT(linear, 1.0 / (8 * 256 * radius));  // h^2 / 8 max |second derivative|
   EXPECT_LT(quadratic, linear / 4);
 }

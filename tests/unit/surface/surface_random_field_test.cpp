@@ -56,12 +56,12 @@ std::string counts(const MeshReport& r) {
 }
 
 /// Seeds are the loop's counter: a failure names the one to run again.
-void expect_manifolds(Values values, float isovalue, bool linear_fit, std::uint64_t seeds) {
+void expect_manifolds(Values values, float isovalue, float curvature, std::uint64_t seeds) {
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     Random random(seed);
     SmallTree tree = random_tree(random);
     const Mesh mesh =
-        test::extracted(tree, random_field(tree, random, values), isovalue, true, {.linear_fit = linear_fit});
+        test::extracted(tree, random_field(tree, random, values), isovalue, true, {.curvature = curvature});
     const MeshReport report = measure(mesh);
     SCOPED_TRACE("seed " + std::to_string(seed) + ", depth " + std::to_string(tree.view.depth) + ": " + counts(report));
     ASSERT_TRUE(report.closed());
@@ -72,23 +72,23 @@ void expect_manifolds(Values values, float isovalue, bool linear_fit, std::uint6
   }
 }
 
-TEST(RandomField, GivesAClosedManifoldForAnyValues) { expect_manifolds(Values::continuous, 0, false, 60); }
+TEST(RandomField, GivesAClosedManifoldForAnyValues) { expect_manifolds(Values::continuous, 0, 1, 60); }
 
-TEST(RandomField, GivesAClosedManifoldWhenMostOfItIsInside) { expect_manifolds(Values::continuous, -0.6F, true, 30); }
+TEST(RandomField, GivesAClosedManifoldWhenMostOfItIsInside) { expect_manifolds(Values::continuous, -0.6F, 0, 30); }
 
-TEST(RandomField, GivesAClosedManifoldWhenMostOfItIsOutside) { expect_manifolds(Values::continuous, 0.6F, false, 30); }
+TEST(RandomField, GivesAClosedManifoldWhenMostOfItIsOutside) { expect_manifolds(Values::continuous, 0.6F, 0.5F, 30); }
 
 TEST(RandomField, GivesAClosedManifoldWhenCornersEqualTheIsovalue) {
-  expect_manifolds(Values::whole_numbers, 0, false, 30);
-  expect_manifolds(Values::whole_numbers, 1, false, 15);
+  expect_manifolds(Values::whole_numbers, 0, 1, 30);
+  expect_manifolds(Values::whole_numbers, 1, 1, 15);
 }
 
 TEST(RandomField, GivesAClosedManifoldWhenInterpolatedCornersEqualTheIsovalue) {
-  expect_manifolds(Values::whole_numbers, 0.5F, true, 30);
+  expect_manifolds(Values::whole_numbers, 0.5F, 0, 30);
 }
 
 TEST(RandomField, GivesAClosedManifoldWhenValuesDifferInTheLastBitOnly) {
-  expect_manifolds(Values::rough_near_one_value, 0.37F, false, 30);
+  expect_manifolds(Values::rough_near_one_value, 0.37F, 1, 30);
 }
 
 /// Edges that only one triangle uses, as pairs of vertices.

@@ -1,0 +1,8 @@
+#include "exec/cuda_primitives.cuh"
+#include "poisson/trust_impl.hpp"
+
+namespace pointskin::poisson {
+
+template void weigh_trust(exec::Cuda&, const octree::OctreeData&, Samples&);
+
+}  // namespace pointskin::poisson

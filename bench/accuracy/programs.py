@@ -63,23 +63,22 @@ class Bench:
         if not case.generate:
             return case.cloud
         path = self.folder / f"{case.name}.ply"
-        words = fill(case.generate, out=path)
-        if reuse and path.exists() and read_record(path).get("command") == words:
+        if reuse and path.exists() and read_record(path).get("command") == case.generate[1:]:
             return path
-        run(words, self.timeout)
-        write_record(path, {"command": words})
+        run(fill(case.generate, out=path), self.timeout)
+        write_record(path, {"command": case.generate[1:]})
         return path
 
     def result(self, case, cloud, program, depth, reuse):
         """Runs `program` = (name, words) and measures its mesh: {"seconds", "metrics"} or {"failed"}.
 
         With `reuse` the run is left out if its record names the same command and cloud, and the measuring too if it
-        would be the same.
+        would be the same. The folder may have been moved or copied in between.
         """
         name, words = program
         mesh = self.folder / f"{case.name}-{name}-{depth}.ply"
+        key = {"command": words, "depth": depth, "threads": self.threads, "cloud": digest(cloud)}
         words = fill(words, **{"in": cloud, "out": mesh, "depth": depth, "threads": self.threads})
-        key = {"command": words, "cloud": digest(cloud)}
         record = read_record(mesh) if reuse else {}
         try:
             if not mesh.exists() or {k: record.get(k) for k in key} != key:
@@ -94,7 +93,8 @@ class Bench:
         return {"seconds": record["seconds"], "metrics": record["metrics"]}
 
     def measure(self, case, cloud, mesh, record):
-        words = [*self.metrics_words, str(mesh), *case.truth, "--points", str(point_count(cloud))]
-        if record.get("measured") != words or "metrics" not in record:
-            record["metrics"] = json.loads(run(words, self.timeout)[0])
-            record["measured"] = words
+        program, *options = self.metrics_words
+        options += [*case.truth, "--points", str(point_count(cloud))]
+        if record.get("measured") != options or "metrics" not in record:
+            record["metrics"] = json.loads(run([program, str(mesh), *options], self.timeout)[0])
+            record["measured"] = options

@@ -29,7 +29,7 @@ def parse(words):
     add("--cases", metavar="PATTERN,...", default="*", help="run only cases with such a name, as in 'gyroid-*,srb_*'")
     add("--list", action="store_true", help="print the names of the cases and end")
     add("--data", metavar="FOLDER", type=pathlib.Path,
-        help="also every NAME.ply with normals of this folder, with NAME_gt.ply as the truth")
+        help="also every NAME.ply with normals of this folder, with NAME_gt.ply as the truth, and scans of the truth")
     add("--depths", metavar="D,...", type=whole_numbers, default=[8], help="octree depths")
     add("--points", type=int, help="points of every generated cloud, instead of the usual number")
     add("--seed", type=int, default=1, help="of the generated clouds")
@@ -151,8 +151,9 @@ def without_infinities(value):
 def main(words):
     options = parse(words)
     known = list(cases.shape_cases(options.bin, options.points, options.seed))
+    known += cases.scanned_shape_cases(options.bin, options.seed)
     if options.data:
-        known += cases.file_cases(options.data)
+        known += cases.file_cases(options.bin, options.data.resolve(), options.seed)
     chosen = cases.choose(known, options.cases)
     if not chosen:
         print(f"accuracy.py: no case matches {options.cases}; see --list", file=sys.stderr)

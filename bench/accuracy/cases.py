@@ -9,6 +9,12 @@ SHAPE_POINTS = {"gyroid": 500_000, "sphere": 100_000, "torus": 100_000, "knot": 
 # The shapes have a radius of about 1.
 KINDS = {"clean": [], "noisy": ["--noise", "0.003", "--normal-noise", "0.1"]}
 
+# Virtual scans, lengths in units of the diagonal. Of the gyroid and the nested spheres no camera sees the inside.
+SCANNED_SHAPES = ("sphere", "torus", "knot", "plate", "slab")
+SCANS = {"scan": ["--sigma", "0.0005", "--misregistration", "0.0005"],
+         "roughscan": ["--views", "10", "--spread", "0.6", "--sigma", "0.0015", "--misregistration", "0.0015",
+                       "--window", "2", "--outliers", "0.01"]}
+
 
 @dataclasses.dataclass
 class Case:
@@ -50,12 +56,26 @@ def shape_cases(tools, points, seed):
             yield Case(f"{shape}-{kind}", ["--shape", shape], generate, None)
 
 
-def file_cases(folder):
-    """Every NAME.ply with normals that has its truth beside it, as NAME_gt.ply."""
+def scan_cases(tools, name, surface, truth, seed):
+    """Scans of one surface; `surface` and `truth` are the words that name it for either program."""
+    for kind, faults in SCANS.items():
+        generate = [str(tools / "pointskin_scan"), *surface, "-o", "{out}", "--seed", str(seed), *faults]
+        yield Case(f"{name}-{kind}", truth, generate, None)
+
+
+def scanned_shape_cases(tools, seed):
+    for shape in SCANNED_SHAPES:
+        yield from scan_cases(tools, shape, ["--shape", shape], ["--shape", shape], seed)
+
+
+def file_cases(tools, folder, seed):
+    """Every NAME.ply with normals that has its truth beside it, as NAME_gt.ply, and scans of every NAME_gt.ply."""
     for truth in sorted(folder.glob("*_gt.ply")):
         cloud = truth.with_name(truth.name.removesuffix("_gt.ply") + ".ply")
+        words = ["--truth", str(truth)]
         if cloud.exists() and has_normals(cloud):
-            yield Case(cloud.stem, ["--truth", str(truth)], [], cloud)
+            yield Case(cloud.stem, words, [], cloud)
+        yield from scan_cases(tools, cloud.stem, [str(truth)], words, seed)
 
 
 def choose(cases, patterns):

@@ -40,6 +40,8 @@ class Gyroid final : public Shape {
  public:
   [[nodiscard]] Topology topology() const override { return {1, -178}; }  // genus 90; shapes_test counts it
   [[nodiscard]] bool is_distance() const override { return false; }
+  // |grad ((g^2 - 0.16) / 9)| = 2 |g| |grad g / 9|, with |g| <= 1.5 and three components of at most 1.
+  [[nodiscard]] double lipschitz() const override { return 3 * std::sqrt(3.0); }
 
   [[nodiscard]] Sample at(const Vec3d& q) const override {
     return smooth_max(shell(q), {length(q) - 1, direction(q)}, 0.02);
@@ -92,6 +94,7 @@ class Knot final : public Shape {
 
   [[nodiscard]] Topology topology() const override { return {1, 0}; }
   [[nodiscard]] bool is_distance() const override { return false; }
+  [[nodiscard]] double lipschitz() const override { return 1 + kBump * kWaves; }
 
   [[nodiscard]] Sample at(const Vec3d& q) const override {
     const Vec3d from_curve = difference(q, curve(nearest(q)));

@@ -49,6 +49,9 @@ class Shape {
   /// infinite.
   [[nodiscard]] virtual double variation(const Vec3d& centre, double radius) const = 0;
 
+  /// An upper bound of |grad F| in all of space.
+  [[nodiscard]] virtual double lipschitz() const { return 1; }
+
   [[nodiscard]] virtual Topology topology() const = 0;
 
   /// True if F is the signed distance from the surface, in all of space.

@@ -15,6 +15,7 @@ import cases
 import programs
 import verdict
 
+BEGIN, END = "<!-- results: begin -->", "<!-- results: end -->"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
@@ -46,6 +47,8 @@ def parse(words):
     add("--tolerance", type=float, default=0.005, help="how much worse, relatively, still counts as not worse")
     add("--threads", type=int, default=0, help="of our programs and for {threads}; 0: all")
     add("--timeout", metavar="SECONDS", type=float, default=1800, help="of one run of a program")
+    add("--update", metavar="FILE", type=pathlib.Path,
+        help=f"put the table into this text, between {BEGIN} and {END}")
     add("--json", metavar="FILE", type=pathlib.Path, help="write everything that was measured")
     options = parser.parse_args(words)
     if options.peer and not all(name in options.peer for name in ("{in}", "{out}")):
@@ -54,9 +57,18 @@ def parse(words):
         parser.error("--reuse-peer needs --keep")
     if options.equal_triangles and not (options.peer and "{depth}" in options.peer):
         parser.error("--equal-triangles needs --peer with {depth}")
+    if options.update and not (options.update.is_file() and marked(options.update)):
+        parser.error(f"--update: {options.update} has no lines {BEGIN} and {END}")
     if options.data and not options.data.is_dir():
         parser.error(f"--data: {options.data} is no folder")
     return options
+
+
+def marked(path):
+    """The text before and after the results, or None if they are not marked."""
+    before, begin, rest = path.read_text(encoding="utf-8").partition(BEGIN)
+    _, end, after = rest.partition(END)
+    return (before + begin, end + after) if end else None
 
 
 class Table:
@@ -73,7 +85,7 @@ class Table:
         metrics = [str(tools / "pointskin_metrics"), "--samples", str(options.samples), "--tau", str(options.tau),
                    "--threads", str(options.threads)]
         self.bench = programs.Bench(folder, metrics, options.threads, options.timeout)
-        self.entries = []
+        self.entries, self.lines = [], verdict.table_head()
 
     def entry(self, case, cloud, program, depth):
         """Runs one program; returns the row's entry, not yet printed."""
@@ -87,7 +99,8 @@ class Table:
     def show(self, entry, judged=None):
         entry["verdict"] = judged
         self.entries.append(entry)
-        print(verdict.table_row(entry), flush=True)
+        self.lines.append(verdict.table_row(entry))
+        print(self.lines[-1], flush=True)
 
     def judge(self, ours, peer):
         if "failed" in ours:
@@ -165,7 +178,7 @@ def main(words):
         folder = (options.keep or pathlib.Path(temporary)).resolve()
         folder.mkdir(parents=True, exist_ok=True)
         table = Table(options, folder)
-        print("\n".join(verdict.table_head()), flush=True)
+        print("\n".join(table.lines), flush=True)
         try:
             for case in chosen:
                 table.run(case)
@@ -173,7 +186,12 @@ def main(words):
             print(f"accuracy.py: {failure}", file=sys.stderr)
             return 1
     lines = table.summary()
-    print("\n" + "\n\n".join(lines) if lines else "", end="\n" if lines else "")
+    for line in lines:
+        print("\n" + line)
+    if options.update:
+        before, after = marked(options.update)
+        text = "\n\n".join(["\n".join(table.lines), *(line + "." for line in lines)])
+        options.update.write_text(f"{before}\n\n{text}\n\n{after}", encoding="utf-8")
     if options.json:
         report = {"version": 1, "peer": options.peer, "depths": options.depths, "options": options.options,
                   "samples": options.samples, "tau": options.tau, "tolerance": options.tolerance,

@@ -220,6 +220,19 @@ class Accuracy(unittest.TestCase):
         self.assertEqual(report["entries"][0]["metrics"]["truth"]["genus"], 0)
         self.assertTrue(report["entries"][0]["verdict"]["better"])
 
+    def test_puts_the_table_between_the_marks_of_a_text(self):
+        path = self.folder / "text.md"
+        path.write_text("before <!-- results: begin -->\nold\n<!-- results: end --> after\n", encoding="utf-8")
+        for _ in range(2):
+            _, text = self.table("--cases", "sphere-clean", "--update", str(path), *self.peer("2.0 0"))
+            updated = path.read_text(encoding="utf-8")
+            self.assertTrue(updated.startswith("before <!-- results: begin -->\n\n| case |"))
+            self.assertTrue(updated.endswith("better on 1 of 1.\n\n<!-- results: end --> after\n"))
+            self.assertNotIn("old", updated)
+            self.assertEqual(len(updated.splitlines()), 10)
+        path.write_text("no marks", encoding="utf-8")
+        self.assertEqual(self.run_it("--cases", "sphere-clean", "--update", str(path)).returncode, 2)
+
     def test_refuses_what_it_cannot_do(self):
         for words in (["--cases", "no-such"], ["--peer", "cp {in} mesh.ply"], ["--data", "/no/such/folder"],
                       ["--equal-triangles"], ["--depths", "eight"]):

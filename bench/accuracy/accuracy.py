@@ -49,7 +49,7 @@ def parse(words):
     add("--timeout", metavar="SECONDS", type=float, default=1800, help="of one run of a program")
     add("--update", metavar="FILE", type=pathlib.Path,
         help=f"put the table into this text, between {BEGIN} and {END}")
-    add("--json", metavar="FILE", type=pathlib.Path, help="write everything that was measured")
+    add("--json", metavar="FILE", type=pathlib.Path, help="write everything that was measured, and wall clocks")
     options = parser.parse_args(words)
     if options.peer and not all(name in options.peer for name in ("{in}", "{out}")):
         parser.error("--peer needs {in} and {out}")
@@ -109,23 +109,31 @@ class Table:
             return {"text": "alone"}
         return verdict.compare(ours["row"], peer["row"], self.options.tolerance)
 
-    def between_depths(self, case, cloud, ours, peer):
-        """The peer's row at our number of triangles, interpolated between two of its depths."""
-        step = 1 if peer["row"]["triangles"] < ours["row"]["triangles"] else -1
-        depth = peer["depth"]
+    def at_triangles(self, case, cloud, program, start, triangles):
+        """The program's row at this number of triangles, between two of its depths, from `start` on; None without."""
+        step = 1 if start["row"]["triangles"] < triangles else -1
+        entry = start
         for _ in range(2):
-            other = self.entry(case, cloud, self.peer, depth + step)
+            other = self.entry(case, cloud, program, entry["depth"] + step)
             if "failed" in other:
-                return other
-            low, high = (peer, other) if step > 0 else (other, peer)
-            triangles = ours["row"]["triangles"]
+                return None
+            low, high = (entry, other) if step > 0 else (other, entry)
             if low["row"]["triangles"] <= triangles <= high["row"]["triangles"]:
-                row = verdict.interpolate(low["row"], high["row"], triangles)
-                return {"case": case.name, "depth": f"{low['depth']}..{high['depth']}", "program": self.peer[0],
-                        "row": row, "interpolated": True}
-            peer, depth = other, depth + step
-        return {"case": case.name, "depth": depth, "program": self.peer[0], "interpolated": True,
-                "failed": "no depth has about as many triangles"}
+                return {"case": case.name, "depth": f"{low['depth']}..{high['depth']}", "program": program[0],
+                        "row": verdict.interpolate(low["row"], high["row"], triangles), "interpolated": True}
+            entry = other
+        return None
+
+    def show_at_equal_triangles(self, case, cloud, ours, peer):
+        """The peer at our number of triangles or, where none of its depths has so many, ours at the peer's."""
+        between = self.at_triangles(case, cloud, self.peer, peer, ours["row"]["triangles"])
+        if between:
+            return self.show(between, self.judge(ours, between))
+        between = self.at_triangles(case, cloud, self.ours, ours, peer["row"]["triangles"])
+        if between:
+            return self.show(between, self.judge(between, peer))
+        return self.show({"case": case.name, "depth": ours["depth"], "program": self.peer[0], "interpolated": True,
+                          "failed": "no depths with equal numbers of triangles"}, {"text": "alone"})
 
     def run(self, case):
         cloud = self.bench.cloud(case, self.options.reuse_peer)
@@ -138,8 +146,7 @@ class Table:
             self.show(ours, self.judge(ours, peer))
             self.show(peer)
             if self.options.equal_triangles and "failed" not in ours and "failed" not in peer:
-                between = self.between_depths(case, cloud, ours, peer)
-                self.show(between, self.judge(ours, between))
+                self.show_at_equal_triangles(case, cloud, ours, peer)
 
     def summary(self):
         lines = []

@@ -42,6 +42,8 @@ reconstruct(words[0], words[words.index("-o") + 1], int(value("--depth", 8)), va
 """
 FAKE_PEER = FAKE_RECONSTRUCTION + """
 import sys
+if sys.argv[-1] == "shallow":
+    sys.argv[3:] = [str(min(int(sys.argv[3]), 8)), *sys.argv[4:-1]]
 reconstruct(sys.argv[1], sys.argv[2], int(sys.argv[3]), float(sys.argv[4]), int(sys.argv[5]), len(sys.argv) > 6)
 """
 FAKE_GENERATOR = """
@@ -201,6 +203,13 @@ class Accuracy(unittest.TestCase):
         self.assertIn("at equal numbers of triangles: not worse on 1 of 1", text)
         rows = self.table("--cases", "sphere-clean", "--equal-triangles", *self.peer("0.5 0"))[0]
         self.assertEqual(rows[2]["depth"], "7..8")
+
+    def test_compares_at_the_peers_number_of_triangles_where_it_has_no_depth_with_ours(self):
+        rows, text = self.table("--cases", "sphere-clean", "--equal-triangles", *self.peer("2.0 0 shallow"))
+        self.assertEqual((rows[2]["program"], rows[2]["depth"]), ("pointskin", "7..8"))
+        self.assertEqual(rows[2]["triangles"], rows[1]["triangles"])
+        self.assertAlmostEqual(float(rows[2]["mean %"]), 0.5 ** 7 / math.sqrt(2), delta=1e-5)
+        self.assertIn("at equal numbers of triangles: not worse on 1 of 1", text)
 
     def test_a_peer_that_fails_is_no_verdict_and_ours_that_fails_is_an_error(self):
         rows, text = self.table("--cases", "sphere-clean", *self.peer("2.0 0 fail"))

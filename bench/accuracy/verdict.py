@@ -59,7 +59,7 @@ def interpolate(low, high, triangles):
 
 
 HEAD = ("case", "depth", "program", "triangles", "mean %", "rms %", "p95 %", "max %", "mean / spacing", "1 - normals",
-        "F-score", "components", "genus", "seconds", "verdict")
+        "F-score", "components", "genus", "verdict")
 
 
 def count_text(count, true):
@@ -78,18 +78,17 @@ def verdict_text(verdict):
 
 
 def table_row(entry):
-    """One line of Markdown of {"case", "depth", "program", "row" or "failed", "seconds", "verdict"}."""
+    """One line of Markdown of {"case", "depth", "program", "row" or "failed", "verdict"}."""
     cells = [entry["case"], str(entry["depth"]), entry["program"]]
     if "failed" in entry:
-        cells += ["failed: " + entry["failed"].replace("|", "/")] + [""] * 10
+        cells += ["failed: " + entry["failed"].replace("|", "/")] + [""] * 9
     else:
         row = entry["row"]
         closed = row["true_genus"] is not None
         cells += [str(row["triangles"]), *(f"{row[name]:.4g}" for name in DISTANCES), f"{row['spacings']:.3f}",
                   f"{row['normals']:.5f}", f"{row['f_score']:.4f}",
                   count_text(row["components"], row["true_components"] if closed else None),
-                  count_text(row["genus"], row["true_genus"] if closed else None),
-                  f"{entry['seconds']:.1f}" if entry.get("seconds") is not None else ""]
+                  count_text(row["genus"], row["true_genus"] if closed else None)]
     cells.append(verdict_text(entry.get("verdict")))
     return "| " + " | ".join(cells) + " |"
 

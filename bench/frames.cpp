@@ -20,8 +20,7 @@ constexpr const char* kUsage =
     "usage: pointskin_frames [SHAPE] [--points 500000] [--depth 8] [--frames 100] [--device auto|cpu|cuda] [--threads "
     "0]\n"
     "\n"
-    "Twists points of a shape (gyroid, sphere, torus, knot, plate; default knot) and reconstructs every frame from "
-    "host\n"
+    "Twists points of a shape of pointskin_generate (default: knot) and reconstructs every frame from host\n"
     "memory to host memory. Prints the median time of a frame, the slowest, and frames per second.\n";
 
 /// The cloud twisted about the z axis by `angle` radians per unit of height. Normals follow the twist's Jacobian.

@@ -74,26 +74,7 @@ bool draw(const Shape& shape, const Cells& cells, Random& random, Vec3d& q, Samp
   return sample.value * sample.value < kBand * kBand * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
 }
 
-/// A point of the surface with its unit outward normal.
-struct Oriented {
-  Vec3d position, normal;
-};
-
-/// Newton steps along the gradient until F / |grad F| is below 1e-13 (five digits below float's spacing).
-Oriented project(const Shape& shape, Vec3d q, Sample sample) {
-  double norm2 = 0;
-  for (int step = 0; step < 30; ++step) {
-    const Vec3d& g = sample.gradient;
-    norm2 = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
-    if (sample.value * sample.value < 1e-26 * norm2) break;
-    for (std::size_t axis = 0; axis < 3; ++axis) q[axis] -= sample.value / norm2 * g[axis];
-    sample = shape.at(q);
-  }
-  const double norm = std::sqrt(norm2);
-  return {q, {sample.gradient[0] / norm, sample.gradient[1] / norm, sample.gradient[2] / norm}};
-}
-
-void add_noise(Oriented& point, const SamplingOptions& options, Random& random) {
+void add_noise(SurfacePoint& point, const SamplingOptions& options, Random& random) {
   const auto [a, b] = random.gaussian_pair();
   const auto [c, d] = random.gaussian_pair();
   const auto [e, f] = random.gaussian_pair();
@@ -107,15 +88,19 @@ void add_noise(Oriented& point, const SamplingOptions& options, Random& random) 
   for (double& n : point.normal) n /= std::sqrt(norm2);
 }
 
-std::vector<Oriented> sample_block(const Shape& shape, const Cells& cells, const SamplingOptions& options,
-                                   std::int64_t block) {
-  std::vector<Oriented> points;
+std::vector<SurfacePoint> sample_block(const Shape& shape, const Cells& cells, const SamplingOptions& options,
+                                       std::int64_t block) {
+  std::vector<SurfacePoint> points;
   for (std::int64_t i = block * kBlockDraws; i < (block + 1) * kBlockDraws; ++i) {
     Random random(options.seed, static_cast<std::uint64_t>(i));
     Vec3d q;
     Sample sample;
-    if (!draw(shape, cells, random, q, sample)) continue;
-    points.push_back(project(shape, q, sample));
+    if (cells.lower.empty())
+      points.push_back(shape.draw(random));
+    else if (draw(shape, cells, random, q, sample))
+      points.push_back(project(shape, q, sample));
+    else
+      continue;
     if (options.noise > 0 || options.normal_noise > 0) add_noise(points.back(), options, random);
   }
   return points;
@@ -132,19 +117,19 @@ Cloud sample_surface(const Shape& shape, const SamplingOptions& options) {
   if (!(options.noise >= 0 && options.normal_noise >= 0))
     throw Error(ErrorCode::usage, "noise must be zero or positive");
   const int threads = thread_count(options.threads);
-  const Cells cells = cells_near_surface(shape, threads);
+  const Cells cells = shape.own_area() > 0 ? Cells{} : cells_near_surface(shape, threads);
 
   Cloud cloud;
   cloud.positions.reserve(static_cast<std::size_t>(options.points));
   cloud.normals.reserve(static_cast<std::size_t>(options.points));
   // Blocks are appended in order and the excess is cut, so the number of blocks per round does not show.
-  std::vector<std::vector<Oriented>> blocks(static_cast<std::size_t>(threads) * 8);
+  std::vector<std::vector<SurfacePoint>> blocks(static_cast<std::size_t>(threads) * 8);
   for (std::int64_t first = 0; cloud.size() < options.points; first += static_cast<std::int64_t>(blocks.size())) {
     run_parallel(static_cast<std::int64_t>(blocks.size()), threads, [&](std::int64_t b) {
       blocks[static_cast<std::size_t>(b)] = sample_block(shape, cells, options, first + b);
     });
-    for (const std::vector<Oriented>& block : blocks) {
-      for (const Oriented& point : block) {
+    for (const std::vector<SurfacePoint>& block : blocks) {
+      for (const SurfacePoint& point : block) {
         if (cloud.size() == options.points) break;
         cloud.positions.push_back(to_float(point.position));
         cloud.normals.push_back(to_float(point.normal));
@@ -155,6 +140,7 @@ Cloud sample_surface(const Shape& shape, const SamplingOptions& options) {
 }
 
 double estimate_area(const Shape& shape, std::int64_t draws, std::uint64_t seed, int threads) {
+  if (shape.own_area() > 0) return shape.own_area();
   const Cells cells = cells_near_surface(shape, thread_count(threads));
   const std::int64_t blocks = (draws + kBlockDraws - 1) / kBlockDraws;
   std::atomic<std::int64_t> hits{0};

@@ -1,5 +1,6 @@
 // The implicit functions. The gyroid shell is the accuracy benchmark of this project; the others probe topology:
-// genus 1 (torus), thin tubes passing close by (knot), two sheets a few cells apart (plate).
+// genus 1 (torus), thin tubes passing close by (knot), two sheets a few cells apart (plate), sharp edges (slab),
+// surfaces inside of surfaces (nested).
 // Rounded boxes and tubes as distance functions: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996.
 #include "shapes.hpp"
 
@@ -9,6 +10,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "random.hpp"
 
 namespace pointskin::bench {
 namespace {
@@ -35,6 +38,11 @@ Sample smooth_max(const Sample& a, const Sample& b, double k) {
 
 class Gyroid final : public Shape {
  public:
+  [[nodiscard]] Topology topology() const override { return {1, -178}; }  // genus 90; shapes_test counts it
+  [[nodiscard]] bool is_distance() const override { return false; }
+  // |grad ((g^2 - 0.16) / 9)| = 2 |g| |grad g / 9|, with |g| <= 1.5 and three components of at most 1.
+  [[nodiscard]] double lipschitz() const override { return 3 * std::sqrt(3.0); }
+
   [[nodiscard]] Sample at(const Vec3d& q) const override {
     return smooth_max(shell(q), {length(q) - 1, direction(q)}, 0.02);
   }
@@ -60,12 +68,14 @@ class Gyroid final : public Shape {
 
 class Sphere final : public Shape {
  public:
+  [[nodiscard]] Topology topology() const override { return {1, 2}; }
   [[nodiscard]] Sample at(const Vec3d& q) const override { return {length(q) - 1, direction(q)}; }
   [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
 };
 
 class Torus final : public Shape {
  public:
+  [[nodiscard]] Topology topology() const override { return {1, 0}; }
   [[nodiscard]] Sample at(const Vec3d& q) const override {
     const double from_axis = std::hypot(q[0], q[1]);
     const Vec3d out = from_axis > 0 ? Vec3d{q[0] / from_axis, q[1] / from_axis, 0} : Vec3d{1, 0, 0};
@@ -81,6 +91,10 @@ class Knot final : public Shape {
   Knot() {
     for (int i = 0; i < kPieces; ++i) nodes_[static_cast<std::size_t>(i)] = curve(i * kStep);
   }
+
+  [[nodiscard]] Topology topology() const override { return {1, 0}; }
+  [[nodiscard]] bool is_distance() const override { return false; }
+  [[nodiscard]] double lipschitz() const override { return 1 + kBump * kWaves; }
 
   [[nodiscard]] Sample at(const Vec3d& q) const override {
     const Vec3d from_curve = difference(q, curve(nearest(q)));
@@ -136,6 +150,7 @@ class Knot final : public Shape {
 /// A rectangle thickened by balls.
 class Plate final : public Shape {
  public:
+  [[nodiscard]] Topology topology() const override { return {1, 2}; }
   [[nodiscard]] Sample at(const Vec3d& q) const override {
     const Vec3d off = {q[0] - std::clamp(q[0], -0.88, 0.88), q[1] - std::clamp(q[1], -0.58, 0.58), q[2]};
     return {length(off) - 0.02, direction(off)};
@@ -143,7 +158,85 @@ class Plate final : public Shape {
   [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
 };
 
+/// A box. Its samples are drawn face by face: a band around it would crowd them on the edges.
+class Slab final : public Shape {
+ public:
+  [[nodiscard]] Topology topology() const override { return {1, 2}; }
+
+  [[nodiscard]] Sample at(const Vec3d& q) const override {
+    const Vec3d off = beyond(q);
+    const std::size_t face = most_beyond(off);
+    if (off[face] <= 0) return {off[face], face_normal(q, face)};
+    Vec3d outside;
+    for (std::size_t axis = 0; axis < 3; ++axis) outside[axis] = std::copysign(std::max(off[axis], 0.0), q[axis]);
+    return {length(outside), direction(outside)};
+  }
+
+  [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
+
+  /// Beyond an edge the normal is that of the face whose plane is farther away.
+  [[nodiscard]] SurfacePoint closest(const Vec3d& q) const override {
+    const std::size_t face = most_beyond(beyond(q));
+    Vec3d position = q;
+    for (std::size_t axis = 0; axis < 3; ++axis) position[axis] = std::clamp(q[axis], -kHalf[axis], kHalf[axis]);
+    position[face] = std::copysign(kHalf[face], q[face]);
+    return {position, face_normal(q, face)};
+  }
+
+  [[nodiscard]] double own_area() const override { return 2 * (pair_area(0) + pair_area(1) + pair_area(2)); }
+
+  [[nodiscard]] SurfacePoint draw(Random& random) const override {
+    const double place = random.uniform() * own_area() / 2;
+    const std::size_t face = place < pair_area(0) ? 0 : place < pair_area(0) + pair_area(1) ? 1 : 2;
+    Vec3d q;
+    for (std::size_t axis = 0; axis < 3; ++axis) q[axis] = kHalf[axis] * (2 * random.uniform() - 1);
+    q[face] = std::copysign(kHalf[face], random.uniform() - 0.5);
+    return {q, face_normal(q, face)};
+  }
+
+ private:
+  static constexpr Vec3d kHalf = {0.9, 0.6, 0.02};
+
+  /// Area of one of the two faces across `axis`.
+  static double pair_area(std::size_t axis) { return 4 * kHalf[(axis + 1) % 3] * kHalf[(axis + 2) % 3]; }
+  static Vec3d beyond(const Vec3d& q) {
+    return {std::abs(q[0]) - kHalf[0], std::abs(q[1]) - kHalf[1], std::abs(q[2]) - kHalf[2]};
+  }
+  static std::size_t most_beyond(const Vec3d& off) {
+    return static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
+  }
+  static Vec3d face_normal(const Vec3d& q, std::size_t face) {
+    Vec3d normal{0, 0, 0};
+    normal[face] = std::copysign(1.0, q[face]);
+    return normal;
+  }
+};
+
+/// Concentric spheres; the middle one is the wall of a cavity.
+class Nested final : public Shape {
+ public:
+  [[nodiscard]] Topology topology() const override { return {3, 6}; }
+
+  [[nodiscard]] Sample at(const Vec3d& q) const override {
+    const double r = length(q);
+    const double ball = r - 0.3, cavity = 0.6 - r, rim = r - 0.95;
+    if (ball <= std::max(cavity, rim)) return {ball, direction(q)};
+    return cavity >= rim ? Sample{cavity, scaled(direction(q), -1)} : Sample{rim, direction(q)};
+  }
+
+  [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
+};
+
 }  // namespace
+
+SurfacePoint Shape::closest(const Vec3d& q) const {
+  const Sample sample = at(q);
+  return {difference(q, scaled(sample.gradient, sample.value)), sample.gradient};
+}
+
+SurfacePoint Shape::draw(Random& /*random*/) const {
+  throw Error(ErrorCode::internal, "this shape does not draw its own samples");
+}
 
 std::unique_ptr<Shape> make_shape(const std::string& name) {
   if (name == "gyroid") return std::make_unique<Gyroid>();
@@ -151,12 +244,27 @@ std::unique_ptr<Shape> make_shape(const std::string& name) {
   if (name == "torus") return std::make_unique<Torus>();
   if (name == "knot") return std::make_unique<Knot>();
   if (name == "plate") return std::make_unique<Plate>();
-  throw Error(ErrorCode::usage, "no shape is called '" + name + "'; there are gyroid, sphere, torus, knot and plate");
+  if (name == "slab") return std::make_unique<Slab>();
+  if (name == "nested") return std::make_unique<Nested>();
+  throw Error(ErrorCode::usage,
+              "no shape is called '" + name + "'; there are gyroid, sphere, torus, knot, plate, slab and nested");
 }
 
 double signed_distance(const Shape& shape, const Vec3d& q) {
   const Sample sample = shape.at(q);
   return sample.value / length(sample.gradient);
+}
+
+SurfacePoint project(const Shape& shape, Vec3d q, Sample sample) {
+  double norm2 = 0;
+  for (int step = 0; step < 30; ++step) {
+    norm2 = dot(sample.gradient, sample.gradient);
+    if (sample.value * sample.value < 1e-26 * norm2) break;
+    for (std::size_t axis = 0; axis < 3; ++axis) q[axis] -= sample.value / norm2 * sample.gradient[axis];
+    sample = shape.at(q);
+  }
+  const double norm = std::sqrt(norm2);
+  return {q, {sample.gradient[0] / norm, sample.gradient[1] / norm, sample.gradient[2] / norm}};
 }
 
 }  // namespace pointskin::bench

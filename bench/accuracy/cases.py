@@ -1,0 +1,83 @@
+"""The cases of the accuracy benchmark: clouds with a known truth."""
+import dataclasses
+import fnmatch
+import pathlib
+
+# Points per generated cloud: about 0.5 to 1.3 finest cells apart at depth 8.
+SHAPE_POINTS = {"gyroid": 500_000, "sphere": 100_000, "torus": 100_000, "knot": 200_000, "plate": 100_000,
+                "slab": 100_000, "nested": 200_000}
+# The shapes have a radius of about 1.
+KINDS = {"clean": [], "noisy": ["--noise", "0.003", "--normal-noise", "0.1"]}
+
+# Virtual scans, lengths in units of the diagonal. Of the gyroid and the nested spheres no camera sees the inside.
+SCANNED_SHAPES = ("sphere", "torus", "knot", "plate", "slab")
+SCANS = {"scan": ["--sigma", "0.0005", "--misregistration", "0.0005"],
+         "roughscan": ["--views", "10", "--spread", "0.6", "--sigma", "0.0015", "--misregistration", "0.0015",
+                       "--window", "2", "--outliers", "0.01"]}
+
+
+@dataclasses.dataclass
+class Case:
+    name: str
+    truth: list          # the words for pointskin_metrics that name the truth
+    generate: list       # the words that write the cloud, {out} where its name goes; empty for a file
+    cloud: pathlib.Path  # of a file; a generated cloud gets its name in the working folder
+
+
+def ply_header(path):
+    """The lines of a PLY file's header, or none if it is no PLY file."""
+    lines = []
+    with open(path, "rb") as file:
+        for line in file:
+            lines.append(line.decode("latin-1").strip())
+            if lines[0] != "ply" or lines[-1] == "end_header" or len(lines) > 1000:
+                break
+    return lines if lines and lines[0] == "ply" else []
+
+
+def point_count(path):
+    """Vertices of a PLY file."""
+    for line in ply_header(path):
+        words = line.split()
+        if words[:2] == ["element", "vertex"]:
+            return int(words[2])
+    raise ValueError(f"{path} is no PLY file with vertices")
+
+
+def has_normals(path):
+    return any(line.startswith("property ") and line.split()[-1] == "nx" for line in ply_header(path))
+
+
+def shape_cases(tools, points, seed):
+    for shape, usual in SHAPE_POINTS.items():
+        for kind, noise in KINDS.items():
+            generate = [str(tools / "pointskin_generate"), shape, "-o", "{out}", "--points", str(points or usual),
+                        "--seed", str(seed), *noise]
+            yield Case(f"{shape}-{kind}", ["--shape", shape], generate, None)
+
+
+def scan_cases(tools, name, surface, truth, seed):
+    """Scans of one surface; `surface` and `truth` are the words that name it for either program."""
+    for kind, faults in SCANS.items():
+        generate = [str(tools / "pointskin_scan"), *surface, "-o", "{out}", "--seed", str(seed), *faults]
+        yield Case(f"{name}-{kind}", truth, generate, None)
+
+
+def scanned_shape_cases(tools, seed):
+    for shape in SCANNED_SHAPES:
+        yield from scan_cases(tools, shape, ["--shape", shape], ["--shape", shape], seed)
+
+
+def file_cases(tools, folder, seed):
+    """Every NAME.ply with normals that has its truth beside it, as NAME_gt.ply, and scans of every NAME_gt.ply."""
+    for truth in sorted(folder.glob("*_gt.ply")):
+        cloud = truth.with_name(truth.name.removesuffix("_gt.ply") + ".ply")
+        words = ["--truth", str(truth)]
+        if cloud.exists() and has_normals(cloud):
+            yield Case(cloud.stem, words, [], cloud)
+        yield from scan_cases(tools, cloud.stem, [str(truth)], words, seed)
+
+
+def choose(cases, patterns):
+    """The cases whose name matches one of the comma separated shell patterns."""
+    return [case for case in cases if any(fnmatch.fnmatchcase(case.name, p) for p in patterns.split(","))]

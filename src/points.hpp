@@ -15,6 +15,9 @@ namespace pointskin::detail {
 /// A cloud in a space, in the caller's order and coordinates.
 struct DevicePoints {
   exec::Buffer<Vec3f> positions, normals;
+  exec::Buffer<std::int32_t> used{};  ///< indices of the points to use, ascending; empty: all of them
+
+  [[nodiscard]] std::int64_t used_count() const { return used.empty() ? positions.size() : used.size(); }
 };
 
 /// Copies a cloud to the space.
@@ -24,7 +27,7 @@ struct DevicePoints {
 template <exec::Space Exec>
 DevicePoints upload(Exec& ex, const Cloud& cloud);
 
-/// Samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys.
+/// The points to use as samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys.
 template <exec::Space Exec>
 poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
                                 exec::Buffer<std::uint64_t>& keys);

@@ -26,6 +26,7 @@ struct ToWorld {
 struct HashPoint {
   ArrayView<const Vec3f> positions, normals;
   ArrayView<std::uint64_t> hashes;
+  octree::Selection selection{};
 
   PSK_HD static std::uint64_t mix(std::uint64_t hash, float value) {
     std::uint32_t bits;
@@ -34,8 +35,9 @@ struct HashPoint {
     return hash ^ hash >> 33;
   }
   PSK_HD void operator()(std::int64_t i) const {
-    const Vec3f p = positions[i];
-    const Vec3f n = normals[i];
+    const std::int64_t from = selection(i);
+    const Vec3f p = positions[from];
+    const Vec3f n = normals[from];
     hashes[i] = mix(mix(mix(mix(mix(mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z), n.x), n.y), n.z);
   }
 };
@@ -101,17 +103,21 @@ DevicePoints upload(Exec& ex, const Cloud& cloud) {
 template <exec::Space Exec>
 poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
                                 exec::Buffer<std::uint64_t>& keys) {
-  const std::int64_t n = points.positions.size();
+  const std::int64_t n = points.used_count();
+  const octree::Selection selection{points.used.cview()};
   auto unit = exec::make_buffer<Vec3f>(ex, n);
   auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
-  for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view()});
-  for_each(ex, "octree.hash", n, points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
+  for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view(), selection});
+  for_each(ex, "octree.hash", n,
+           points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view(), selection});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   hashes.reset();
   poisson::Samples samples;
   samples.positions = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, unit.cview(), sorted.order.cview(), samples.positions.view());
   unit.reset();
+  if (!points.used.empty())  // from here on, the order leads to the caller's points
+    exec::gather(ex, points.used.cview(), sorted.order.cview(), sorted.order.view());
   samples.normals = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
   keys = std::move(sorted.keys);

@@ -53,6 +53,8 @@ void define_surface(CLI::App& command, ReconstructArgs& args) {
   command.add_flag("--open", args.open, "leave the surface open at the cube's faces, instead of closed")
       ->group("Surface");
   command.add_flag("--density", options.density, "add the property density, points per world unit^2")->group("Surface");
+  command.add_flag("--keep-strays", options.keep_strays, "use stray points, too, and make the cube for all points")
+      ->group("Surface");
   command.add_flag("--no-normals", args.no_normals, "leave vertex normals out of the mesh")->group("Surface");
 }
 

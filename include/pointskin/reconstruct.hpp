@@ -31,7 +31,7 @@ struct Options {
   double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
   int iterations = 8;    ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
                          ///< max(this, twice their cells along an axis)
-  double scale = 1.1;    ///< working cube / bounding cube of the points, in [1, 100]
+  double scale = 1.1;    ///< working cube / bounding cube of the points used, in [1, 100]
   double samples_per_node =
       1.5;  ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
   bool confidence = false;  ///< true: a normal's length, relative to the mean length, is the weight of its point
@@ -39,6 +39,7 @@ struct Options {
   bool density = false;     ///< true: the mesh carries "density", samples per unit of area (world units^-2)
   bool normals = true;      ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;
+  bool keep_strays = false;           ///< true: stray points count, too (see Strays); the cube is made for all points
   bool residuals = false;             ///< true: measure the residual of every level before and after its solve
   std::int64_t max_memory_bytes = 0;  ///< refuse to start when the estimate is larger; 0: no limit
 
@@ -57,7 +58,9 @@ struct LevelReport {
 
 /// What a run did and what it cost. Times are milliseconds on the device's clock.
 struct RunReport {
-  std::int64_t points = 0;  ///< points used
+  std::int64_t points = 0;             ///< points used
+  std::int64_t strays = 0;             ///< points left out because they are strays; 0 with Options::keep_strays
+  std::vector<Vec3d> farthest_strays;  ///< up to 10 of them, world units, the farthest first
   int depth = 0;
   std::int64_t nodes = 0;           ///< cells of all depths
   std::vector<LevelReport> levels;  ///< depth 0 first
@@ -93,6 +96,7 @@ class Reconstructor {
   void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh);
 
   /// Fits the implicit function (screened Poisson, Kazhdan & Hoppe 2013, on the octree of Zhou et al. 2010).
+  /// Strays are left out and reported unless Options::keep_strays: they would take the cube's resolution from the rest.
   /// The Field shares this reconstructor's device resources and may outlive it.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.
   /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),

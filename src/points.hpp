@@ -7,6 +7,7 @@
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
 #include "octree/frame.hpp"
+#include "octree/strays.hpp"
 #include "poisson/samples.hpp"
 #include "surface/extract.hpp"
 
@@ -26,6 +27,11 @@ struct DevicePoints {
 ///         are not finite, over_limit beyond 2^31 - 1
 template <exec::Space Exec>
 DevicePoints upload(Exec& ex, const Cloud& cloud);
+
+/// Leaves strays out of the points to use. O(n), and nothing if there are none.
+/// @throws Error no_normals if the normals of all others have zero length
+template <exec::Space Exec>
+void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points);
 
 /// The points to use as samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys.
 template <exec::Space Exec>

@@ -14,7 +14,6 @@
 #include "field/evaluate.hpp"
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
-#include "octree/strays.hpp"
 #include "points.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
@@ -101,7 +100,7 @@ octree::Frame fit_cube(Exec& ex, DevicePoints& points, const Options& options, R
   if (options.keep_strays) return octree::fit_frame(ex, points.positions.cview(), options.scale);
   const octree::StrayPoints strays = octree::find_strays(ex, points.positions.cview());
   report_strays(strays, report);
-  points.used = octree::without_strays(ex, points.positions.size(), strays);
+  leave_out(ex, strays, points);
   return octree::frame_around(strays.core, options.scale);
 }
 

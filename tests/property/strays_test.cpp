@@ -97,7 +97,7 @@ TEST(Strays, AloneWithNormalsEndInAnError) {
   Cloud cloud = test::sphere_cloud(1'000, 11);
   for (Vec3f& n : cloud.normals) n = {};
   cloud = with_points_at(cloud, {{500, 0, 0}});
-  EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {.depth = 5}); }), ErrorCode::empty_result);
+  EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {.depth = 5}); }), ErrorCode::no_normals);
 }
 
 TEST(Strays, ArePubliclyFound) {

@@ -1,10 +1,9 @@
 // The offset that is chosen on reading, with and without strays: the points keep their places.
 #include <gtest/gtest.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <string>
 #include <vector>
@@ -31,7 +30,11 @@ std::vector<Vec3d> sphere_at(const Vec3d& centre, std::int64_t n, const std::vec
 
 std::string text_of(const std::vector<Vec3d>& points) {
   std::string text;
-  for (const Vec3d& p : points) text += fmt::format("{} {} {}\n", p[0], p[1], p[2]);
+  for (const Vec3d& p : points) {
+    char line[100];
+    const int length = std::snprintf(line, sizeof line, "%.17g %.17g %.17g\n", p[0], p[1], p[2]);
+    text.append(line, static_cast<std::size_t>(length));
+  }
   return text;
 }
 
@@ -63,7 +66,7 @@ TEST(AutomaticShift, KeepsAnObjectExactWhateverStraysThereAre) {
     for (std::size_t s = 0; s < all_strays.size(); ++s) {
       const std::vector<Vec3d> points = sphere_at(centre, 3'000, all_strays[s]);
       const Cloud cloud = read(points);
-      SCOPED_TRACE(fmt::format("centre {}, strays number {}", centre[0], s));
+      SCOPED_TRACE("centre " + std::to_string(centre[0]) + ", strays number " + std::to_string(s));
       ASSERT_EQ(cloud.positions.size(), points.size());
       // Coordinates up to 1000 times the diameter of 1: the spacing of floats there, and double's near 5e6.
       EXPECT_LE(worst_error(cloud, points, centre), 0x1p-15 + 1e-9);

@@ -30,9 +30,8 @@ struct StrayPoints {
 /// Finds the strays of `positions`, at most stray_limit(n) of them (core/stray_limit.hpp).
 /// @param positions  shape (n), finite
 /// @throws Error empty_result if there are no points
-/// O(n). One reduction and one wait, as for the bounding box alone, unless points lie beyond the box that 1 point in
-/// 64 at either end spans, and its longest side further; then O(n) once more, 6 n bytes of scratch and three waits
-/// more.
+/// O(n), on the device one reduction and one wait, as for the bounding box alone. Where points lie farther out than
+/// that can rule out, O(n) twice more, up to 8 n bytes of scratch and four waits.
 template <exec::Space Exec>
 StrayPoints find_strays(Exec& ex, ArrayView<const Vec3f> positions);
 

@@ -101,6 +101,22 @@ TYPED_TEST_P(StraysOn, FollowTheirDefinitionInRandomClouds) {
   EXPECT_LT(with_strays, 50);
 }
 
+TYPED_TEST_P(StraysOn, BeginFartherAwayThanTheLongestSide) {
+  for (const float x : {2.0F, 2.5F, 2.9F, 3.1F, 3.5F, 4.0F, 5.0F, 6.0F, 8.0F}) {  // from a box that ends at 1, 2 wide
+    SCOPED_TRACE(x);
+    const Cloud cloud = with_points_at(sphere_cloud(20'000, 8), {{x, 0, 0}});
+    EXPECT_EQ(expect_definition(this->space(), cloud.positions), x > 3 ? 1 : 0);
+  }
+}
+
+TYPED_TEST_P(StraysOn, AreKeptWhereTheyHardlyWidenTheBox) {
+  for (const float z : {2.5F, 2.9F, 3.1F, 4.0F}) {  // above a plane 2 wide
+    SCOPED_TRACE(z);
+    const Cloud cloud = with_points_at(plane_cloud(20'000, 9), {{0, 0, z}});
+    EXPECT_EQ(expect_definition(this->space(), cloud.positions), z > 3 ? 1 : 0);
+  }
+}
+
 TYPED_TEST_P(StraysOn, DoNotDependOnTheOrderOfThePoints) {
   const Cloud cloud = with_points_at(sphere_cloud(30'000, 6), places_around(20, 7, 6, 200));
   const octree::StrayPoints expected = strays_on(this->space(), cloud.positions);
@@ -127,7 +143,7 @@ TYPED_TEST_P(StraysOn, LeaveTheOtherIndices) {
 
 REGISTER_TYPED_TEST_SUITE_P(StraysOn, AreNotFoundInCloudsWithout, AreAllThatWereAdded,
                             AreFoundByTheHundredInLargeClouds, AreFoundAlongsideFarPartsOfTheScene,
-                            FollowTheirDefinitionInRandomClouds, DoNotDependOnTheOrderOfThePoints,
-                            LeaveTheOtherIndices);
+                            FollowTheirDefinitionInRandomClouds, BeginFartherAwayThanTheLongestSide,
+                            AreKeptWhereTheyHardlyWidenTheBox, DoNotDependOnTheOrderOfThePoints, LeaveTheOtherIndices);
 
 }  // namespace pointskin::test

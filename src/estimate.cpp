@@ -9,6 +9,7 @@
 #include "memory_model.hpp"
 #include "octree/frame.hpp"
 #include "octree/keys.hpp"
+#include "octree/strays.hpp"
 
 namespace pointskin {
 namespace {
@@ -19,20 +20,42 @@ struct CellKeyOfPoint {
   ArrayView<const Vec3f> positions;
   int depth;
   ArrayView<std::uint64_t> keys;
+  octree::Selection selection;
   void operator()(std::int64_t i) const {
-    const Vec3f p = frame.to_unit(positions[i]);
+    const Vec3f p = frame.to_unit(positions[selection(i)]);
     const int below = 3 * (octree::kPointBits - depth);
     keys[i] = octree::point_key(p.x, p.y, p.z) >> below << below;
   }
 };
 
+ArrayView<const Vec3f> positions_of(const Cloud& cloud) { return {cloud.positions.data(), cloud.size()}; }
+
+/// The points that count and their cube, as the run finds them.
+struct Used {
+  octree::Frame frame;
+  std::int64_t strays = 0;
+  exec::Buffer<std::int32_t> points;  // empty: all
+
+  Used(exec::Cpu& ex, const Cloud& cloud, const Options& options) {
+    if (options.keep_strays) {
+      frame = octree::fit_frame(ex, positions_of(cloud), options.scale);
+      return;
+    }
+    const octree::StrayPoints found = octree::find_strays(ex, positions_of(cloud));
+    frame = octree::frame_around(found.core, options.scale);
+    strays = found.size();
+    points = octree::without_strays(ex, cloud.size(), found);
+  }
+};
+
 /// Counts from the points themselves. 16 bytes a point and up to 5 a node.
-detail::RunSize measure_run(exec::Cpu& ex, const octree::Frame& frame, const Cloud& cloud, int depth) {
-  const ArrayView<const Vec3f> positions{cloud.positions.data(), cloud.size()};
-  auto keys = exec::make_buffer<std::uint64_t>(ex, cloud.size());
-  for_each(ex, "estimate.keys", keys.size(), CellKeyOfPoint{frame, positions, depth, keys.view()});
+detail::RunSize measure_run(exec::Cpu& ex, const Cloud& cloud, const Options& options) {
+  const Used used(ex, cloud, options);
+  auto keys = exec::make_buffer<std::uint64_t>(ex, cloud.size() - used.strays);
+  for_each(ex, "estimate.keys", keys.size(),
+           CellKeyOfPoint{used.frame, positions_of(cloud), options.depth, keys.view(), {used.points.cview()}});
   sort_keys(ex, "estimate.sort", keys, 3 * octree::kPointBits);
-  return {cloud.size(), octree::count_bricks(ex, keys.cview(), depth)};
+  return {keys.size(), octree::count_bricks(ex, keys.cview(), options.depth), used.strays};
 }
 
 }  // namespace
@@ -54,15 +77,14 @@ std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) 
 std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, int threads) {
   validate(options);
   exec::Cpu ex(threads);
-  octree::Frame frame;
+  detail::RunSize size;
   try {
-    frame = octree::fit_frame(ex, ArrayView<const Vec3f>{cloud.positions.data(), cloud.size()}, options.scale);
+    size = measure_run(ex, cloud, options);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::empty_result) throw;
     return detail::uploaded_bytes(cloud.size());  // the run ends here, too
   }
-  const std::vector<detail::PhaseBytes> phases =
-      detail::model_memory(measure_run(ex, frame, cloud, options.depth), options);
+  const std::vector<detail::PhaseBytes> phases = detail::model_memory(size, options);
   return std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.bytes < b.bytes; })
       ->bytes;
 }

@@ -11,6 +11,7 @@ namespace {
 // Bytes a point.
 constexpr std::int64_t kUploaded = 24;             // position, normal
 constexpr std::int64_t kSorting = kUploaded + 44;  // position in the cube, hash; key, index, and both again
+constexpr std::int64_t kSelected = 4;              // index of a point that is used, where some are not
 constexpr std::int64_t kSorted = 24;               // position in the cube, normal
 constexpr std::int64_t kKey = 8;
 constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
@@ -84,7 +85,9 @@ struct Model {
   /// The solved field.
   [[nodiscard]] std::int64_t field() const { return tree() + kept_counts() + kNodeValue * bricks; }
 
-  [[nodiscard]] std::int64_t sort() const { return kSorting * points; }
+  [[nodiscard]] std::int64_t sort() const {
+    return kSorting * points + (size.strays > 0 ? kUploaded * size.strays + kSelected * points : 0);
+  }
 
   /// Keys of all cell bricks, and what finding them takes: bitmaps and the bits before every word, or eight candidates
   /// an occupied cell, sorted.

@@ -14,8 +14,9 @@ namespace pointskin::detail {
 
 /// What decides how much memory a run takes.
 struct RunSize {
-  std::int64_t points = 0;
+  std::int64_t points = 0;                  ///< that are used
   std::vector<octree::BrickCounts> levels;  ///< depth 0 first
+  std::int64_t strays = 0;                  ///< points that are left out
 };
 
 /// The largest sum of buffers in one phase of a run.

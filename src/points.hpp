@@ -7,6 +7,7 @@
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
 #include "octree/frame.hpp"
+#include "octree/strays.hpp"
 #include "poisson/samples.hpp"
 #include "surface/extract.hpp"
 
@@ -15,6 +16,9 @@ namespace pointskin::detail {
 /// A cloud in a space, in the caller's order and coordinates.
 struct DevicePoints {
   exec::Buffer<Vec3f> positions, normals;
+  exec::Buffer<std::int32_t> used{};  ///< indices of the points to use, ascending; empty: all of them
+
+  [[nodiscard]] std::int64_t used_count() const { return used.empty() ? positions.size() : used.size(); }
 };
 
 /// Copies a cloud to the space.
@@ -24,7 +28,12 @@ struct DevicePoints {
 template <exec::Space Exec>
 DevicePoints upload(Exec& ex, const Cloud& cloud);
 
-/// Samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys.
+/// Leaves strays out of the points to use. O(n), and nothing if there are none.
+/// @throws Error no_normals if the normals of all others have zero length
+template <exec::Space Exec>
+void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points);
+
+/// The points to use as samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys.
 template <exec::Space Exec>
 poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
                                 exec::Buffer<std::uint64_t>& keys);

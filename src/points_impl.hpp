@@ -26,6 +26,7 @@ struct ToWorld {
 struct HashPoint {
   ArrayView<const Vec3f> positions, normals;
   ArrayView<std::uint64_t> hashes;
+  octree::Selection selection{};
 
   PSK_HD static std::uint64_t mix(std::uint64_t hash, float value) {
     std::uint32_t bits;
@@ -34,8 +35,9 @@ struct HashPoint {
     return hash ^ hash >> 33;
   }
   PSK_HD void operator()(std::int64_t i) const {
-    const Vec3f p = positions[i];
-    const Vec3f n = normals[i];
+    const std::int64_t from = selection(i);
+    const Vec3f p = positions[from];
+    const Vec3f n = normals[from];
     hashes[i] = mix(mix(mix(mix(mix(mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z), n.x), n.y), n.z);
   }
 };
@@ -47,14 +49,16 @@ struct Flaws {
 };
 struct FindFlaws {
   ArrayView<const Vec3f> positions, normals;
+  octree::Selection selection{};
 
   PSK_HD static bool is_finite(const Vec3f& v) {
     const float sum = 0 * v.x + 0 * v.y + 0 * v.z;  // anything not finite becomes NaN
     return sum == 0;
   }
   PSK_HD Flaws operator()(std::int64_t i) const {
-    const Vec3f n = normals[i];
-    return {is_finite(positions[i]) && is_finite(n) ? 0 : 1, n.x != 0 || n.y != 0 || n.z != 0 ? 1 : 0};
+    const std::int64_t from = selection(i);
+    const Vec3f n = normals[from];
+    return {is_finite(positions[from]) && is_finite(n) ? 0 : 1, n.x != 0 || n.y != 0 || n.z != 0 ? 1 : 0};
   }
 };
 struct AddFlaws {
@@ -62,6 +66,19 @@ struct AddFlaws {
     return {a.not_finite + b.not_finite, a.with_normal + b.with_normal};
   }
 };
+
+/// Flaws of the points to use. Waits.
+template <exec::Space Exec>
+Flaws find_flaws(Exec& ex, const DevicePoints& points) {
+  return exec::reduce<Flaws>(ex, "upload.check", points.used_count(),
+                             FindFlaws{points.positions.cview(), points.normals.cview(), {points.used.cview()}},
+                             AddFlaws{});
+}
+
+inline void require_normals(const Flaws& flaws) {
+  if (flaws.with_normal == 0)
+    throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
+}
 
 /// Moves to the host, into memory that `to` may have already.
 template <class T, exec::Space Exec>
@@ -86,32 +103,40 @@ DevicePoints upload(Exec& ex, const Cloud& cloud) {
   DevicePoints points{exec::make_buffer<Vec3f>(ex, cloud.size()), exec::make_buffer<Vec3f>(ex, cloud.size())};
   copy_to_device(ex, cloud.positions.data(), points.positions.view());
   copy_to_device(ex, cloud.normals.data(), points.normals.view());
-  const auto flaws = exec::reduce<points::Flaws>(ex, "upload.check", cloud.size(),
-                                                 points::FindFlaws{points.positions.cview(), points.normals.cview()},
-                                                 points::AddFlaws{});
+  const points::Flaws flaws = points::find_flaws(ex, points);
   if (flaws.not_finite > 0)
     throw Error(
         ErrorCode::invalid_input,
         std::to_string(flaws.not_finite) + " points have coordinates or normals that are not finite; leave them out");
-  if (flaws.with_normal == 0)
-    throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
+  points::require_normals(flaws);
   return points;
+}
+
+template <exec::Space Exec>
+void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points) {
+  if (strays.indices.empty()) return;
+  points.used = octree::without_strays(ex, points.positions.size(), strays);
+  points::require_normals(points::find_flaws(ex, points));
 }
 
 template <exec::Space Exec>
 poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
                                 exec::Buffer<std::uint64_t>& keys) {
-  const std::int64_t n = points.positions.size();
+  const std::int64_t n = points.used_count();
+  const octree::Selection selection{points.used.cview()};
   auto unit = exec::make_buffer<Vec3f>(ex, n);
   auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
-  for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view()});
-  for_each(ex, "octree.hash", n, points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
+  for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view(), selection});
+  for_each(ex, "octree.hash", n,
+           points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view(), selection});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   hashes.reset();
   poisson::Samples samples;
   samples.positions = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, unit.cview(), sorted.order.cview(), samples.positions.view());
   unit.reset();
+  if (!points.used.empty())  // from here on, the order leads to the caller's points
+    exec::gather(ex, points.used.cview(), sorted.order.cview(), sorted.order.view());
   samples.normals = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
   keys = std::move(sorted.keys);

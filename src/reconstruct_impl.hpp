@@ -86,15 +86,37 @@ inline void report_levels(const octree::OctreeData& tree, const std::vector<pois
                              level.residual_before, level.residual_after});
 }
 
-/// Points to implicit function. Frees `points` once they are sorted, unless they are to be kept for another run.
+inline void report_strays(const octree::StrayPoints& strays, RunReport& report) {
+  constexpr std::size_t kListed = 10;
+  report.strays = strays.size();
+  for (std::size_t i = 0; i < std::min(kListed, strays.positions.size()); ++i) {
+    const Vec3f& p = strays.positions[i];
+    report.farthest_strays.push_back({p.x, p.y, p.z});
+  }
+}
+
+/// The working cube; leaves strays out of the points that are used, unless they are to be kept.
+template <exec::Space Exec>
+octree::Frame fit_cube(Exec& ex, DevicePoints& points, const Options& options, RunReport& report) {
+  report.strays = 0;
+  report.farthest_strays.clear();
+  if (options.keep_strays) return octree::fit_frame(ex, points.positions.cview(), options.scale);
+  const octree::StrayPoints strays = octree::find_strays(ex, points.positions.cview());
+  report_strays(strays, report);
+  leave_out(ex, strays, points);
+  return octree::frame_around(strays.core, options.scale);
+}
+
+/// Points to implicit function. The report's places are relative to the cloud's origin. Frees `points` once they are
+/// sorted, unless they are to be kept for another run.
 template <exec::Space Exec>
 FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Options& options, RunReport& report) {
   PhaseClock clock(ex);
   FieldData field;
-  report.points = points.positions.size();
 
   announce(options, "octree", 0.05);
-  field.frame = octree::fit_frame(ex, points.positions.cview(), options.scale);
+  field.frame = fit_cube(ex, points, options, report);
+  report.points = points.used_count();
   exec::Buffer<std::uint64_t> keys;
   poisson::Samples samples = sort_into_cube(ex, points, field.frame, keys);
   if (!keep_points) points = {};
@@ -258,6 +280,8 @@ class EngineOn final : public Engine {
     clock.lap(report.upload_ms);
     clock.read();
     FieldData data = fit_field(*ex_, points, false, options, report);
+    for (Vec3d& p : report.farthest_strays)
+      for (std::size_t a = 0; a < 3; ++a) p[a] += cloud.origin[a];
     report.device_peak_bytes = ex_->pool()->peak_bytes();
     return std::make_shared<FieldOn<Exec>>(ex_, std::move(data), options, cloud.origin);
   }

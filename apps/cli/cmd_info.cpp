@@ -1,7 +1,9 @@
 // pointskin info: what a file holds.
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -48,9 +50,19 @@ Json points_json(const std::vector<Vec3f>& positions, const Vec3d& origin, const
   return json;
 }
 
+Json strays_json(const Cloud& cloud) {
+  constexpr std::size_t kListed = 10;
+  const std::vector<std::int64_t> strays = find_strays(cloud.positions).points;
+  Json places = Json::array();
+  for (std::size_t i = 0; i < std::min(kListed, strays.size()); ++i)
+    places.push_back(world(cloud.positions[static_cast<std::size_t>(strays[i])], cloud.origin));
+  return {{"count", strays.size()}, {"points", places}};
+}
+
 Json describe(const Cloud& cloud) {
   Json json = {{"kind", "cloud"}, {"points", cloud.size()}, {"dropped", cloud.dropped}};
   json["normals"] = cloud.has_normals();
+  json["strays"] = strays_json(cloud);
   json.update(points_json(cloud.positions, cloud.origin, cloud.attributes));
   return json;
 }
@@ -90,6 +102,9 @@ std::string human_text(const Json& json) {
   line("lower", vector_text(json["bounds"]["lower"]));
   line("upper", vector_text(json["bounds"]["upper"]));
   line("origin", vector_text(json["origin"]));
+  if (json.contains("strays") && json["strays"]["count"].get<std::int64_t>() > 0)
+    line("strays", fmt::format("{}, the farthest at {}", json["strays"]["count"].get<std::int64_t>(),
+                               vector_text(json["strays"]["points"][0])));
   line("spacing", fmt::format("{:.4g}", json["spacing"].get<double>()));
   return text;
 }
@@ -106,7 +121,8 @@ int run(const InfoArgs& args) {
 
 constexpr char kFooter[] =
     "Prints counts, normals, attributes and their types, the bounding box in world coordinates, the origin that was\n"
-    "subtracted while reading, and the spacing: the median distance to the nearest neighbour, in world units.";
+    "subtracted while reading, stray points far from all others (`reconstruct` leaves them out), and the spacing: the\n"
+    "median distance to the nearest neighbour, in world units.";
 
 }  // namespace
 

@@ -71,10 +71,11 @@ Cloud read_input(const ReconstructArgs& args, Record& record) {
   return cloud;
 }
 
-double cube_world(const Cloud& cloud, double scale) {
-  const Bounds box = bounds_of(cloud.positions);
-  return scale * std::max({double{box.upper.x} - box.lower.x, double{box.upper.y} - box.lower.y,
-                           double{box.upper.z} - box.lower.z});
+/// Side of the working cube.
+double cube_world(const Cloud& cloud, const Options& options, int threads) {
+  const Bounds box = options.keep_strays ? bounds_of(cloud.positions) : find_strays(cloud.positions, threads).core;
+  return options.scale * std::max({double{box.upper.x} - box.lower.x, double{box.upper.y} - box.lower.y,
+                                   double{box.upper.z} - box.lower.z});
 }
 
 std::int64_t host_bytes(const Cloud& cloud) {
@@ -105,6 +106,15 @@ void check_memory(std::int64_t estimate, std::int64_t limit) {
   throw Error(ErrorCode::over_limit,
               fmt::format("the estimate of {} is above --max-memory {}; use a smaller --depth or allow more",
                           bytes_text(estimate), format_bytes(static_cast<double>(limit))));
+}
+
+void warn_about_strays(const Cloud& cloud, int threads) {
+  const Strays strays = find_strays(cloud.positions, threads);
+  if (strays.points.empty()) return;
+  const Vec3f& p = cloud.positions[static_cast<std::size_t>(strays.points.front())];
+  const Vec3d& origin = cloud.origin;
+  print_warning(strays_text(static_cast<std::int64_t>(strays.points.size()),
+                            {origin[0] + p.x, origin[1] + p.y, origin[2] + p.z}));
 }
 
 void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record, const Estimate& estimate) {
@@ -138,6 +148,7 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   Mesh mesh = reconstructor.reconstruct(cloud, options);
   line.clear();
   record.run = reconstructor.report();
+  if (record.run.strays > 0) print_warning(strays_text(record.run.strays, record.run.farthest_strays.front()));
   if (mesh.triangles.empty()) throw Error(ErrorCode::empty_result, "the surface has no triangles");
   if (args.repeat > 0) {
     options.residuals = false;  // They cost time and are not part of the job.
@@ -159,7 +170,7 @@ void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record)
 /// Settles what depends on the points.
 void settle_options(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   Options& options = record.options;
-  if (args.width_given) options.depth = depth_for_width(cube_world(cloud, options.scale), args.width_world);
+  if (args.width_given) options.depth = depth_for_width(cube_world(cloud, options, args.threads), args.width_world);
   record.other_options = other_options(args);
 }
 
@@ -178,6 +189,7 @@ int run(const ReconstructArgs& given) {
   settle_options(args, cloud, record);
   if (args.dry_run || record.options.max_memory_bytes > 0) {
     const Estimate estimate = estimate_memory(cloud, record, args.threads);
+    if (args.dry_run && !record.options.keep_strays) warn_about_strays(cloud, args.threads);
     if (args.dry_run) print_estimate(args, cloud, record, estimate);
     check_memory(estimate.total(), record.options.max_memory_bytes);
   }

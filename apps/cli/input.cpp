@@ -112,6 +112,13 @@ std::int64_t drop_zero_normals(Cloud& cloud) {
   return zero;
 }
 
+std::string strays_text(std::int64_t count, const Vec3d& farthest) {
+  return fmt::format(
+      "{} stray points far from all others are left out, the farthest at {:.9g} {:.9g} {:.9g}; use "
+      "--keep-strays to keep them",
+      count, farthest[0], farthest[1], farthest[2]);
+}
+
 std::variant<Cloud, Mesh> read_cloud_or_mesh(const std::string& path, const ReadOptions& options) {
   if (path == "-") make_stdin_seekable();
   if (!may_hold_faces(path)) return read_cloud(path, options);

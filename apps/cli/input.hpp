@@ -25,6 +25,9 @@ Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& opti
 /// @throws Error no_normals if the cloud has no normals, or none that is not zero
 std::int64_t drop_zero_normals(Cloud& cloud);
 
+/// What to tell of strays that are left out: how many, where the farthest is in world units, and how to keep them.
+std::string strays_text(std::int64_t count, const Vec3d& farthest);
+
 /// Reads `path` as a mesh if it is a PLY with faces or another mesh format, else as a cloud. "-" is stdin.
 /// A mesh format without faces gives a cloud of its vertices.
 /// @throws Error as read_mesh and read_cloud

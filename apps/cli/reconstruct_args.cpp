@@ -59,6 +59,8 @@ void define_surface(CLI::App& command, ReconstructArgs& args) {
   add_value(command, "--island-ratio", options.island_ratio, "trim: smallest piece, share of the area, 0 to below 1")
       ->type_name("R");
   command.add_flag("--density", options.density, "add the property density, points per world unit^2")->group("Surface");
+  command.add_flag("--keep-strays", options.keep_strays, "use stray points, too, and make the cube for all points")
+      ->group("Surface");
   command.add_flag("--no-normals", args.no_normals, "leave vertex normals out of the mesh")->group("Surface");
 }
 

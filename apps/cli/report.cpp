@@ -29,8 +29,18 @@ Json options_json(const Record& record) {
                {"open", options.domain_faces == DomainFaces::open},
                {"trim", options.trim},
                {"island_ratio", options.island_ratio},
+               {"keep_strays", options.keep_strays},
                {"max_memory_bytes", options.max_memory_bytes}};
   json.update(record.other_options);
+  return json;
+}
+
+/// Points that were used.
+std::int64_t used(const Record& record) { return record.points - record.dropped - record.run.strays; }
+
+Json input_json(const Record& record) {
+  Json json = {{"points", record.points}, {"used", used(record)}, {"dropped", record.dropped}};
+  json["strays"] = {{"count", record.run.strays}, {"points", record.run.farthest_strays}};
   return json;
 }
 
@@ -85,7 +95,7 @@ Json repeat_json(const std::vector<double>& values) {
 Json to_json(const Record& record) {
   Json json = {{"version", 1}, {"command", "reconstruct"}};
   json["device"] = {{"kind", record.device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", record.device.name()}};
-  json["input"] = {{"points", record.points}, {"used", record.points - record.dropped}, {"dropped", record.dropped}};
+  json["input"] = input_json(record);
   json["options"] = options_json(record);
   json["octree"] = octree_json(record.run);
   json["solve"] = solve_json(record.run);
@@ -104,8 +114,8 @@ std::string summary(const Record& record) {
   std::string line = fmt::format(
       "points {}, depth {}, triangles {}; ms: octree {:.1f}, function {:.1f}, surface {:.1f}, total {:.1f}; "
       "memory {} device, {} host",
-      record.points - record.dropped, run.depth, record.mesh.triangles, run.octree_ms, function_ms, run.extract_ms,
-      record.total_ms, format_bytes(static_cast<double>(run.device_peak_bytes)),
+      used(record), run.depth, record.mesh.triangles, run.octree_ms, function_ms, run.extract_ms, record.total_ms,
+      format_bytes(static_cast<double>(run.device_peak_bytes)),
       format_bytes(static_cast<double>(record.host_peak_bytes)));
   if (record.options.trim > 0) {
     const double share = run.trim.area_before > 0 ? run.trim.area_removed / run.trim.area_before : 0;

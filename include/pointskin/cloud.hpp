@@ -42,4 +42,19 @@ struct Bounds {
 /// Smallest box around `positions`; all zero if there are none. O(n), exact.
 Bounds bounds_of(const std::vector<Vec3f>& positions);
 
+/// Stray points: so few and so far from all others that a box around all would be made for them.
+///
+/// At most 32 points, 1 in 1000 of larger clouds (256 at most), 1 in 100 of smaller ones, none below 128 points. All
+/// lie farther from the box of the others, along some axis, than its longest side, which is at most 2/3 of that with
+/// them. Where more than 32 are outside, they have fewer than 8 others within an eighth of their distance: far parts of
+/// a scene are no strays.
+struct Strays {
+  std::vector<std::int64_t> points;  ///< indices, the farthest first
+  Bounds core;                       ///< bounding box of all other points
+};
+
+/// Finds the strays among `positions`, which are finite. Independent of the order of the points and of `threads` (CPU
+/// threads, 0: all). O(n), no memory worth mentioning. No strays where there are no points.
+Strays find_strays(const std::vector<Vec3f>& positions, int threads = 0);
+
 }  // namespace pointskin

@@ -13,7 +13,8 @@ namespace pointskin {
 struct ReadOptions {
   /// Offset to subtract from every coordinate before float is used. Unset ("auto"): zero if float keeps the
   /// coordinates exact enough (largest magnitude below 1000 times the extent, or the file itself holds binary floats),
-  /// else the whole-number centre of the bounding box.
+  /// else the whole-number centre of the bounding box. Where a few strays stretch the box so far that the offset for
+  /// all would not be exact enough for the others, it is chosen for the others.
   std::optional<Vec3d> shift;
   int threads = 0;  ///< CPU threads, 0: all
 };

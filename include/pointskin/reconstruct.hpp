@@ -33,7 +33,7 @@ struct Options {
                                  ///< weigh less, those that agree more (0.05 to 3.1 times `screening`)
   int iterations = 8;  ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
                        ///< max(this, twice their cells along an axis)
-  double scale = 1.1;  ///< working cube / bounding cube of the points, in [1, 100]
+  double scale = 1.1;  ///< working cube / bounding cube of the points used, in [1, 100]
   double samples_per_node =
       1.5;  ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
   bool confidence = false;  ///< true: a normal's length, relative to the mean length, is the weight of its point
@@ -45,6 +45,7 @@ struct Options {
                     ///< this share of all; in [0, 1); 0: off, the mesh is closed. 0.01 to 0.1 suit open scans
   double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,
                                 ///< islands are removed and pinholes stay closed; in [0, 1)
+  bool keep_strays = false;     ///< true: stray points count, too (see Strays); the cube is made for all points
   bool residuals = false;       ///< true: measure the residual of every level before and after its solve
   std::int64_t max_memory_bytes = 0;  ///< refuse to start when the estimate is larger; 0: no limit
 
@@ -74,7 +75,9 @@ struct TrimReport {
 
 /// What a run did and what it cost. Times are milliseconds on the device's clock.
 struct RunReport {
-  std::int64_t points = 0;  ///< points used
+  std::int64_t points = 0;             ///< points used
+  std::int64_t strays = 0;             ///< points left out because they are strays; 0 with Options::keep_strays
+  std::vector<Vec3d> farthest_strays;  ///< up to 10 of them, world units, the farthest first
   int depth = 0;
   std::int64_t nodes = 0;           ///< cells of all depths
   std::vector<LevelReport> levels;  ///< depth 0 first
@@ -111,6 +114,7 @@ class Reconstructor {
   void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh);
 
   /// Fits the implicit function (screened Poisson, Kazhdan & Hoppe 2013, on the octree of Zhou et al. 2010).
+  /// Strays are left out and reported unless Options::keep_strays: they would take the cube's resolution from the rest.
   /// The Field shares this reconstructor's device resources and may outlive it.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.
   /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),

@@ -76,13 +76,10 @@ T read_element(Exec& ex, ArrayView<const T> from, std::int64_t i) {
   return value;
 }
 
-/// combine over f(0), ..., f(n-1) for n > 0, in the order of exec/reduce_order.hpp, which depends on n alone: the same
-/// bits in every space and for every number of threads. About n calls of f; O(log n) launches; waits.
-template <class T, Space Exec, class F, class Combine>
-T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
-  std::int64_t lanes = reduce_lanes(n);
-  Buffer<T> sums = make_buffer<T>(ex, lanes);
-  for_each(ex, label, lanes, detail::ReduceLane<T, F, Combine>{f, combine, n, lanes, sums.view()});
+/// The rest of reduce: combines the lanes' values, of which there is at least one. Waits.
+template <class T, Space Exec, class Combine>
+T reduce_lane_values(Exec& ex, const char* label, Buffer<T> sums, Combine combine) {
+  std::int64_t lanes = sums.size();
   while (lanes > kReduceTail) {
     const std::int64_t fewer = reduce_lanes(lanes);
     Buffer<T> next = make_buffer<T>(ex, fewer);
@@ -95,6 +92,16 @@ T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
   Buffer<T> total = make_buffer<T>(ex, 1);
   reduce_tail(ex, label, sums.cview(), total.view(), combine);
   return read_element(ex, total.cview(), 0);
+}
+
+/// combine over f(0), ..., f(n-1) for n > 0, in the order of exec/reduce_order.hpp, which depends on n alone: the same
+/// bits in every space and for every number of threads. About n calls of f; O(log n) launches; waits.
+template <class T, Space Exec, class F, class Combine>
+T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
+  const std::int64_t lanes = reduce_lanes(n);
+  Buffer<T> sums = make_buffer<T>(ex, lanes);
+  for_each(ex, label, lanes, detail::ReduceLane<T, F, Combine>{f, combine, n, lanes, sums.view()});
+  return reduce_lane_values(ex, label, std::move(sums), combine);
 }
 
 /// Sum of counts, in 64 bits. Waits.

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "exec/host_array.hpp"
 #include "io/blocks.hpp"
+#include "io/shift.hpp"
 
 namespace pointskin::io {
 namespace {
@@ -100,66 +101,54 @@ bool is_finite(const Vec3d& p) {
          std::abs(p[2]) <= kLargestCoordinate;
 }
 
-struct Box {
-  Vec3d lower{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-              std::numeric_limits<double>::infinity()};
-  Vec3d upper{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-              -std::numeric_limits<double>::infinity()};
-  void add(const Vec3d& low, const Vec3d& high) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], low[axis]);
-      upper[axis] = std::max(upper[axis], high[axis]);
-    }
-  }
-};
-
-/// What the first pass finds out: where each block's points go, and, if asked for, their box.
+/// What the first pass finds out: where each block's points go, and, if asked for, boxes of kRunRows rows each.
 struct Survey {
   std::vector<std::int64_t> first;  ///< shape (blocks + 1); the last is the number of points kept
-  Box box;
+  std::vector<Box> runs;
+
+  [[nodiscard]] std::int64_t blocks() const { return static_cast<std::int64_t>(first.size()) - 1; }
 };
 
-Survey survey(exec::Cpu& ex, const PointTable& table, const Roles& roles, bool want_box) {
+Survey survey(exec::Cpu& ex, const PointTable& table, const Roles& roles, bool want_boxes) {
+  static_assert(kBlockRows % kRunRows == 0);
   const std::int64_t blocks = (table.rows + kBlockRows - 1) / kBlockRows;
   Survey result{std::vector<std::int64_t>(static_cast<std::size_t>(blocks) + 1, 0), {}};
-  std::vector<Box> boxes(static_cast<std::size_t>(blocks));
+  if (want_boxes) result.runs.resize(static_cast<std::size_t>((table.rows + kRunRows - 1) / kRunRows));
   run_in_order(ex, blocks, [&](std::int64_t b) {
     std::int64_t kept = 0;
-    Box box;
+    std::int64_t row = b * kBlockRows;
     for_triples(table, roles.position, {table, b}, [&](const Vec3d& p) {
+      const auto run = static_cast<std::size_t>(row++ / kRunRows);
       if (!is_finite(p)) return;
       ++kept;
-      if (want_box) box.add(p, p);
+      if (want_boxes) result.runs[run].add(p, p);
     });
-    boxes[static_cast<std::size_t>(b)] = box;
     result.first[static_cast<std::size_t>(b) + 1] = kept;
   });
-  for (std::size_t b = 0; b < boxes.size(); ++b) {
-    result.first[b + 1] += result.first[b];
-    result.box.add(boxes[b].lower, boxes[b].upper);
-  }
+  std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
   return result;
+}
+
+/// Finite points outside of a box, in the order of the rows.
+std::vector<Vec3d> points_beyond(exec::Cpu& ex, const PointTable& table, const Roles& roles, const Box& box) {
+  const std::int64_t blocks = (table.rows + kBlockRows - 1) / kBlockRows;
+  std::vector<std::vector<Vec3d>> found(static_cast<std::size_t>(blocks));
+  run_in_order(ex, blocks, [&](std::int64_t b) {
+    for_triples(table, roles.position, {table, b}, [&](const Vec3d& p) {
+      bool inside = true;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        inside = inside && p[axis] >= box.lower[axis] && p[axis] <= box.upper[axis];
+      if (!inside && is_finite(p)) found[static_cast<std::size_t>(b)].push_back(p);
+    });
+  });
+  std::vector<Vec3d> all;
+  for (const std::vector<Vec3d>& some : found) all.insert(all.end(), some.begin(), some.end());
+  return all;
 }
 
 bool holds_floats(const PointTable& table, const Roles& roles) {
   return std::all_of(roles.position.begin(), roles.position.end(),
                      [&](std::size_t c) { return table.columns[c].stored == Scalar::float32; });
-}
-
-/// The "auto" rule of ReadOptions::shift for coordinates that are not float.
-Vec3d automatic_shift(const Box& box) {
-  constexpr double kExactEnough = 1000;
-  double magnitude = 0;
-  double extent = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    magnitude = std::max({magnitude, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-    extent = std::max(extent, box.upper[axis] - box.lower[axis]);
-  }
-  if (magnitude == 0 || magnitude < kExactEnough * extent) return {0, 0, 0};
-  Vec3d centre{};
-  // Adding zero turns -0 into 0, which compares and prints as expected.
-  for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = std::round((box.lower[axis] + box.upper[axis]) / 2) + 0.0;
-  return centre;
 }
 
 Vec3f to_normal(const Vec3f& n) { return std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z) ? n : Vec3f{}; }
@@ -254,7 +243,8 @@ Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, con
   if (shift)
     cloud.origin = *shift;
   else if (wants_shift && kept > 0)
-    cloud.origin = automatic_shift(found.box);
+    cloud.origin = automatic_shift(found.runs, found.first.back(),
+                                   [&](const Box& box) { return points_beyond(ex, table, roles, box); });
   exec::resize(ex, cloud.positions, kept);
   if (roles.normal) exec::resize(ex, cloud.normals, kept);
   for (const std::size_t c : roles.attributes) {
@@ -263,7 +253,7 @@ Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, con
         {column.name, column.declared == Scalar::uint8 ? AttributeType::uint8 : AttributeType::float32, {}});
     exec::resize(ex, cloud.attributes.back().values, kept);
   }
-  run_in_order(ex, static_cast<std::int64_t>(found.first.size()) - 1,
+  run_in_order(ex, found.blocks(),
                [&](std::int64_t b) { fill_block(table, roles, b, found.first[static_cast<std::size_t>(b)], cloud); });
   return cloud;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include <pointskin/cloud.hpp>
 #include <pointskin/vector.hpp>
 
 #include "core/array_view.hpp"
@@ -28,15 +29,26 @@ struct Frame {
   }
 };
 
-/// Moves points into the unit cube.
+/// Which elements of an array are meant: those of a list, or all where there is none.
+struct Selection {
+  ArrayView<const std::int32_t> indices{};
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return indices.empty() ? i : indices[i]; }
+};
+
+/// Moves the points of a selection into the unit cube.
 struct ToUnit {
   Frame frame;
   ArrayView<const Vec3f> in;
   ArrayView<Vec3f> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_unit(in[i]); }
+  Selection selection{};
+  PSK_HD void operator()(std::int64_t i) const { out[i] = frame.to_unit(in[selection(i)]); }
 };
 
-/// Cube around the bounding box of `positions`, `scale` times as wide as its longest side, with the same centre.
+/// Cube around a box, `scale` times as wide as its longest side, with the same centre.
+/// @throws Error empty_result if the box is one place
+Frame frame_around(const Bounds& box, double scale);
+
+/// The same around the bounding box of all `positions`.
 /// @throws Error empty_result if there are no points or all are at one place
 /// O(n); exact but for the rounding of the cube itself, the same on every device.
 template <exec::Space Exec>

@@ -15,6 +15,7 @@
 
 #include "property/reconstruction.hpp"
 #include "support/shapes.hpp"
+#include "support/stray_clouds.hpp"
 
 namespace pointskin {
 namespace {
@@ -162,6 +163,25 @@ TEST_F(Gpu, EndsTinyCloudsAsTheCpuDoes) {
     const auto gpu_error = test::error_of([&] { on_gpu = Reconstructor(gpu_).reconstruct(cloud, options); });
     EXPECT_EQ(cpu_error, gpu_error);
     expect_same_bytes(on_cpu, on_gpu);
+  }
+}
+
+TEST_F(Gpu, LeavesOutTheStraysThatTheCpuLeavesOut) {
+  const Cloud clean = test::torus_cloud(30'000, 21, 0.7, 0.3);
+  for (const test::NamedPlaces& strays : test::stray_places()) {
+    SCOPED_TRACE(strays.name);
+    const Cloud cloud = test::with_points_at(clean, strays.places);
+    expect_parity(cloud, {.depth = 7, .density = true});
+    expect_parity(cloud, {.depth = 6, .keep_strays = true});
+    Reconstructor on_gpu(gpu_);
+    Reconstructor on_cpu(Device::cpu());
+    expect_same_bytes(on_gpu.reconstruct(cloud, {.depth = 6}), on_cpu.reconstruct(clean, {.depth = 6}));
+    (void)on_cpu.reconstruct(cloud, {.depth = 6});
+    EXPECT_EQ(on_gpu.report().points, clean.size());
+    EXPECT_EQ(on_gpu.report().strays, std::ssize(strays.places));
+    EXPECT_EQ(on_gpu.report().farthest_strays, on_cpu.report().farthest_strays);
+    for (const RunTimes& run : on_gpu.repeat(cloud, {.depth = 6}, 2))
+      EXPECT_EQ(run.triangles, std::ssize(on_gpu.reconstruct(clean, {.depth = 6}).triangles));
   }
 }
 

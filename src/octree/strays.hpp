@@ -1,0 +1,69 @@
+// Stray points: a few points so far from all others that the working cube would be made for them.
+//
+// The core is a box that keeps all but a few points. Whatever lies within its longest side from it belongs to it, which
+// makes it grow until it stands alone; what is then still outside, a gap as wide as the whole core away, is stray.
+// Only minima, maxima and counts decide, so the answer is the same on every device, for any number of threads and any
+// order of the points. docs/decisions/0016-stray-points.md has the reasons for the constants.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <pointskin/cloud.hpp>
+#include <pointskin/vector.hpp>
+
+#include "core/array_view.hpp"
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+
+namespace pointskin::octree {
+
+/// Strays with their places, the farthest first, and the bounding box of the other points.
+struct StrayPoints {
+  std::vector<std::int32_t> indices;
+  std::vector<Vec3f> positions;
+  Bounds core;
+
+  [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(indices.size()); }
+};
+
+/// Finds the strays of `positions`, at most stray_limit(n) of them (core/stray_limit.hpp).
+/// @param positions  shape (n), finite
+/// @throws Error empty_result if there are no points
+/// O(n), on the device one reduction and one wait, as for the bounding box alone. Where points lie farther out than
+/// that can rule out, O(n) twice more, up to 8 n bytes of scratch and four waits.
+template <exec::Space Exec>
+StrayPoints find_strays(Exec& ex, ArrayView<const Vec3f> positions);
+
+/// Indices of the points that are no strays, ascending; an empty array if there are no strays.
+/// @param n  number of all points
+template <exec::Space Exec>
+exec::Buffer<std::int32_t> without_strays(Exec& ex, std::int64_t n, const StrayPoints& strays);
+
+namespace strays {
+
+/// The points among which all strays are.
+struct Candidates {
+  std::vector<std::int32_t> indices;
+  std::vector<Vec3f> positions;
+};
+
+/// True unless it is certain that there are no strays.
+/// @param all    bounding box of all points
+/// @param inner  on either side of its upper and of its lower end, along every axis, are more points than may be strays
+bool may_have_strays(const Bounds& all, const Bounds& inner);
+
+/// The `rank`-th smallest lower and the `rank`-th largest upper ends of boxes, counted from 0, along every axis.
+Bounds ends_of(const std::vector<Bounds>& boxes, std::int64_t rank);
+
+/// Decides which candidates are strays.
+/// @param candidates  all points beyond `ends`
+/// @param ends        along every axis, more than `limit` points lie at or below the lower one, and at or above the
+/// upper
+/// @param all         bounding box of all points
+/// @param limit       most strays
+/// O(candidates + limit^2 rounds), on the host.
+StrayPoints choose_strays(const Candidates& candidates, const Bounds& ends, const Bounds& all, std::int64_t limit);
+
+}  // namespace strays
+}  // namespace pointskin::octree

@@ -26,13 +26,17 @@ struct CellKeyOfPoint {
   }
 };
 
+std::int64_t kept_attributes(const Cloud& cloud, const Options& options) {
+  return options.attributes ? static_cast<std::int64_t>(cloud.attributes.size()) : 0;
+}
+
 /// Counts from the points themselves. 16 bytes a point and up to 5 a node.
-detail::RunSize measure_run(exec::Cpu& ex, const octree::Frame& frame, const Cloud& cloud, int depth) {
+detail::RunSize measure_run(exec::Cpu& ex, const octree::Frame& frame, const Cloud& cloud, const Options& options) {
   const ArrayView<const Vec3f> positions{cloud.positions.data(), cloud.size()};
   auto keys = exec::make_buffer<std::uint64_t>(ex, cloud.size());
-  for_each(ex, "estimate.keys", keys.size(), CellKeyOfPoint{frame, positions, depth, keys.view()});
+  for_each(ex, "estimate.keys", keys.size(), CellKeyOfPoint{frame, positions, options.depth, keys.view()});
   sort_keys(ex, "estimate.sort", keys, 3 * octree::kPointBits);
-  return {cloud.size(), octree::count_bricks(ex, keys.cview(), depth)};
+  return {cloud.size(), octree::count_bricks(ex, keys.cview(), options.depth), kept_attributes(cloud, options)};
 }
 
 }  // namespace
@@ -44,11 +48,13 @@ std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) 
   constexpr double kNodesPerPoint = 27 * 8;
   constexpr double kBytesPerNode = 72;
   constexpr double kBytesPerPoint = 120;
+  constexpr double kBytesPerColour = 40;  // three attributes
   double nodes = 0;
   for (int d = 0; d <= options.depth; ++d)
     nodes += std::max(std::min(std::pow(8.0, d), 1e4), std::min({kNodesPerPoint * static_cast<double>(points),
                                                                  kNodesPerFace * std::pow(4.0, d), std::pow(8.0, d)}));
-  return static_cast<std::int64_t>(kBytesPerNode * nodes + kBytesPerPoint * static_cast<double>(points));
+  const double per_point = kBytesPerPoint + (options.attributes ? kBytesPerColour : 0);
+  return static_cast<std::int64_t>(kBytesPerNode * nodes + per_point * static_cast<double>(points));
 }
 
 std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, int threads) {
@@ -59,10 +65,9 @@ std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, i
     frame = octree::fit_frame(ex, ArrayView<const Vec3f>{cloud.positions.data(), cloud.size()}, options.scale);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::empty_result) throw;
-    return detail::uploaded_bytes(cloud.size());  // the run ends here, too
+    return detail::uploaded_bytes(cloud.size(), kept_attributes(cloud, options));  // the run ends here, too
   }
-  const std::vector<detail::PhaseBytes> phases =
-      detail::model_memory(measure_run(ex, frame, cloud, options.depth), options);
+  const std::vector<detail::PhaseBytes> phases = detail::model_memory(measure_run(ex, frame, cloud, options), options);
   return std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.bytes < b.bytes; })
       ->bytes;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "field/attributes.hpp"
 #include "octree/brick_sets.hpp"
 #include "octree/keys.hpp"
 
@@ -15,6 +16,8 @@ constexpr std::int64_t kSorted = 24;               // position in the cube, norm
 constexpr std::int64_t kKey = 8;
 constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
 constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
+constexpr std::int64_t kAttribute = 4;              // of each
+constexpr std::int64_t kUnit = 12;                  // position in the cube
 
 // Bytes a brick.
 constexpr std::int64_t kBrick = 121;             // key, parent, 27 neighbours, unknowns
@@ -47,6 +50,7 @@ struct Model {
   const RunSize& size;
   const Options& options;
   std::int64_t points = size.points;
+  std::int64_t attributes = size.attributes;
   std::int64_t bricks = 0, cell_bricks = 0;
   std::int64_t occupied_bricks = 1;  // the root's
   std::int64_t most_bricks = 0;      // of one level
@@ -72,7 +76,17 @@ struct Model {
   }
   [[nodiscard]] std::int64_t kept_counts() const { return options.density ? kNodeValue * counted_bricks : 0; }
 
-  [[nodiscard]] std::int64_t sort() const { return kSorting * points; }
+  /// Attributes of the samples, and what they count.
+  [[nodiscard]] std::int64_t kept_attributes() const {
+    const std::int64_t weight = attributes > 0 && options.confidence ? kAttribute : 0;
+    return (kAttribute * attributes + weight) * points;
+  }
+
+  /// The sort, or, with many attributes, these in both orders.
+  [[nodiscard]] std::int64_t sort() const {
+    const std::int64_t gathered = kUploaded + kSorted + kKey + kOrder;
+    return std::max((kSorting + kAttribute * attributes) * points, (gathered + 2 * kAttribute * attributes) * points);
+  }
 
   /// Keys of all cell bricks, and what finding them takes: bitmaps and the bits before every word, or eight candidates
   /// an occupied cell, sorted.
@@ -82,41 +96,57 @@ struct Model {
     for (int d = octree::kCompleteDepth + 1; d <= last; ++d) words += octree::build::bitmap_words(d);
     std::int64_t bytes = 8 * words;
     if (last < depth()) bytes = std::max(bytes, kCandidates * level(depth()).occupied_cells);
-    return (kSorted + kKey) * points + bytes + 8 * cell_bricks;
+    return (kSorted + kKey) * points + kept_attributes() + bytes + 8 * cell_bricks;
   }
 
-  [[nodiscard]] std::int64_t build_tree() const { return (kSorted + kKey) * points + tree(); }
+  [[nodiscard]] std::int64_t build_tree() const { return (kSorted + kKey) * points + kept_attributes() + tree(); }
 
   [[nodiscard]] std::int64_t density() const {
-    return kSorted * points + tree() + kNodeValue * counted_bricks + kHats * level(counted_depth()).cell_bricks;
+    return kSorted * points + kept() + kNodeValue * counted_bricks + kHats * level(counted_depth()).cell_bricks;
   }
 
   /// The vector field, as if there were samples for the coarsest levels too, and its divergence.
   [[nodiscard]] std::int64_t splat() const {
-    return kWeighed * points + tree() + kept_counts() + 4 * kNodeValue * bricks;
+    return kWeighed * points + kept() + kept_counts() + 4 * kNodeValue * bricks;
   }
 
   /// Divergence and solution of all levels; the other solution of one level.
   [[nodiscard]] std::int64_t solve() const {
     const std::int64_t screening =
         options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
-    return kCollapsed * points + tree() + kept_counts() + screening + kNodeValue * (2 * bricks + most_bricks);
+    return kCollapsed * points + kept() + kept_counts() + screening + kNodeValue * (2 * bricks + most_bricks);
   }
 
   [[nodiscard]] std::int64_t isovalue() const {
-    return kCollapsed * points + tree() + kept_counts() + kNodeValue * bricks +
+    return kCollapsed * points + kept() + kept_counts() + kNodeValue * bricks +
            kWeightedValues * level(depth()).cell_bricks;
   }
 
+  /// What is there from the tree to the mesh.
+  [[nodiscard]] std::int64_t kept() const { return tree() + kept_attributes(); }
+
+  /// Positions of the samples, for their attributes.
+  [[nodiscard]] std::int64_t kept_positions() const { return attributes > 0 ? kUnit * points : 0; }
+
+  [[nodiscard]] std::int64_t vertices() const { return 8 * bricks / kNodesPerVertex; }
+  [[nodiscard]] std::int64_t vertex_bytes() const { return options.normals ? 2 * kPosition : kPosition; }
+  [[nodiscard]] std::int64_t mesh() const { return (vertex_bytes() + kTrianglesPerVertex * kTriangle) * vertices(); }
+
   /// The largest of: marks with their counts and sums; the mesh as it is made; the mesh as its vertices are sorted.
   [[nodiscard]] std::int64_t extract() const {
-    const std::int64_t vertices = 8 * bricks / kNodesPerVertex;
-    const std::int64_t vertex = options.normals ? 2 * kPosition : kPosition;
-    const std::int64_t mesh = (vertex + kTrianglesPerVertex * kTriangle) * vertices;
     const std::int64_t mark = (kMarks + 2 * kNumbering) * bricks;
-    const std::int64_t make = mesh + kVertexKey * vertices + (kMarks + kNumbering) * bricks;
-    const std::int64_t sort = mesh + (std::max(2 * kVertexKey + kOrder, vertex) + kOrder) * vertices;
-    return tree() + kept_counts() + kNodeValue * bricks + std::max({mark, make, sort});
+    const std::int64_t make = mesh() + kVertexKey * vertices() + (kMarks + kNumbering) * bricks;
+    const std::int64_t sort = mesh() + (std::max(2 * kVertexKey + kOrder, vertex_bytes()) + kOrder) * vertices();
+    return kept() + kept_positions() + kept_counts() + kNodeValue * bricks + std::max({mark, make, sort});
+  }
+
+  /// One pass of up to three attributes: their means with a weight at every node, their values at the vertices.
+  [[nodiscard]] std::int64_t interpolate() const {
+    const auto most = static_cast<std::int64_t>(field::kAttributesAtOnce);
+    const std::int64_t at_once = std::min(attributes, most);
+    if (at_once == 0) return 0;
+    return kept() + kept_positions() + kept_counts() + mesh() + kNodeValue * (1 + at_once) * bricks +
+           kAttribute * at_once * vertices();
   }
 };
 
@@ -131,9 +161,12 @@ std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options
           {"splat", model.splat()},
           {"solve", model.solve()},
           {"isovalue", model.isovalue()},
-          {"extract", model.extract()}};
+          {"extract", model.extract()},
+          {"interpolate", model.interpolate()}};
 }
 
-std::int64_t uploaded_bytes(std::int64_t points) { return kUploaded * points; }
+std::int64_t uploaded_bytes(std::int64_t points, std::int64_t attributes) {
+  return (kUploaded + kAttribute * attributes) * points;
+}
 
 }  // namespace pointskin::detail

@@ -3,18 +3,31 @@
 
 #include <pointskin/cloud.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include <string>
+#include <vector>
 
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
+#include "field/attributes.hpp"
 #include "octree/frame.hpp"
 #include "poisson/samples.hpp"
 #include "surface/extract.hpp"
 
 namespace pointskin::detail {
 
+/// An attribute in a space, in the caller's order.
+struct DeviceAttribute {
+  std::string name;
+  AttributeType type = AttributeType::float32;
+  exec::Buffer<float> values;
+};
+
 /// A cloud in a space, in the caller's order and coordinates.
 struct DevicePoints {
   exec::Buffer<Vec3f> positions, normals;
+  std::vector<DeviceAttribute> attributes;  ///< those that the mesh is to keep
 };
 
 /// Copies a cloud to the space.
@@ -24,10 +37,16 @@ struct DevicePoints {
 template <exec::Space Exec>
 DevicePoints upload(Exec& ex, const Cloud& cloud);
 
-/// Samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys.
+/// Copies the attributes that the mesh is to keep, under the names that they have there (kept_names).
+/// @throws Error invalid_input if an attribute has another length than the cloud
+template <exec::Space Exec>
+std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options);
+
+/// Samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys, `channels` the
+/// attributes, if there are any; points that differ in nothing else are then sorted by them.
 template <exec::Space Exec>
 poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
-                                exec::Buffer<std::uint64_t>& keys);
+                                exec::Buffer<std::uint64_t>& keys, std::vector<field::Channel>* channels = nullptr);
 
 /// Copies a surface to the host, into world coordinates relative to `origin` and the memory that `mesh` has. Every
 /// array is freed as soon as it is copied.

@@ -24,6 +24,7 @@ Json options_json(const Record& record) {
                {"confidence", options.confidence},
                {"linear_fit", options.linear_fit},
                {"density", options.density},
+               {"attributes", options.attributes},
                {"normals", options.normals},
                {"open", options.domain_faces == DomainFaces::open},
                {"max_memory_bytes", options.max_memory_bytes}};

@@ -134,13 +134,15 @@ exec::Buffer<float> buffer_of(exec::Cpu& ex, const std::vector<float>& values) {
   return buffer;
 }
 
+std::string name_of(std::size_t channel) { return std::string(1, static_cast<char>('a' + channel)); }
+
 /// What interpolate() hands on, in its order.
 struct Taken {
   std::vector<std::string> names;
   std::vector<std::vector<float>> values;
 };
 
-/// The attributes a0, a1, ... of the tree's samples at `points`.
+/// The attributes a, b, ... of the tree's samples at `points`.
 Taken interpolated(SmallTree& tree, const std::vector<float>& weights, const std::vector<std::vector<float>>& values,
                    const std::vector<Vec3f>& points, AttributeType type = AttributeType::float32) {
   field::AttributeSamples samples;
@@ -149,7 +151,7 @@ Taken interpolated(SmallTree& tree, const std::vector<float>& weights, const std
   samples.weights = buffer_of(tree.ex, weights);
   for (const std::vector<float>& v : values)
     samples.channels.push_back(
-        field::make_channel(tree.ex, "a" + std::to_string(samples.channels.size()), type, buffer_of(tree.ex, v)));
+        field::make_channel(tree.ex, name_of(samples.channels.size()), type, buffer_of(tree.ex, v)));
   Taken taken;
   field::interpolate(tree.ex, tree.tree, samples,
                      ArrayView<const Vec3f>(points.data(), static_cast<std::int64_t>(points.size())),
@@ -158,6 +160,12 @@ Taken interpolated(SmallTree& tree, const std::vector<float>& weights, const std
                        taken.values.emplace_back(at.view().begin(), at.view().end());
                      });
   return taken;
+}
+
+/// The same for a single attribute without weights.
+std::vector<float> interpolated(SmallTree& tree, const std::vector<float>& values, const std::vector<Vec3f>& points,
+                                AttributeType type = AttributeType::float32) {
+  return interpolated(tree, {}, std::vector<std::vector<float>>{values}, points, type).values[0];
 }
 
 std::vector<float> random_values(test::Random& random, std::int64_t n, double lower, double upper) {
@@ -186,8 +194,8 @@ TEST(Attributes, AreTheSumsOverHatsThatTheirHeaderStates) {
       const Taken taken = interpolated(tree, weights, values, points);
       ASSERT_EQ(taken.values.size(), count);
       for (std::size_t c = 0; c < count; ++c) {
-        SCOPED_TRACE("depth " + std::to_string(depth) + ", attribute " + std::to_string(c));
-        EXPECT_EQ(taken.names[c], "a" + std::to_string(c));
+        SCOPED_TRACE("depth " + std::to_string(depth) + ", attribute " + name_of(c));
+        EXPECT_EQ(taken.names[c], name_of(c));
         BruteForce expected(tree, weights, values[c]);
         for (std::size_t i = 0; i < points.size(); ++i) ASSERT_NEAR(taken.values[c][i], expected.at(points[i]), 1e-4);
       }
@@ -203,13 +211,13 @@ TEST(Attributes, LeaveOutSamplesWhoseValueIsNotFinite) {  // each attribute othe
   for (std::size_t c = 0; c < missing.size(); ++c) {
     values.push_back(random_values(random, n, 0, 1));
     for (std::size_t i = 0; i < values[c].size(); ++i)
-      if (i % 4 == c || c == 2) values[c][i] = i == 7 && c == 2 ? 0.5F : missing[c];  // a2: one sample counts
+      if (i % 4 == c || c == 2) values[c][i] = i == 7 && c == 2 ? 0.5F : missing[c];  // c: one sample counts
   }
   values.push_back(values[1]);  // misses the same samples as the one before
   const std::vector<Vec3f> points = random_points(random, 200);
   const Taken taken = interpolated(tree, {}, values, points);
   for (std::size_t c = 0; c < values.size(); ++c) {
-    SCOPED_TRACE("attribute " + std::to_string(c));
+    SCOPED_TRACE("attribute " + name_of(c));
     BruteForce expected(tree, {}, values[c]);
     for (std::size_t i = 0; i < points.size(); ++i) ASSERT_NEAR(taken.values[c][i], expected.at(points[i]), 1e-5);
   }
@@ -219,18 +227,18 @@ TEST(Attributes, ThatNoSampleHasAreNanOrZero) {
   test::Random random(4);
   SmallTree tree(random_points(random, 50), {}, 4);
   const std::vector<Vec3f> points = random_points(random, 20);
-  const std::vector<std::vector<float>> values = {std::vector<float>(50, kNan)};
-  for (const float v : interpolated(tree, {}, values, points).values[0]) EXPECT_TRUE(std::isnan(v));
-  for (const float v : interpolated(tree, {}, values, points, AttributeType::uint8).values[0]) EXPECT_EQ(v, 0);
-  EXPECT_TRUE(interpolated(tree, {}, {}, points).values.empty());
+  const std::vector<float> values(50, kNan);
+  for (const float v : interpolated(tree, values, points)) EXPECT_TRUE(std::isnan(v));
+  for (const float v : interpolated(tree, values, points, AttributeType::uint8)) EXPECT_EQ(v, 0);
+  EXPECT_TRUE(interpolated(tree, {}, std::vector<std::vector<float>>{}, points).values.empty());
 }
 
 TEST(Attributes, WithoutWeightAnywhereAreFiniteAndInTheRange) {
   test::Random random(5);
   SmallTree tree(random_points(random, 50), {}, 4);
   const std::vector<float> none(50, 0.0F);
-  for (const float v : interpolated(tree, none, {random_values(random, 50, 3, 4)}, random_points(random, 20)).values[0])
-    EXPECT_TRUE(v >= 3 && v <= 4) << v;
+  const Taken taken = interpolated(tree, none, {random_values(random, 50, 3, 4)}, random_points(random, 20));
+  for (const float v : taken.values[0]) EXPECT_TRUE(v >= 3 && v <= 4) << v;
 }
 
 TEST(Attributes, ThatAreTheSameEverywhereComeBackExactly) {
@@ -239,7 +247,7 @@ TEST(Attributes, ThatAreTheSameEverywhereComeBackExactly) {
   const std::vector<Vec3f> points = random_points(random, 500);
   for (const float value : {0.0F, 0.1F, -7.3e-30F, 1.7e9F, 3.4e38F}) {
     const std::vector<float> same(static_cast<std::size_t>(tree.samples.positions.size()), value);
-    for (const float v : interpolated(tree, {}, {same}, points).values[0]) ASSERT_EQ(v, value);
+    for (const float v : interpolated(tree, same, points)) ASSERT_EQ(v, value);
   }
 }
 
@@ -253,7 +261,7 @@ TEST(Attributes, StayInTheRangeOfTheInputHoweverLargeOrCloseItsValuesAre) {
   for (const auto& [lower, upper] : ranges) {
     const std::vector<float> values = random_values(random, n, lower, upper);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const std::vector<float> at = interpolated(tree, {}, {values}, points).values[0];
+    const std::vector<float> at = interpolated(tree, values, points);
     for (const float v : at) ASSERT_TRUE(v >= *low && v <= *high) << v << " not in " << *low << ", " << *high;
     EXPECT_NE(*std::min_element(at.begin(), at.end()), *std::max_element(at.begin(), at.end()));
   }
@@ -266,12 +274,12 @@ TEST(Attributes, OfTypeUint8AreRoundedWholeNumbers) {
   std::vector<float> values;
   for (std::int64_t i = 0; i < n; ++i) values.push_back(static_cast<float>(random.below(256)));
   const std::vector<Vec3f> points = random_points(random, 500);
-  const std::vector<float> exact = interpolated(tree, {}, {values}, points).values[0];
-  const std::vector<float> bytes = interpolated(tree, {}, {values}, points, AttributeType::uint8).values[0];
+  const std::vector<float> exact = interpolated(tree, values, points);
+  const std::vector<float> bytes = interpolated(tree, values, points, AttributeType::uint8);
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(bytes[i], std::floor(exact[i] + 0.5F));
   values[0] = -40;
   values[1] = 900;
-  for (const float v : interpolated(tree, {}, {values}, points, AttributeType::uint8).values[0])
+  for (const float v : interpolated(tree, values, points, AttributeType::uint8))
     ASSERT_TRUE(v >= 0 && v <= 255 && v == std::floor(v)) << v;
 }
 
@@ -281,14 +289,14 @@ TEST(Attributes, AreContinuousAcrossLeavesOfDifferentDepth) {
   SmallTree tree(test::clustered_points(random, 6, 10, 0.02), {}, 8);
   const std::vector<float> values = random_values(random, tree.samples.positions.size(), 0, 1);
   std::vector<Vec3f> points;
-  for (int i = 0; i < 3000; ++i) {  // pairs at both sides of a cell's face of level 8
+  for (int i = 0; i < 30'000; ++i) {  // pairs at both sides of a cell's face of level 8
     const float face = static_cast<float>(1 + random.below(255)) / 256;
     const auto y = static_cast<float>(random.unit());
     const auto z = static_cast<float>(random.unit());
     points.push_back({std::nextafter(face, 0.0F), y, z});
     points.push_back({face, y, z});
   }
-  const std::vector<float> at = interpolated(tree, {}, {values}, points).values[0];
+  const std::vector<float> at = interpolated(tree, values, points);
   int borders = 0;
   for (std::size_t i = 0; i < points.size(); i += 2) {
     const auto depth = [&](const Vec3f& p) {

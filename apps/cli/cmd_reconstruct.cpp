@@ -64,7 +64,8 @@ Cloud read_input(const ReconstructArgs& args, Record& record) {
   const std::int64_t no_normal = drop_zero_normals(cloud);
   if (not_finite > 0) print_warning(fmt::format("{} points were dropped: a coordinate is not finite", not_finite));
   if (no_normal > 0) print_warning(fmt::format("{} points were dropped: their normal has zero length", no_normal));
-  if (args.colors && !args.options.attributes && !keep_colours_only(cloud))
+  if (!args.options.attributes && !args.colors) cloud.attributes.clear();
+  if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
     print_warning("--colors: the points have no red, green or blue");
   record.dropped = cloud.dropped;
   record.points = cloud.size() + cloud.dropped;

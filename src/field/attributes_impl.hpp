@@ -74,19 +74,29 @@ struct SamplesView {
   ArrayView<const float> weights;
   const float* values[kCount];
 
-  /// Adds sample i with `factor` times its weight.
-  PSK_HD void add(std::int64_t i, float factor, Values<kCount>& sum) const {
+  /// Sample i with its weight; zeros if it does not count.
+  PSK_HD Values<kCount> operator[](std::int64_t i) const {
+    Values<kCount> sample;
     const float first = values[0][i];
-    if (!(first == first)) return;
-    const float weight = weights.empty() ? factor : factor * weights[i];
-    sum.weight += weight;
-    PSK_UNROLL for (int c = 0; c < kCount; ++c) sum.value[c] += weight * values[c][i];
+    if (!(first == first)) return sample;
+    sample.weight = weights.empty() ? 1.0F : weights[i];
+    PSK_UNROLL for (int c = 0; c < kCount; ++c) sample.value[c] = values[c][i];
+    return sample;
   }
 };
 
-/// Means at the corners of the finest level: every corner gathers the samples of the 8 cells around it.
+/// Adds a sample with `factor` times its weight.
 template <int kCount>
-struct Splat {
+PSK_HD void add_weighted(const Values<kCount>& sample, float factor, Values<kCount>& sum) {
+  const float weight = factor * sample.weight;
+  sum.weight += weight;
+  PSK_UNROLL for (int c = 0; c < kCount; ++c) sum.value[c] += weight * sample.value[c];
+}
+
+/// Means at the corners of the finest level: every corner gathers the samples of the 8 cells around it, cell by cell
+/// downwards (x first).
+template <int kCount>
+struct SplatToCorner {
   octree::LevelView level;
   SamplesView<kCount> samples;
   ArrayView<Values<kCount>> means;
@@ -103,10 +113,46 @@ struct Splat {
       const octree::Coordinates at = octree::decode(level.node_key(cell));
       PSK_UNROLL_BY_4 for (std::int32_t i = first; i < last; ++i) {
         const Vec3f local = octree::local_in_cell(samples.positions[i], at, level.depth);
-        samples.add(i, octree::corner_weight(s, local), sum);
+        add_weighted(samples[i], octree::corner_weight(s, local), sum);
       }
     }
     means[n] = mean_of(sum);
+  }
+};
+
+/// The same for the 8 corners of a brick at once, in the same order for each: fewer look-ups, and a sample is read once
+/// for all its corners there.
+template <int kCount>
+struct SplatToBrick {
+  octree::LevelView level;
+  SamplesView<kCount> samples;
+  ArrayView<Values<kCount>> means;
+
+  PSK_HD void operator()(std::int64_t brick) const {
+    Values<kCount> sums[8];
+    const auto own = static_cast<std::int32_t>(8 * brick);
+    for (int x = 1; x >= -1; --x)
+      for (int y = 1; y >= -1; --y)
+        for (int z = 1; z >= -1; --z) add_cell(level.neighbour(own, x, y, z), x, y, z, sums);
+    for (int s = 0; s < 8; ++s) means[own + s] = mean_of(sums[s]);
+  }
+
+  /// Adds the samples of the cell at (x, y, z) from the brick's first to those of its corners that are in the brick.
+  PSK_HD void add_cell(std::int32_t cell, int x, int y, int z, Values<kCount>* sums) const {
+    if (!level.is_cell(cell)) return;
+    const std::int32_t first = level.point_begin[cell];
+    const std::int32_t last = level.point_begin[cell + 1];
+    if (first == last) return;
+    const octree::Coordinates at = octree::decode(level.node_key(cell));
+    for (std::int32_t i = first; i < last; ++i) {
+      const Vec3f local = octree::local_in_cell(samples.positions[i], at, level.depth);
+      const Values<kCount> sample = samples[i];
+      for (int cx = x < 0 ? 0 : x; cx <= x + 1 && cx < 2; ++cx)
+        for (int cy = y < 0 ? 0 : y; cy <= y + 1 && cy < 2; ++cy)
+          for (int cz = z < 0 ? 0 : z; cz <= z + 1 && cz < 2; ++cz)
+            add_weighted(sample, octree::corner_weight(octree::slot_of(cx - x, cy - y, cz - z), local),
+                         sums[octree::slot_of(cx, cy, cz)]);
+    }
   }
 };
 
@@ -229,7 +275,11 @@ exec::Buffer<Values<kCount>> corner_values(Exec& ex, const octree::OctreeView& t
   const auto of_level = [&](int d) { return values.view().part(tree.levels[d].first_node, tree.levels[d].nodes()); };
   SamplesView<kCount> view{samples.positions.cview(), samples.weights.cview(), {}};
   for (int c = 0; c < kCount; ++c) view.values[c] = channels[c].values.data();
-  for_each(ex, "attributes.splat", tree.finest().nodes(), Splat<kCount>{tree.finest(), view, of_level(tree.depth)});
+  const octree::LevelView& finest = tree.finest();
+  if constexpr (Exec::kManyThreads)
+    for_each(ex, "attributes.splat", finest.nodes(), SplatToCorner<kCount>{finest, view, of_level(tree.depth)});
+  else
+    for_each(ex, "attributes.splat", finest.bricks, SplatToBrick<kCount>{finest, view, of_level(tree.depth)});
   for (int d = tree.depth - 1; d >= 0; --d)
     for_each(ex, "attributes.pull", tree.levels[d].nodes(),
              Pull<kCount>{tree.levels[d], tree.levels[d + 1], of_level(d + 1).data, of_level(d)});

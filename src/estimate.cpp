@@ -28,6 +28,10 @@ struct CellKeyOfPoint {
   }
 };
 
+std::int64_t kept_attributes(const Cloud& cloud, const Options& options) {
+  return options.attributes ? static_cast<std::int64_t>(cloud.attributes.size()) : 0;
+}
+
 ArrayView<const Vec3f> positions_of(const Cloud& cloud) { return {cloud.positions.data(), cloud.size()}; }
 
 /// The points that count and their cube, as the run finds them.
@@ -55,7 +59,8 @@ detail::RunSize measure_run(exec::Cpu& ex, const Cloud& cloud, const Options& op
   for_each(ex, "estimate.keys", keys.size(),
            CellKeyOfPoint{used.frame, positions_of(cloud), options.depth, keys.view(), {used.points.cview()}});
   sort_keys(ex, "estimate.sort", keys, 3 * octree::kPointBits);
-  return {keys.size(), octree::count_bricks(ex, keys.cview(), options.depth), used.strays};
+  return {keys.size(), octree::count_bricks(ex, keys.cview(), options.depth), used.strays,
+          kept_attributes(cloud, options)};
 }
 
 }  // namespace
@@ -67,11 +72,13 @@ std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) 
   constexpr double kNodesPerPoint = 27 * 8;
   constexpr double kBytesPerNode = 72;
   constexpr double kBytesPerPoint = 120;
+  constexpr double kBytesPerColour = 40;  // three attributes
   double nodes = 0;
   for (int d = 0; d <= options.depth; ++d)
     nodes += std::max(std::min(std::pow(8.0, d), 1e4), std::min({kNodesPerPoint * static_cast<double>(points),
                                                                  kNodesPerFace * std::pow(4.0, d), std::pow(8.0, d)}));
-  return static_cast<std::int64_t>(kBytesPerNode * nodes + kBytesPerPoint * static_cast<double>(points));
+  const double per_point = kBytesPerPoint + (options.attributes ? kBytesPerColour : 0);
+  return static_cast<std::int64_t>(kBytesPerNode * nodes + per_point * static_cast<double>(points));
 }
 
 std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, int threads) {
@@ -82,7 +89,7 @@ std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, i
     size = measure_run(ex, cloud, options);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::empty_result) throw;
-    return detail::uploaded_bytes(cloud.size());  // the run ends here, too
+    return detail::uploaded_bytes(cloud.size(), kept_attributes(cloud, options));  // the run ends here, too
   }
   const std::vector<detail::PhaseBytes> phases = detail::model_memory(size, options);
   return std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.bytes < b.bytes; })

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "field/attributes.hpp"
 #include "octree/brick_sets.hpp"
 #include "octree/keys.hpp"
 
@@ -17,7 +18,9 @@ constexpr std::int64_t kKey = 8;
 constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
 constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
 constexpr std::int64_t kTrust = 4;
-constexpr std::int64_t kSpacing = 16;  // trimming: key, and both again
+constexpr std::int64_t kSpacing = 16;   // trimming: key, and both again
+constexpr std::int64_t kAttribute = 4;  // of each
+constexpr std::int64_t kUnit = 12;      // position in the cube
 
 // Bytes a brick.
 constexpr std::int64_t kBrick = 121;             // key, parent, 27 neighbours, unknowns
@@ -52,6 +55,7 @@ struct Model {
   const RunSize& size;
   const Options& options;
   std::int64_t points = size.points;
+  std::int64_t attributes = size.attributes;
   std::int64_t bricks = 0, cell_bricks = 0;
   std::int64_t occupied_bricks = 1;  // the root's
   std::int64_t most_bricks = 0;      // of one level
@@ -82,11 +86,26 @@ struct Model {
   [[nodiscard]] std::int64_t vertices() const { return 8 * bricks / kNodesPerVertex; }
   [[nodiscard]] std::int64_t vertex() const { return options.normals || trims() ? 2 * kPosition : kPosition; }
   [[nodiscard]] std::int64_t mesh() const { return (vertex() + kTrianglesPerVertex * kTriangle) * vertices(); }
-  /// The solved field.
-  [[nodiscard]] std::int64_t field() const { return tree() + kept_counts() + kNodeValue * bricks; }
 
+  /// Attributes of the samples, and what they count.
+  [[nodiscard]] std::int64_t kept_attributes() const {
+    const std::int64_t weight = attributes > 0 && options.confidence ? kAttribute : 0;
+    return (kAttribute * attributes + weight) * points;
+  }
+
+  /// What is there from the tree to the mesh.
+  [[nodiscard]] std::int64_t kept() const { return tree() + kept_attributes(); }
+  /// Positions of the samples, for their attributes.
+  [[nodiscard]] std::int64_t kept_positions() const { return attributes > 0 ? kUnit * points : 0; }
+  /// The solved field.
+  [[nodiscard]] std::int64_t field() const { return kept() + kept_positions() + kept_counts() + kNodeValue * bricks; }
+
+  /// The sort, or, with many attributes, these in both orders.
   [[nodiscard]] std::int64_t sort() const {
-    return kSorting * points + (size.strays > 0 ? kUploaded * size.strays + kSelected * points : 0);
+    const std::int64_t strays =
+        size.strays > 0 ? (kUploaded + kAttribute * attributes) * size.strays + kSelected * points : 0;
+    const std::int64_t gathered = kUploaded + kSorted + kKey + kOrder;
+    return strays + std::max(kSorting + kAttribute * attributes, gathered + 2 * kAttribute * attributes) * points;
   }
 
   /// Keys of all cell bricks, and what finding them takes: bitmaps and the bits before every word, or eight candidates
@@ -97,30 +116,30 @@ struct Model {
     for (int d = octree::kCompleteDepth + 1; d <= last; ++d) words += octree::build::bitmap_words(d);
     std::int64_t bytes = 8 * words;
     if (last < depth()) bytes = std::max(bytes, kCandidates * level(depth()).occupied_cells);
-    return (kSorted + kKey) * points + bytes + 8 * cell_bricks;
+    return (kSorted + kKey) * points + kept_attributes() + bytes + 8 * cell_bricks;
   }
 
-  [[nodiscard]] std::int64_t build_tree() const { return (kSorted + kKey) * points + tree(); }
+  [[nodiscard]] std::int64_t build_tree() const { return (kSorted + kKey) * points + kept_attributes() + tree(); }
 
   [[nodiscard]] std::int64_t density() const {
-    return kSorted * points + tree() + kNodeValue * counted_bricks + kHats * level(counted_depth()).cell_bricks;
+    return kSorted * points + kept() + kNodeValue * counted_bricks + kHats * level(counted_depth()).cell_bricks;
   }
 
   /// The vector field, as if there were samples for the coarsest levels too, and its divergence.
   [[nodiscard]] std::int64_t splat() const {
     const bool trusts = options.screening > 0 && !options.fixed_screening;
-    return (kWeighed + (trusts ? kTrust : 0)) * points + tree() + kept_counts() + 4 * kNodeValue * bricks;
+    return (kWeighed + (trusts ? kTrust : 0)) * points + kept() + kept_counts() + 4 * kNodeValue * bricks;
   }
 
   /// Divergence and solution of all levels; the other solution of one level.
   [[nodiscard]] std::int64_t solve() const {
     const std::int64_t screening =
         options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
-    return kCollapsed * points + tree() + kept_counts() + screening + kNodeValue * (2 * bricks + most_bricks);
+    return kCollapsed * points + kept() + kept_counts() + screening + kNodeValue * (2 * bricks + most_bricks);
   }
 
   [[nodiscard]] std::int64_t isovalue() const {
-    return kCollapsed * points + tree() + kept_counts() + kNodeValue * bricks +
+    return kCollapsed * points + kept() + kept_counts() + kNodeValue * bricks +
            kWeightedValues * level(depth()).cell_bricks;
   }
 
@@ -134,7 +153,7 @@ struct Model {
 
   /// Spacing at the samples.
   [[nodiscard]] std::int64_t trim_limit() const {
-    return trims() ? (kWeighed + kSpacing) * points + tree() + kept_counts() : 0;
+    return trims() ? (kWeighed + kSpacing) * points + kept() + kept_counts() : 0;
   }
 
   /// The larger of: pieces and their areas; the triangles that stay, as if all did.
@@ -142,6 +161,15 @@ struct Model {
     if (!trims()) return 0;
     const std::int64_t stay = 2 * kOrder + kTrianglesPerVertex * (kOrder + kTriangle);
     return field() + mesh() + (kSides + std::max(kPieces, stay)) * vertices();
+  }
+
+  /// One pass of up to three attributes: their means with a weight at every node, their values at the vertices.
+  [[nodiscard]] std::int64_t interpolate() const {
+    const auto most = static_cast<std::int64_t>(field::kAttributesAtOnce);
+    const std::int64_t at_once = std::min(attributes, most);
+    if (at_once == 0) return 0;
+    return kept() + kept_positions() + kept_counts() + mesh() + kNodeValue * (1 + at_once) * bricks +
+           kAttribute * at_once * vertices();
   }
 };
 
@@ -152,9 +180,11 @@ std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options
   return {{"sort", model.sort()},       {"find bricks", model.find_bricks()}, {"build tree", model.build_tree()},
           {"density", model.density()}, {"trim limit", model.trim_limit()},   {"splat", model.splat()},
           {"solve", model.solve()},     {"isovalue", model.isovalue()},       {"extract", model.extract()},
-          {"trim", model.trim()}};
+          {"trim", model.trim()},       {"interpolate", model.interpolate()}};
 }
 
-std::int64_t uploaded_bytes(std::int64_t points) { return kUploaded * points; }
+std::int64_t uploaded_bytes(std::int64_t points, std::int64_t attributes) {
+  return (kUploaded + kAttribute * attributes) * points;
+}
 
 }  // namespace pointskin::detail

@@ -17,6 +17,7 @@ struct RunSize {
   std::int64_t points = 0;                  ///< that are used
   std::vector<octree::BrickCounts> levels;  ///< depth 0 first
   std::int64_t strays = 0;                  ///< points that are left out
+  std::int64_t attributes = 0;              ///< that the mesh keeps
 };
 
 /// The largest sum of buffers in one phase of a run.
@@ -29,6 +30,6 @@ struct PhaseBytes {
 std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options);
 
 /// The peak of a run whose points are all at one place: it ends when it knows that.
-std::int64_t uploaded_bytes(std::int64_t points);
+std::int64_t uploaded_bytes(std::int64_t points, std::int64_t attributes);
 
 }  // namespace pointskin::detail

@@ -3,9 +3,14 @@
 
 #include <pointskin/cloud.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include <string>
+#include <vector>
 
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
+#include "field/attributes.hpp"
 #include "octree/frame.hpp"
 #include "octree/strays.hpp"
 #include "poisson/samples.hpp"
@@ -13,10 +18,18 @@
 
 namespace pointskin::detail {
 
+/// An attribute in a space, in the caller's order.
+struct DeviceAttribute {
+  std::string name;
+  AttributeType type = AttributeType::float32;
+  exec::Buffer<float> values;
+};
+
 /// A cloud in a space, in the caller's order and coordinates.
 struct DevicePoints {
   exec::Buffer<Vec3f> positions, normals;
-  exec::Buffer<std::int32_t> used{};  ///< indices of the points to use, ascending; empty: all of them
+  std::vector<DeviceAttribute> attributes{};  ///< those that the mesh is to keep
+  exec::Buffer<std::int32_t> used{};          ///< indices of the points to use, ascending; empty: all of them
 
   [[nodiscard]] std::int64_t used_count() const { return used.empty() ? positions.size() : used.size(); }
 };
@@ -28,15 +41,21 @@ struct DevicePoints {
 template <exec::Space Exec>
 DevicePoints upload(Exec& ex, const Cloud& cloud);
 
+/// Copies the attributes that the mesh is to keep, under the names that they have there (kept_names).
+/// @throws Error invalid_input if an attribute has another length than the cloud
+template <exec::Space Exec>
+std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options);
+
 /// Leaves strays out of the points to use. O(n), and nothing if there are none.
 /// @throws Error no_normals if the normals of all others have zero length
 template <exec::Space Exec>
 void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points);
 
-/// The points to use as samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys.
+/// The points to use as samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys,
+/// `channels` the attributes, if there are any; points that differ in nothing else are then sorted by them.
 template <exec::Space Exec>
 poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
-                                exec::Buffer<std::uint64_t>& keys);
+                                exec::Buffer<std::uint64_t>& keys, std::vector<field::Channel>* channels = nullptr);
 
 /// Copies a surface to the host, into world coordinates relative to `origin` and the memory that `mesh` has. Every
 /// array is freed as soon as it is copied.

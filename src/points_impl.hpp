@@ -10,6 +10,7 @@
 
 #include "exec/algorithms.hpp"
 #include "exec/host_array.hpp"
+#include "kept_names.hpp"
 #include "octree/octree_data.hpp"
 #include "points.hpp"
 
@@ -39,6 +40,18 @@ struct HashPoint {
     const Vec3f p = positions[from];
     const Vec3f n = normals[from];
     hashes[i] = mix(mix(mix(mix(mix(mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z), n.x), n.y), n.z);
+  }
+};
+
+/// Mixes an attribute into the lower half of a point's hash. Points that differ otherwise keep the order that they have
+/// without attributes, so that the surface does not depend on these.
+struct HashAttribute {
+  ArrayView<const float> values;
+  ArrayView<std::uint64_t> hashes;
+  octree::Selection selection{};
+  PSK_HD void operator()(std::int64_t i) const {
+    constexpr std::uint64_t kLower = 0xffffffff;
+    hashes[i] = (hashes[i] & ~kLower) | (HashPoint::mix(hashes[i], values[selection(i)]) & kLower);
   }
 };
 
@@ -100,7 +113,7 @@ DevicePoints upload(Exec& ex, const Cloud& cloud) {
     throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
   if (cloud.size() > std::numeric_limits<std::int32_t>::max())
     throw Error(ErrorCode::over_limit, "the cloud has more than 2^31 - 1 points; thin it or split it");
-  DevicePoints points{exec::make_buffer<Vec3f>(ex, cloud.size()), exec::make_buffer<Vec3f>(ex, cloud.size())};
+  DevicePoints points{exec::make_buffer<Vec3f>(ex, cloud.size()), exec::make_buffer<Vec3f>(ex, cloud.size()), {}};
   copy_to_device(ex, cloud.positions.data(), points.positions.view());
   copy_to_device(ex, cloud.normals.data(), points.normals.view());
   const points::Flaws flaws = points::find_flaws(ex, points);
@@ -120,8 +133,25 @@ void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points
 }
 
 template <exec::Space Exec>
+std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options) {
+  std::vector<DeviceAttribute> attributes;
+  if (!options.attributes) return attributes;
+  const std::vector<std::string> names = kept_names(cloud.attributes, options.density);
+  for (std::size_t a = 0; a < names.size(); ++a) {
+    const Attribute& from = cloud.attributes[a];
+    const auto n = static_cast<std::int64_t>(from.values.size());
+    if (n != cloud.size())
+      throw Error(ErrorCode::invalid_input, "the attribute " + from.name + " has " + std::to_string(n) +
+                                                " values for " + std::to_string(cloud.size()) + " points");
+    attributes.push_back({names[a], from.type, exec::make_buffer<float>(ex, n)});
+    copy_to_device(ex, from.values.data(), attributes.back().values.view());
+  }
+  return attributes;
+}
+
+template <exec::Space Exec>
 poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
-                                exec::Buffer<std::uint64_t>& keys) {
+                                exec::Buffer<std::uint64_t>& keys, std::vector<field::Channel>* channels) {
   const std::int64_t n = points.used_count();
   const octree::Selection selection{points.used.cview()};
   auto unit = exec::make_buffer<Vec3f>(ex, n);
@@ -129,6 +159,8 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
   for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view(), selection});
   for_each(ex, "octree.hash", n,
            points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view(), selection});
+  for (const DeviceAttribute& attribute : points.attributes)
+    for_each(ex, "octree.hash", n, points::HashAttribute{attribute.values.cview(), hashes.view(), selection});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   hashes.reset();
   poisson::Samples samples;
@@ -140,6 +172,12 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
   samples.normals = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
   keys = std::move(sorted.keys);
+  if (channels == nullptr) return samples;
+  for (const DeviceAttribute& attribute : points.attributes) {
+    auto values = exec::make_buffer<float>(ex, n);
+    exec::gather(ex, attribute.values.cview(), sorted.order.cview(), values.view());
+    channels->push_back(field::make_channel(ex, attribute.name, attribute.type, std::move(values)));
+  }
   return samples;
 }
 

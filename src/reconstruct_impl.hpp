@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "exec/algorithms.hpp"
+#include "field/attributes.hpp"
 #include "field/evaluate.hpp"
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
@@ -67,6 +68,7 @@ struct FieldData {
   octree::OctreeData tree;
   exec::Buffer<float> values;
   poisson::Density density;
+  field::AttributeSamples attributes;  ///< without positions unless there are channels
   double isovalue = 0;
   float trim_limit = 0;  // spacing in finest cells, with Options::trim
 
@@ -118,13 +120,16 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
   field.frame = fit_cube(ex, points, options, report);
   report.points = points.used_count();
   exec::Buffer<std::uint64_t> keys;
-  poisson::Samples samples = sort_into_cube(ex, points, field.frame, keys);
+  poisson::Samples samples = sort_into_cube(ex, points, field.frame, keys, &field.attributes.channels);
+  const bool has_attributes = !field.attributes.channels.empty();
   if (!keep_points) points = {};
   field.tree = octree::build_octree(ex, keys.cview(), options.depth);
   keys.reset();
   clock.lap(report.octree_ms);
 
   announce(options, "splat", 0.25);
+  if (has_attributes && options.confidence)
+    field.attributes.weights = poisson::confidence_weights(ex, samples.normals.cview());
   field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
   poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
   if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
@@ -147,6 +152,7 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
   screening = {};
   field.isovalue = poisson::mean_at_samples(ex, field.tree, solution.u.cview(), samples.view());
   field.values = std::move(solution.u);
+  if (has_attributes) field.attributes.positions = std::move(samples.positions);
   clock.lap(report.solve_ms);
   clock.read();
 
@@ -213,20 +219,21 @@ class FieldOn final : public FieldImpl {
   void extract(Mesh& mesh) const override {
     TrimReport trimmed;
     surface::Surface surface = extract_surface(trimmed);
-    const std::vector<Attribute> attributes = attributes_at(surface);
+    std::vector<Attribute> attributes = attributes_at(surface);
     download(*ex_, std::move(surface), data_.frame, origin_, mesh);
-    mesh.attributes = attributes;
+    mesh.attributes = std::move(attributes);
   }
 
   void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
     surface::Surface surface = extract_surface(report.trim);
+    data_.values.reset();
+    std::vector<Attribute> attributes = attributes_at(surface);
     clock.lap(report.extract_ms);
-    const std::vector<Attribute> attributes = attributes_at(surface);
     const octree::Frame frame = data_.frame;
     data_ = {};
     download(*ex_, std::move(surface), frame, origin_, mesh);
-    mesh.attributes = attributes;
+    mesh.attributes = std::move(attributes);
     clock.lap(report.download_ms);
     clock.read();
     report.device_peak_bytes = ex_->pool()->peak_bytes();
@@ -245,8 +252,14 @@ class FieldOn final : public FieldImpl {
   }
 
   [[nodiscard]] std::vector<Attribute> attributes_at(const surface::Surface& surface) const {
-    if (!options_.density) return {};
-    return {density_at(surface)};
+    std::vector<Attribute> attributes;
+    const auto keep = [&](const field::Channel& channel, exec::Buffer<float> values) {
+      attributes.push_back({channel.name, channel.type, {}});
+      points::download_array(*ex_, values, attributes.back().values);
+    };
+    field::interpolate(*ex_, data_.tree, data_.attributes, surface.positions.cview(), keep);
+    if (options_.density) attributes.push_back(density_at(surface));
+    return attributes;
   }
 
   /// Samples per unit of area at the vertices.
@@ -277,6 +290,7 @@ class EngineOn final : public Engine {
     ex_->pool()->reset_peak();
     PhaseClock clock(*ex_);
     DevicePoints points = upload(*ex_, cloud);
+    points.attributes = upload_attributes(*ex_, cloud, options);
     clock.lap(report.upload_ms);
     clock.read();
     FieldData data = fit_field(*ex_, points, false, options, report);
@@ -289,12 +303,15 @@ class EngineOn final : public Engine {
   std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) override {
     ex_->activate();
     DevicePoints points = upload(*ex_, cloud);
+    points.attributes = upload_attributes(*ex_, cloud, options);
     std::vector<RunTimes> runs;
     for (int i = 0; i < times; ++i) {
       PhaseClock clock(*ex_);
       RunReport report;
       const FieldData data = fit_field(*ex_, points, true, options, report);
       const surface::Surface surface = detail::extract(*ex_, data, options, report.trim);
+      field::interpolate(*ex_, data.tree, data.attributes, surface.positions.cview(),
+                         [](const field::Channel&, const exec::Buffer<float>&) {});
       RunTimes run{report.octree_ms, report.splat_ms, report.solve_ms};
       clock.lap(run.total_ms);
       clock.read();

@@ -53,7 +53,6 @@ void check_files(const ReconstructArgs& args) {
 }
 
 void warn_about_options(const ReconstructArgs& args) {
-  if (args.colors) print_warning("--colors: colours are not carried to the mesh yet");
   if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
 }
 
@@ -65,6 +64,9 @@ Cloud read_input(const ReconstructArgs& args, Record& record) {
   const std::int64_t no_normal = drop_zero_normals(cloud);
   if (not_finite > 0) print_warning(fmt::format("{} points were dropped: a coordinate is not finite", not_finite));
   if (no_normal > 0) print_warning(fmt::format("{} points were dropped: their normal has zero length", no_normal));
+  if (!args.options.attributes && !args.colors) cloud.attributes.clear();
+  if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
+    print_warning("--colors: the points have no red, green or blue");
   record.dropped = cloud.dropped;
   record.points = cloud.size() + cloud.dropped;
   record.read_ms = watch.ms();

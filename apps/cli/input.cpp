@@ -1,6 +1,7 @@
 #include "input.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,17 +27,25 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-void append_attributes(std::vector<Attribute>& to, const std::vector<Attribute>& from) {
-  std::vector<Attribute> common;
+/// Adds the attributes of `from_size` points behind those of `to_size`. Points without one of them get NaN.
+void append_attributes(std::vector<Attribute>& to, std::size_t to_size, const std::vector<Attribute>& from,
+                       std::size_t from_size) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  const auto find_in = [](auto& attributes, const std::string& name) {
+    return std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
+  };
+  for (const Attribute& theirs : from) {
+    if (find_in(to, theirs.name) == to.end()) to.push_back({theirs.name, theirs.type, std::vector(to_size, kNone)});
+  }
   for (Attribute& mine : to) {
-    const auto theirs =
-        std::find_if(from.begin(), from.end(), [&](const Attribute& other) { return other.name == mine.name; });
-    if (theirs == from.end()) continue;
+    const auto theirs = find_in(from, mine.name);
+    if (theirs == from.end()) {
+      mine.values.resize(to_size + from_size, kNone);
+      continue;
+    }
     if (theirs->type != mine.type) mine.type = AttributeType::float32;
     append(mine.values, theirs->values);
-    common.push_back(std::move(mine));
   }
-  to = std::move(common);
 }
 
 template <class T>
@@ -71,10 +80,10 @@ void append(Cloud& to, Cloud&& from) {
   if (to.origin == kZero && from.origin != kZero) rebase(to, from.origin);
   if (to.origin != from.origin) rebase(from, to.origin);
   const bool normals = to.has_normals() && from.has_normals();
+  append_attributes(to.attributes, to.positions.size(), from.attributes, from.positions.size());
   append(to.positions, from.positions);
   append(to.normals, from.normals);
   if (!normals) to.normals.clear();
-  append_attributes(to.attributes, from.attributes);
   to.dropped += from.dropped;
 }
 
@@ -117,6 +126,13 @@ std::string strays_text(std::int64_t count, const Vec3d& farthest) {
       "{} stray points far from all others are left out, the farthest at {:.9g} {:.9g} {:.9g}; use "
       "--keep-strays to keep them",
       count, farthest[0], farthest[1], farthest[2]);
+}
+
+bool keep_colours_only(Cloud& cloud) {
+  std::erase_if(cloud.attributes, [](const Attribute& attribute) {
+    return attribute.name != "red" && attribute.name != "green" && attribute.name != "blue";
+  });
+  return !cloud.attributes.empty();
 }
 
 std::variant<Cloud, Mesh> read_cloud_or_mesh(const std::string& path, const ReadOptions& options) {

@@ -12,8 +12,9 @@
 
 namespace pointskin::cli {
 
-/// Appends `from` to `to`. Both keep their world positions: the origin becomes the first that is not zero. Attributes
-/// that only one of them has are left out, normals too; dropped points add up.
+/// Appends `from` to `to`. Both keep their world positions: the origin becomes the first that is not zero. Points
+/// without an attribute that the others have get NaN; an attribute is uint8 if both have it so. Normals that only one
+/// has are left out; dropped points add up.
 void append(Cloud& to, Cloud&& from);
 
 /// Reads and merges `paths`. O(points).
@@ -27,6 +28,10 @@ std::int64_t drop_zero_normals(Cloud& cloud);
 
 /// What to tell of strays that are left out: how many, where the farthest is in world units, and how to keep them.
 std::string strays_text(std::int64_t count, const Vec3d& farthest);
+
+/// Leaves only the attributes red, green and blue.
+/// @returns whether there are any
+bool keep_colours_only(Cloud& cloud);
 
 /// Reads `path` as a mesh if it is a PLY with faces or another mesh format, else as a cloud. "-" is stdin.
 /// A mesh format without faces gives a cloud of its vertices.

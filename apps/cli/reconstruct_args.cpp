@@ -61,6 +61,10 @@ void define_surface(CLI::App& command, ReconstructArgs& args) {
   command.add_flag("--density", options.density, "add the property density, points per world unit^2")->group("Surface");
   command.add_flag("--keep-strays", options.keep_strays, "use stray points, too, and make the cube for all points")
       ->group("Surface");
+  command
+      .add_flag("--keep-attributes", options.attributes,
+                "carry colours and every other property of the points to the vertices")
+      ->group("Surface");
   command.add_flag("--no-normals", args.no_normals, "leave vertex normals out of the mesh")->group("Surface");
 }
 
@@ -103,7 +107,8 @@ void define_poisson_recon_names(CLI::App& command, ReconstructArgs& args) {
       ->type_name("W")
       ->group(group)
       ->each([&args](const std::string&) { args.width_given = true; });
-  command.add_flag("--colors", args.colors, "warns: colours are not carried to the mesh yet")->group(group);
+  command.add_flag("--colors", args.colors, "same as --keep-attributes, but for red, green and blue alone")
+      ->group(group);
 }
 
 bool confidence_of(const std::string& exponent) {
@@ -133,6 +138,7 @@ Options library_options(const ReconstructArgs& args) {
   }
   Options options = args.options;
   options.confidence = confidence_of(args.confidence);
+  options.attributes = options.attributes || args.colors;
   options.normals = !args.no_normals;
   options.domain_faces = args.open ? DomainFaces::open : DomainFaces::closed;
   options.residuals = args.verbose || !args.report.empty();

@@ -25,6 +25,7 @@ Json options_json(const Record& record) {
                {"fixed_screening", options.fixed_screening},
                {"linear_fit", options.linear_fit},
                {"density", options.density},
+               {"attributes", options.attributes},
                {"normals", options.normals},
                {"open", options.domain_faces == DomainFaces::open},
                {"trim", options.trim},

@@ -16,7 +16,7 @@ enum class AttributeType { uint8, float32 };
 struct Attribute {
   std::string name;
   AttributeType type = AttributeType::float32;
-  std::vector<float> values;  ///< shape (n); uint8 attributes hold 0..255
+  std::vector<float> values;  ///< shape (n); uint8 attributes hold 0..255; NaN: there is no value here
 };
 
 /// Points with optional unit-free outward normals and named scalars.

@@ -44,7 +44,8 @@ Mesh read_mesh(const std::string& path, const ReadOptions& options = {});
 /// .stl (binary). `path` "-" writes PLY to stdout. Vertices are float, or double when mesh.origin is not zero.
 /// The file appears by atomic rename from a temporary file in the same folder: on any failure the old file, or none, is
 /// there. A symbolic link is followed; permissions of an existing file are kept; special files (/dev/null, pipes) are
-/// written directly. OBJ and STL hold world coordinates and no attributes. A name without an extension is refused
+/// written directly. OBJ and STL hold world coordinates, OBJ also uint8 red, green and blue as
+/// `v x y z r g b` with colours in [0, 1], and no other attributes. A name without an extension is refused
 /// unless it is a special file, which gets PLY.
 /// @throws Error output_not_written (with the reason of the operating system); usage for an unknown extension or arrays
 ///         that do not fit together; invalid_input for a triangle that names a vertex that does not exist

@@ -31,15 +31,20 @@ struct Options {
   double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
   bool fixed_screening = false;  ///< true: all samples weigh alike; false: samples that scatter across the surface
                                  ///< weigh less, those that agree more (0.05 to 3.1 times `screening`)
-  int iterations = 8;  ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
-                       ///< max(this, twice their cells along an axis)
-  double scale = 1.1;  ///< working cube / bounding cube of the points used, in [1, 100]
+  int iterations = 8;            ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
+                                 ///< max(this, twice their cells along an axis)
+  double scale = 1.1;            ///< working cube / bounding cube of the points used, in [1, 100]
   double samples_per_node =
       1.5;  ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
   bool confidence = false;  ///< true: a normal's length, relative to the mean length, is the weight of its point
   bool linear_fit = false;  ///< true: edge crossings by linear instead of rescaled quadratic interpolation
   bool density = false;     ///< true: the mesh carries "density", samples per unit of area (world units^-2)
-  bool normals = true;      ///< true: the mesh carries vertex normals, from the gradient of the field
+  /// true: the mesh carries every attribute of the cloud, interpolated at its vertices and smoothly extended over holes
+  /// (docs/algorithm.md, section 8). Types stay: uint8 values are rounded. A point whose value is not finite does not
+  /// count for that attribute; with `confidence` the others count by their weight. An attribute whose name the mesh has
+  /// itself (x, y, z, nx, ny, nz, with `density` also density), or that came before, gets `input_` in front of it.
+  bool attributes = false;
+  bool normals = true;  ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;
   double trim = 0;  ///< > 0: the mesh ends where samples lie 1.75 times farther apart than at the sparsest samples,
                     ///< this share of all; in [0, 1); 0: off, the mesh is closed. 0.01 to 0.1 suit open scans
@@ -118,8 +123,9 @@ class Reconstructor {
   /// The Field shares this reconstructor's device resources and may outlive it.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.
   /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),
-  ///         invalid_input (points that are not finite), empty_result (no points, or all points at one place),
-  ///         over_limit (memory or 32-bit indices), interrupted (Options::progress returned false)
+  ///         invalid_input (points that are not finite, an attribute of another length), empty_result (no points, or
+  ///         all points at one place), over_limit (memory or 32-bit indices), interrupted (Options::progress returned
+  ///         false)
   Field solve(const Cloud& cloud, const Options& options = {});
 
   /// Runs the in-memory job `times` times on points resident on the device, the mesh staying there too.
@@ -139,7 +145,8 @@ class Reconstructor {
 
 /// Estimate of the memory that solve() and Field::extract() take on their device, in bytes:
 /// RunReport::device_peak_bytes within 15 %, from the bricks that the octree of these points would have on every level.
-/// What repeat() keeps beyond that, 24 bytes a point, and the host's own copy of the cloud are not in it.
+/// What repeat() keeps beyond that, 24 bytes a point and 4 per attribute, and the host's own copy of the cloud are not
+/// in it.
 /// @param threads  CPU threads that count, 0: all
 /// @throws Error usage (an option out of range), over_limit (a level beyond 32-bit node ids)
 /// Takes less memory than it predicts and a fraction of the run's time. O(n log n + nodes log nodes).

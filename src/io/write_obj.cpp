@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "io/writers.hpp"
@@ -16,6 +18,12 @@ class LineBuffer {
   void add_number(Number value) {
     at_ = std::to_chars(at_, text_.data() + text_.size(), value).ptr;
   }
+  /// A value in 0..255 as a share of 255. Three digits tell all 256 apart.
+  void add_share(float value) {
+    const float share = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 255.0F) / 255;
+    add(" ");
+    at_ = std::to_chars(at_, text_.data() + text_.size(), share, std::chars_format::fixed, 3).ptr;
+  }
   /// Appends the line and an end of line to `out` and starts anew.
   void flush_to(std::string& out) {
     *at_++ = '\n';
@@ -24,7 +32,8 @@ class LineBuffer {
   }
 
  private:
-  std::array<char, 256> text_;  // three numbers of at most 24 characters, or six ids of at most 11, and little else
+  std::array<char, 256>
+      text_;  // three numbers of at most 24 characters and a colour, or six ids of at most 11, and little else
   char* at_ = text_.data();
 };
 
@@ -35,6 +44,19 @@ void add_three(LineBuffer& line, std::string_view keyword, Number x, Number y, N
     line.add(" ");
     line.add_number(value);
   }
+}
+
+/// The attributes red, green and blue, if all are there and bytes: for others nobody knows what is white.
+std::optional<std::array<const Attribute*, 3>> colour_of(const Mesh& mesh) {
+  std::array<const Attribute*, 3> colour{};
+  for (const Attribute& a : mesh.attributes) {
+    if (a.type != AttributeType::uint8 || a.values.size() != mesh.vertices.size()) continue;
+    if (a.name == "red") colour[0] = &a;
+    if (a.name == "green") colour[1] = &a;
+    if (a.name == "blue") colour[2] = &a;
+  }
+  if (std::find(colour.begin(), colour.end(), nullptr) != colour.end()) return std::nullopt;
+  return colour;
 }
 
 /// A section of lines: write(i, line) makes line i.
@@ -52,11 +74,16 @@ Section lines(std::size_t rows, const Write& write) {
 }  // namespace
 
 Blocks format_obj(const Mesh& mesh) {
-  const auto write_vertex = [&mesh, is_world = is_zero(mesh.origin)](std::size_t i, LineBuffer& line) {
+  const auto write_vertex = [&mesh, is_world = is_zero(mesh.origin), colour = colour_of(mesh)](std::size_t i,
+                                                                                               LineBuffer& line) {
     const Vec3f& p = mesh.vertices[i];
-    if (is_world) return add_three(line, "v", p.x, p.y, p.z);
     const Vec3d w = world(mesh.origin, p);
-    add_three(line, "v", w[0], w[1], w[2]);
+    if (is_world)
+      add_three(line, "v", p.x, p.y, p.z);
+    else
+      add_three(line, "v", w[0], w[1], w[2]);
+    if (colour)
+      for (const Attribute* channel : *colour) line.add_share(channel->values[i]);
   };
   const auto write_normal = [&mesh](std::size_t i, LineBuffer& line) {
     add_three(line, "vn", mesh.normals[i].x, mesh.normals[i].y, mesh.normals[i].z);

@@ -26,7 +26,8 @@ struct VertexArrays {
 /// @throws Error usage if an array has the wrong length or a name comes twice
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles);
 
-/// OBJ text: world coordinates in the fewest digits that read back equal.
+/// OBJ text: world coordinates in the fewest digits that read back equal. Colours, if red, green and blue are uint8
+/// attributes, follow the coordinates as numbers in [0, 1], as many programs read them.
 Blocks format_obj(const Mesh& mesh);
 
 /// Binary STL, world coordinates as float.

@@ -1,8 +1,9 @@
 // Moving values between the corners of a level, its parents and points. All are linear in the corners' values and
-// use the same order of operations everywhere.
+// use the same order of operations everywhere. A value is a float, or several that add and scale one by one.
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include <pointskin/vector.hpp>
 
@@ -14,8 +15,9 @@ namespace pointskin::octree {
 
 /// Value at node `slot` of a brick whose parent node is `parent`, interpolated from the corners `above` of the level
 /// above: the mean of the 1, 2, 4 or 8 corners around it. Exact for hat functions, whose spaces are nested.
-PSK_HD inline float prolonged(const LevelView& level_above, const float* above, std::int32_t parent, int slot) {
-  float sum = 0;
+template <class T>
+PSK_HD T prolonged(const LevelView& level_above, const T* above, std::int32_t parent, int slot) {
+  T sum{};
   PSK_UNROLL for (int s = 0; s < 8; ++s) {
     if ((s & ~slot) != 0) continue;
     const std::int32_t corner = level_above.neighbour(parent, slot_x(s), slot_y(s), slot_z(s));
@@ -26,8 +28,10 @@ PSK_HD inline float prolonged(const LevelView& level_above, const float* above, 
 
 /// Sum over the 27 finer corners around node `n` of weight times value, weights 1, 1/2, 1/4, 1/8: the transpose of
 /// prolonged(). Finer corners that do not exist count as zero.
-PSK_HD inline float restricted(const LevelView& level, const LevelView& below, const float* values, std::int32_t n) {
-  float sum = 0;
+/// @param values  anything that has the value of finer node i at [i]
+template <class Values>
+PSK_HD auto restricted(const LevelView& level, const LevelView& below, const Values& values, std::int32_t n) {
+  std::decay_t<decltype(values[std::int64_t{0}])> sum{};
   PSK_UNROLL for (int s = 0; s < 8;
                   ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
     const int x = slot_x(s);
@@ -36,17 +40,17 @@ PSK_HD inline float restricted(const LevelView& level, const LevelView& below, c
     const std::int32_t node = level.neighbour(n, -x, -y, -z);
     const std::int32_t brick = node < 0 ? -1 : level.child_brick[node];
     if (brick < 0 || brick >= below.bricks) continue;
-    const float* corner = values + std::int64_t{8} * brick;
+    const std::int64_t first = std::int64_t{8} * brick;
     // Along an axis, the node's own brick gives offsets 0 and 1, the lower brick only offset -1 (its slot 1).
     PSK_UNROLL for (int i = 0; i < 2; ++i) {
       PSK_UNROLL for (int j = 0; j < 2; ++j) {
         PSK_UNROLL for (int k = 0; k < 2; ++k) {
           if (i < x || j < y || k < z) continue;
           const int distance = (i != 0) + (j != 0) + (k != 0);
-          sum += corner[slot_of(i, j, k)] * (distance == 0   ? 1.0F
-                                             : distance == 1 ? 0.5F
-                                             : distance == 2 ? 0.25F
-                                                             : 0.125F);
+          sum += values[first + slot_of(i, j, k)] * (distance == 0   ? 1.0F
+                                                     : distance == 1 ? 0.5F
+                                                     : distance == 2 ? 0.25F
+                                                                     : 0.125F);
         }
       }
     }
@@ -69,10 +73,11 @@ PSK_HD inline Vec3f local_in_cell(const Vec3f& p, const Coordinates& c, int dept
 }
 
 /// Trilinear interpolation of corner values in a cell.
-PSK_HD inline float interpolated(const LevelView& level, const float* values, std::int32_t cell, const Vec3f& local) {
-  float sum = 0;
+template <class T>
+PSK_HD T interpolated(const LevelView& level, const T* values, std::int32_t cell, const Vec3f& local) {
+  T sum{};
   PSK_UNROLL for (int s = 0; s < 8; ++s) sum +=
-      corner_weight(s, local) * values[level.neighbour(cell, slot_x(s), slot_y(s), slot_z(s))];
+      values[level.neighbour(cell, slot_x(s), slot_y(s), slot_z(s))] * corner_weight(s, local);
   return sum;
 }
 
@@ -95,7 +100,8 @@ PSK_HD inline Leaf locate(const OctreeView& tree, std::uint64_t point_key, int l
 
 /// Value of corner values over all levels (level-major) at a point of the unit cube: one trilinear interpolation in the
 /// deepest cell no finer than `last`.
-PSK_HD inline float value_at(const OctreeView& tree, const float* values, const Vec3f& p, int last) {
+template <class T>
+PSK_HD T value_at(const OctreeView& tree, const T* values, const Vec3f& p, int last) {
   const std::uint64_t key = point_key(p.x, p.y, p.z);
   const Leaf leaf = locate(tree, key, last);
   const LevelView& level = tree.levels[leaf.depth];

@@ -63,6 +63,10 @@ template <exec::Space Exec>
 void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& density, const WeighOptions& options,
                    Samples& samples);
 
+/// weights[i] = length of normal i over the mean length, the confidence in a sample. O(n), one read-back.
+template <exec::Space Exec>
+exec::Buffer<float> confidence_weights(Exec& ex, ArrayView<const Vec3f> normals);
+
 /// out[i] = samples per finest cell face (cells^-2) at points of the unit cube. O(n depth).
 template <exec::Space Exec>
 void evaluate_density(Exec& ex, const octree::OctreeData& tree, const Density& density, ArrayView<const Vec3f> points,

@@ -85,6 +85,18 @@ struct Plus {
   PSK_HD double operator()(double a, double b) const { return a + b; }
 };
 
+template <exec::Space Exec>
+double mean_length(Exec& ex, ArrayView<const Vec3f> normals) {
+  return exec::reduce<double>(ex, "density.confidence", normals.size, LengthOf{normals}, Plus{}) /
+         static_cast<double>(normals.size);
+}
+struct RelativeLength {
+  ArrayView<const Vec3f> normals;
+  double mean;
+  ArrayView<float> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<float>(length_of(normals[i]) / mean); }
+};
+
 /// Coarsest depth to splat at. Threads gather whole cells there, so a cell of a surface should not hold more than some
 /// thousand samples, whatever a few outliers would need.
 inline int coarsest_splat_depth(std::int64_t points, int depth) {
@@ -172,11 +184,7 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
   const std::int64_t n = samples.positions.size();
   samples.areas = exec::make_buffer<float>(ex, n);
   samples.splat_depths = exec::make_buffer<std::uint8_t>(ex, n);
-  double mean_length = 0;
-  if (options.confidence)
-    mean_length =
-        exec::reduce<double>(ex, "density.confidence", n, density::LengthOf{samples.normals.cview()}, density::Plus{}) /
-        static_cast<double>(n);
+  const double mean_length = options.confidence ? density::mean_length(ex, samples.normals.cview()) : 0;
   for_each(ex, "density.weigh", n,
            density::Weigh{tree.view(),
                           {density.depth, density.counts.data()},
@@ -190,6 +198,14 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
   samples.splat_depth_set = exec::reduce<std::uint32_t>(
       ex, "density.coarsest", n, density::DepthBit{samples.splat_depths.cview()}, density::Union{});
   samples.coarsest_splat_depth = std::countr_zero(samples.splat_depth_set);
+}
+
+template <exec::Space Exec>
+exec::Buffer<float> confidence_weights(Exec& ex, ArrayView<const Vec3f> normals) {
+  auto weights = exec::make_buffer<float>(ex, normals.size);
+  for_each(ex, "density.confidence", normals.size,
+           density::RelativeLength{normals, density::mean_length(ex, normals), weights.view()});
+  return weights;
 }
 
 template <exec::Space Exec>

@@ -178,12 +178,6 @@ TEST_F(ReconstructCommand, WidthChoosesTheDepthWhoseCellsAreNotWider) {
   EXPECT_EQ(pointskin_run({"reconstruct", input_, "-o", output_, "--width", "1e-9"}).exit_code, 2);
 }
 
-TEST_F(ReconstructCommand, WarnsThatColoursAreNotCarried) {
-  const Result result = reconstruct({"--colors", "-q"});
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_NE(result.err.find("warning: --colors"), std::string::npos) << result.err;
-}
-
 TEST_F(ReconstructCommand, DensityAndNormalsAreProperties) {
   ASSERT_EQ(reconstruct({"--density"}).exit_code, 0);
   const Mesh rich = read_mesh(output_);
@@ -298,7 +292,8 @@ TEST_F(ReconstructCommand, EnoughMemoryIsEnough) { EXPECT_EQ(reconstruct({"--max
 
 TEST_F(ReconstructCommand, ReportFollowsItsSchema) {
   const Json schema = Json::parse(read_file(POINTSKIN_SOURCE_DIR "/docs/report.schema.json"));
-  for (const Args& more : {Args{}, Args{"--repeat", "3"}, Args{"--density", "--open", "--shift", "none"}}) {
+  for (const Args& more :
+       {Args{}, Args{"--repeat", "3"}, Args{"--density", "--open", "--shift", "none", "--keep-attributes"}}) {
     const Json report = report_with(more);
     EXPECT_EQ(schema_violations(schema, report), std::vector<std::string>{});
     EXPECT_EQ(report.contains("ms_repeat"), !more.empty() && more[0] == "--repeat");

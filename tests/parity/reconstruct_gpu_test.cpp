@@ -8,9 +8,11 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "property/reconstruction.hpp"
@@ -143,6 +145,37 @@ TEST_P(GpuOnCloud, TrimsToTheSameBytesAsTheCpu) {
       [&] { (void)Reconstructor(gpu_).reconstruct(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01}); });
   EXPECT_EQ(gpu_error, cpu_error);
   if (!cpu_error) expect_parity(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01});
+}
+
+/// Colours, a scalar that half of the points lack, and points that differ in their colours alone.
+Cloud coloured(Cloud cloud, std::uint64_t seed) {
+  test::append(cloud, Cloud(cloud));
+  test::Random random(seed);
+  for (const char* name : {"red", "green", "blue", "x", "y"}) {
+    Attribute a{name, name[1] != 0 ? AttributeType::uint8 : AttributeType::float32, {}};
+    for (std::int64_t i = 0; i < cloud.size(); ++i) {
+      const bool is_missing = name[0] == 'x' && random.below(2) == 0;
+      a.values.push_back(is_missing                       ? std::numeric_limits<float>::quiet_NaN()
+                         : a.type == AttributeType::uint8 ? static_cast<float>(random.below(256))
+                                                          : static_cast<float>(random.in(-1e6, 1e6)));
+    }
+    cloud.attributes.push_back(std::move(a));
+  }
+  return cloud;
+}
+
+TEST_F(Gpu, GivesVerticesTheSameAttributesAsTheCpu) {
+  const Cloud cloud = coloured(test::jittered(test::linked_tori_cloud(30'000, 21), 22, 0.01), 23);
+  for (const int depth : {2, 4, 7, 9}) {
+    SCOPED_TRACE("depth " + std::to_string(depth));
+    expect_parity(cloud, {.depth = depth, .attributes = true});
+    expect_parity(cloud, {.depth = depth, .confidence = true, .density = true, .attributes = true});
+  }
+  Reconstructor r(gpu_);
+  const Mesh expected = r.reconstruct(cloud, {.depth = 7, .attributes = true});
+  EXPECT_EQ(r.repeat(cloud, {.depth = 7, .attributes = true}, 3).size(), 3U);
+  expect_same_bytes(r.solve(cloud, {.depth = 7, .attributes = true}).extract(), expected);
+  expect_same_bytes(r.reconstruct(test::shuffled(cloud, 24), {.depth = 7, .attributes = true}), expected);
 }
 
 TEST_F(Gpu, EndsTinyCloudsAsTheCpuDoes) {

@@ -118,6 +118,26 @@ TEST(MemoryEstimate, IsWithin15PercentWhenTrimming) {
   }
 }
 
+Cloud with_attributes(Cloud cloud, int count) {
+  for (int i = 0; i < count; ++i)
+    cloud.attributes.push_back({std::string(1, static_cast<char>('a' + i)), AttributeType::float32,
+                                std::vector<float>(static_cast<std::size_t>(cloud.size()), static_cast<float>(i))});
+  return cloud;
+}
+
+TEST(MemoryEstimate, CountsTheAttributesThatAreKept) {
+  for (const int count : {1, 3, 20})
+    for (const int depth : {5, 8}) {
+      const Cloud cloud = with_attributes(test::torus_cloud(60'000, 20), count);
+      expect_good_estimate(cloud, {.depth = depth, .confidence = true, .attributes = true}, "attributes");
+      expect_good_estimate(cloud, {.depth = depth}, "attributes that are not kept");
+    }
+  const Cloud sparse = with_attributes(test::sphere_cloud(300, 21), 3);
+  expect_good_estimate(sparse, {.depth = 11, .attributes = true}, "attributes of few points");
+  const Cloud dense = with_attributes(test::sphere_cloud(300'000, 22), 3);
+  expect_good_estimate(dense, {.depth = 5, .attributes = true}, "attributes of many points");
+}
+
 TEST(MemoryEstimate, IsWithin15PercentWherePointsShareTheirPlaces) {
   const Cloud once = test::sphere_cloud(100'000, 16);
   Cloud cloud = once;

@@ -89,6 +89,23 @@ TEST(MeshFiles, ObjPrintsFloatsInTheFewestDigitsThatReadBackEqual) {
   EXPECT_EQ(read_mesh(folder.file("a.obj")).vertices, mesh.vertices);
 }
 
+TEST(MeshFiles, ObjHasColoursBehindCoordinatesIfTheyAreBytes) {
+  const test::TemporaryFolder folder;
+  Mesh mesh;
+  mesh.vertices = {{1, 2, 3}, {0, 3, 4}, {5, 6, 7}};
+  mesh.triangles = {{0, 1, 2}};
+  const std::vector<float> values = {0, 128, 255};
+  for (const char* name : {"blue", "red", "green"}) mesh.attributes.push_back({name, AttributeType::uint8, values});
+  mesh.attributes[0].values = {255, 1, std::numeric_limits<float>::quiet_NaN()};
+  write_mesh(folder.file("a.obj"), mesh);
+  EXPECT_EQ(test::bytes_of_file(folder.file("a.obj")),
+            "v 1 2 3 0.000 0.000 1.000\nv 0 3 4 0.502 0.502 0.004\nv 5 6 7 1.000 1.000 0.000\nf 1 2 3\n");
+  EXPECT_EQ(read_mesh(folder.file("a.obj")).vertices, mesh.vertices);
+  mesh.attributes[1].type = AttributeType::float32;
+  write_mesh(folder.file("a.obj"), mesh);
+  EXPECT_EQ(test::bytes_of_file(folder.file("a.obj")), "v 1 2 3\nv 0 3 4\nv 5 6 7\nf 1 2 3\n");
+}
+
 TEST(MeshFiles, StlHoldsWorldCoordinatesAsFloatAndIsWeldedOnReading) {
   const test::TemporaryFolder folder;
   Mesh mesh = far_tetrahedron();

@@ -39,7 +39,7 @@ std::string text_of(const std::vector<Vec3d>& points) {
 }
 
 Cloud read(const std::vector<Vec3d>& points, int threads = 0) {
-  return cloud_of("cloud.xyz", text_of(points), {.threads = threads});
+  return cloud_of("cloud.xyz", text_of(points), {.shift = {}, .threads = threads});
 }
 
 /// Largest error of the points that are not farther than 1 from `centre`.

@@ -1,0 +1,312 @@
+// Attributes of samples at any point, against sums over hats found by coordinates instead of by the octree's tables.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exec/cpu_primitives.hpp"
+#include "field/attributes.hpp"
+#include "unit/poisson/small_tree.hpp"
+
+namespace pointskin {
+namespace {
+
+using test::SmallTree;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+using Corner = std::array<int, 3>;
+
+/// Calls f(corner, weight) for the 8 corners of the cell of level `depth` around p.
+template <class F>
+void for_hats(const Vec3f& p, int depth, const F& f) {
+  const std::array<double, 3> x = {std::ldexp(p.x, depth), std::ldexp(p.y, depth), std::ldexp(p.z, depth)};
+  for (int s = 0; s < 8; ++s) {
+    Corner c{};
+    double weight = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto cell = std::min(static_cast<int>(x[a]), (1 << depth) - 1);
+      const int upper = s >> a & 1;
+      c[a] = cell + upper;
+      weight *= upper != 0 ? x[a] - cell : 1 - (x[a] - cell);
+    }
+    f(c, weight);
+  }
+}
+
+/// Pull-push of one attribute in double, over maps of the corners that samples reach.
+class BruteForce {
+ public:
+  BruteForce(const SmallTree& tree, const std::vector<float>& weights, const std::vector<float>& values)
+      : view_(tree.view), levels_(static_cast<std::size_t>(tree.view.depth) + 1) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) continue;
+      for_hats(tree.samples.positions.data()[i], view_.depth, [&](const Corner& c, double hat) {
+        Mean& mean = level(view_.depth)[c];
+        const double weight = hat * (weights.empty() ? 1.0 : weights[i]);
+        mean.weight += weight;
+        mean.sum += weight * values[i];
+      });
+    }
+    for (int d = view_.depth; d > 0; --d)
+      for (const auto& [c, mean] : level(d)) pull(c, mean, level(d - 1));
+  }
+
+  double at(const Vec3f& p) {
+    const octree::Leaf leaf = octree::locate(view_, octree::point_key(p.x, p.y, p.z), view_.depth);
+    double sum = 0;
+    for_hats(p, leaf.depth, [&](const Corner& c, double hat) { sum += hat * value(leaf.depth, c); });
+    return sum;
+  }
+
+ private:
+  struct Mean {
+    double weight = 0, sum = 0;
+    [[nodiscard]] double cap() const { return weight > 1 ? 1 / weight : 1; }
+  };
+  using Level = std::map<Corner, Mean>;
+
+  Level& level(int depth) { return levels_[static_cast<std::size_t>(depth)]; }
+
+  /// Adds a corner to those of the level above whose hats reach it.
+  static void pull(const Corner& c, const Mean& mean, Level& above) {
+    for (int s = 0; s < 8; ++s) {
+      Corner to{};
+      double weight = mean.cap();
+      bool reaches = true;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const bool odd = c[a] % 2 != 0;
+        const int side = s >> a & 1;
+        to[a] = c[a] / 2 + side;
+        if (odd) weight /= 2;
+        reaches = reaches && (odd || side == 0);
+      }
+      if (!reaches) continue;
+      above[to].weight += weight * mean.weight;
+      above[to].sum += weight * mean.sum;
+    }
+  }
+
+  double value(int depth, const Corner& c) {
+    const auto [known, is_new] = values_.try_emplace({depth, c}, 0);
+    if (!is_new) return known->second;
+    const auto found = level(depth).find(c);
+    const Mean mean = found == level(depth).end() ? Mean{} : found->second;
+    constexpr auto kAbove = double{field::kSamplesAbove};
+    const double result = (mean.sum + kAbove * above(depth, c)) / (mean.weight + kAbove);
+    return values_[{depth, c}] = result;
+  }
+
+  double above(int depth, const Corner& c) {
+    double sum = 0;
+    double weight = 0;
+    if (depth == 0) {
+      for (const auto& [at, mean] : level(0)) {
+        weight += mean.cap() * mean.weight;
+        sum += mean.cap() * mean.sum;
+      }
+      return sum / weight;
+    }
+    for (int s = 0; s < 8; ++s) {
+      Corner at{};
+      for (std::size_t a = 0; a < 3; ++a) at[a] = (c[a] + (s >> a & 1)) / 2;
+      sum += value(depth - 1, at) / 8;
+    }
+    return sum;
+  }
+
+  octree::OctreeView view_;
+  std::vector<Level> levels_;
+  std::map<std::pair<int, Corner>, double> values_;
+};
+
+exec::Buffer<float> buffer_of(exec::Cpu& ex, const std::vector<float>& values) {
+  auto buffer = exec::make_buffer<float>(ex, static_cast<std::int64_t>(values.size()));
+  copy_to_device(ex, values.data(), buffer.view());
+  return buffer;
+}
+
+std::string name_of(std::size_t channel) { return std::string(1, static_cast<char>('a' + channel)); }
+
+/// What interpolate() hands on, in its order.
+struct Taken {
+  std::vector<std::string> names;
+  std::vector<std::vector<float>> values;
+};
+
+/// The attributes a, b, ... of the tree's samples at `points`.
+Taken interpolated(SmallTree& tree, const std::vector<float>& weights, const std::vector<std::vector<float>>& values,
+                   const std::vector<Vec3f>& points, AttributeType type = AttributeType::float32) {
+  field::AttributeSamples samples;
+  samples.positions = exec::make_buffer<Vec3f>(tree.ex, tree.samples.positions.size());
+  copy(tree.ex, tree.samples.positions.cview(), samples.positions.view());
+  samples.weights = buffer_of(tree.ex, weights);
+  for (const std::vector<float>& v : values)
+    samples.channels.push_back(
+        field::make_channel(tree.ex, name_of(samples.channels.size()), type, buffer_of(tree.ex, v)));
+  Taken taken;
+  field::interpolate(tree.ex, tree.tree, samples,
+                     ArrayView<const Vec3f>(points.data(), static_cast<std::int64_t>(points.size())),
+                     [&](const field::Channel& channel, const exec::Buffer<float>& at) {
+                       taken.names.push_back(channel.name);
+                       taken.values.emplace_back(at.view().begin(), at.view().end());
+                     });
+  return taken;
+}
+
+/// The same for a single attribute without weights.
+std::vector<float> interpolated(SmallTree& tree, const std::vector<float>& values, const std::vector<Vec3f>& points,
+                                AttributeType type = AttributeType::float32) {
+  return interpolated(tree, {}, std::vector<std::vector<float>>{values}, points, type).values[0];
+}
+
+std::vector<float> random_values(test::Random& random, std::int64_t n, double lower, double upper) {
+  std::vector<float> values;
+  for (std::int64_t i = 0; i < n; ++i) values.push_back(static_cast<float>(random.in(lower, upper)));
+  return values;
+}
+
+std::vector<Vec3f> random_points(test::Random& random, int n) {
+  return test::clustered_points(random, n, 1, 0, 0, 0.9999999);
+}
+
+TEST(Attributes, AreTheSumsOverHatsThatTheirHeaderStates) {
+  for (const int depth : {1, 2, 4, 6, 8})
+    for (const std::size_t count : {1U, 2U, 3U, 5U}) {
+      test::Random random(10 * static_cast<std::uint64_t>(depth) + count);
+      SmallTree tree(test::clustered_points(random, 12, 15, 0.03), {}, depth);
+      const std::int64_t n = tree.samples.positions.size();
+      const std::vector<float> weights = count == 2 ? random_values(random, n, 0, 3) : std::vector<float>();
+      std::vector<std::vector<float>> values;
+      for (std::size_t c = 0; c < count; ++c) values.push_back(random_values(random, n, -5, 20));
+      const std::vector<Vec3f> near = test::clustered_points(random, 12, 15, 0.03);
+      std::vector<Vec3f> points = random_points(random, 100);
+      points.insert(points.end(), near.begin(), near.end());
+      points.insert(points.end(), tree.samples.positions.data(), tree.samples.positions.data() + n);
+      const Taken taken = interpolated(tree, weights, values, points);
+      ASSERT_EQ(taken.values.size(), count);
+      for (std::size_t c = 0; c < count; ++c) {
+        SCOPED_TRACE("depth " + std::to_string(depth) + ", attribute " + name_of(c));
+        EXPECT_EQ(taken.names[c], name_of(c));
+        BruteForce expected(tree, weights, values[c]);
+        for (std::size_t i = 0; i < points.size(); ++i) ASSERT_NEAR(taken.values[c][i], expected.at(points[i]), 1e-4);
+      }
+    }
+}
+
+TEST(Attributes, LeaveOutSamplesWhoseValueIsNotFinite) {  // each attribute others, so that none can share a weight
+  test::Random random(3);
+  SmallTree tree(test::clustered_points(random, 12, 15, 0.03), {}, 5);
+  const std::int64_t n = tree.samples.positions.size();
+  std::vector<std::vector<float>> values;
+  const std::array<float, 4> missing = {kNan, kInfinity, -kInfinity, kNan};
+  for (std::size_t c = 0; c < missing.size(); ++c) {
+    values.push_back(random_values(random, n, 0, 1));
+    for (std::size_t i = 0; i < values[c].size(); ++i)
+      if (i % 4 == c || c == 2) values[c][i] = i == 7 && c == 2 ? 0.5F : missing[c];  // c: one sample counts
+  }
+  values.push_back(values[1]);  // misses the same samples as the one before
+  const std::vector<Vec3f> points = random_points(random, 200);
+  const Taken taken = interpolated(tree, {}, values, points);
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    SCOPED_TRACE("attribute " + name_of(c));
+    BruteForce expected(tree, {}, values[c]);
+    for (std::size_t i = 0; i < points.size(); ++i) ASSERT_NEAR(taken.values[c][i], expected.at(points[i]), 1e-5);
+  }
+}
+
+TEST(Attributes, ThatNoSampleHasAreNanOrZero) {
+  test::Random random(4);
+  SmallTree tree(random_points(random, 50), {}, 4);
+  const std::vector<Vec3f> points = random_points(random, 20);
+  const std::vector<float> values(50, kNan);
+  for (const float v : interpolated(tree, values, points)) EXPECT_TRUE(std::isnan(v));
+  for (const float v : interpolated(tree, values, points, AttributeType::uint8)) EXPECT_EQ(v, 0);
+  EXPECT_TRUE(interpolated(tree, {}, std::vector<std::vector<float>>{}, points).values.empty());
+}
+
+TEST(Attributes, WithoutWeightAnywhereAreFiniteAndInTheRange) {
+  test::Random random(5);
+  SmallTree tree(random_points(random, 50), {}, 4);
+  const std::vector<float> none(50, 0.0F);
+  const Taken taken = interpolated(tree, none, {random_values(random, 50, 3, 4)}, random_points(random, 20));
+  for (const float v : taken.values[0]) EXPECT_TRUE(v >= 3 && v <= 4) << v;
+}
+
+TEST(Attributes, ThatAreTheSameEverywhereComeBackExactly) {
+  test::Random random(6);
+  SmallTree tree(test::clustered_points(random, 30, 15, 0.02), {}, 7);
+  const std::vector<Vec3f> points = random_points(random, 500);
+  for (const float value : {0.0F, 0.1F, -7.3e-30F, 1.7e9F, 3.4e38F}) {
+    const std::vector<float> same(static_cast<std::size_t>(tree.samples.positions.size()), value);
+    for (const float v : interpolated(tree, same, points)) ASSERT_EQ(v, value);
+  }
+}
+
+TEST(Attributes, StayInTheRangeOfTheInputHoweverLargeOrCloseItsValuesAre) {
+  test::Random random(7);
+  SmallTree tree(test::clustered_points(random, 30, 15, 0.02), {}, 7);
+  const std::int64_t n = tree.samples.positions.size();
+  const std::vector<Vec3f> points = random_points(random, 500);
+  const std::array<std::pair<double, double>, 4> ranges = {
+      {{-3.4e38, 3.4e38}, {1e9, 1e9 + 200}, {-1e-42, 1e-42}, {-1, 0}}};
+  for (const auto& [lower, upper] : ranges) {
+    const std::vector<float> values = random_values(random, n, lower, upper);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const std::vector<float> at = interpolated(tree, values, points);
+    for (const float v : at) ASSERT_TRUE(v >= *low && v <= *high) << v << " not in " << *low << ", " << *high;
+    EXPECT_NE(*std::min_element(at.begin(), at.end()), *std::max_element(at.begin(), at.end()));
+  }
+}
+
+TEST(Attributes, OfTypeUint8AreRoundedWholeNumbers) {
+  test::Random random(8);
+  SmallTree tree(test::clustered_points(random, 30, 15, 0.02), {}, 6);
+  const std::int64_t n = tree.samples.positions.size();
+  std::vector<float> values;
+  for (std::int64_t i = 0; i < n; ++i) values.push_back(static_cast<float>(random.below(256)));
+  const std::vector<Vec3f> points = random_points(random, 500);
+  const std::vector<float> exact = interpolated(tree, values, points);
+  const std::vector<float> bytes = interpolated(tree, values, points, AttributeType::uint8);
+  for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(bytes[i], std::floor(exact[i] + 0.5F));
+  values[0] = -40;
+  values[1] = 900;
+  for (const float v : interpolated(tree, values, points, AttributeType::uint8))
+    ASSERT_TRUE(v >= 0 && v <= 255 && v == std::floor(v)) << v;
+}
+
+/// Half-way between two levels' cells, values must agree: leaves of different depth meet there.
+TEST(Attributes, AreContinuousAcrossLeavesOfDifferentDepth) {
+  test::Random random(9);
+  SmallTree tree(test::clustered_points(random, 6, 10, 0.02), {}, 8);
+  const std::vector<float> values = random_values(random, tree.samples.positions.size(), 0, 1);
+  std::vector<Vec3f> points;
+  for (int i = 0; i < 30'000; ++i) {  // pairs at both sides of a cell's face of level 8
+    const float face = static_cast<float>(1 + random.below(255)) / 256;
+    const auto y = static_cast<float>(random.unit());
+    const auto z = static_cast<float>(random.unit());
+    points.push_back({std::nextafter(face, 0.0F), y, z});
+    points.push_back({face, y, z});
+  }
+  const std::vector<float> at = interpolated(tree, values, points);
+  int borders = 0;
+  for (std::size_t i = 0; i < points.size(); i += 2) {
+    const auto depth = [&](const Vec3f& p) {
+      return octree::locate(tree.view, octree::point_key(p.x, p.y, p.z), 8).depth;
+    };
+    borders += depth(points[i]) != depth(points[i + 1]) ? 1 : 0;
+    ASSERT_NEAR(at[i], at[i + 1], 1e-4);
+  }
+  EXPECT_GT(borders, 20);
+}
+
+}  // namespace
+}  // namespace pointskin

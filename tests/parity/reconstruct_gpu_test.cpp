@@ -101,7 +101,12 @@ TEST_P(GpuOnCloud, GivesTheSameBytesAsTheCpu) {
   const auto [number, depth] = GetParam();
   const NamedCloud c = cloud_number(number);
   SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
-  expect_parity(c.cloud, {.depth = depth});
+  // Depth 1 resolves no surface of some: the same error then.
+  const auto cpu_error = test::error_of([&] { (void)test::reconstructed(c.cloud, {.depth = depth}); });
+  const auto gpu_error = test::error_of([&] { (void)Reconstructor(gpu_).reconstruct(c.cloud, {.depth = depth}); });
+  EXPECT_EQ(gpu_error, cpu_error);
+  EXPECT_TRUE(!cpu_error || depth == 1);
+  if (!cpu_error) expect_parity(c.cloud, {.depth = depth});
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryShapeAndDepth, GpuOnCloud,

@@ -10,12 +10,14 @@
 
 #include "closest_point.hpp"
 #include "exec/cpu_primitives.hpp"
+#include "mesh/both_ways.hpp"
 #include "mesh/surface_samples.hpp"
 #include "mesh/triangle_tree.hpp"
 
 namespace pointskin::bench {
 namespace {
 
+using mesh_detail::Direction;
 using mesh_detail::dot;
 using mesh_detail::minus;
 using Json = nlohmann::ordered_json;
@@ -27,11 +29,6 @@ constexpr std::int64_t kAreaDraws = 4'000'000;
 struct Found {
   double distance = 0;
   double cosine = 0;  ///< |n . n'|, or negative where a triangle has no normal
-};
-
-struct Direction {
-  DistanceStatistics distances;
-  double normal_consistency = 0, share_near = 0;
 };
 
 double cosine_of(const Vec3d& a, const Vec3d& b) {
@@ -103,22 +100,6 @@ double diagonal_of(const Cloud& cloud) {
   return mesh_detail::length(minus(mesh_detail::to_double(box.upper), mesh_detail::to_double(box.lower)));
 }
 
-MeshComparison combine(const Direction& to_truth, const Direction& from_truth, double diagonal) {
-  const DistanceStatistics &a = to_truth.distances, &b = from_truth.distances;
-  MeshComparison result;
-  result.reference_diagonal = diagonal;
-  result.to_reference = a;
-  result.from_reference = b;
-  result.two_sided = {(a.mean + b.mean) / 2, std::sqrt((a.rms * a.rms + b.rms * b.rms) / 2), std::max(a.p95, b.p95),
-                      std::max(a.max, b.max)};
-  result.normal_consistency = (to_truth.normal_consistency + from_truth.normal_consistency) / 2;
-  result.precision = to_truth.share_near;
-  result.recall = from_truth.share_near;
-  const double sum = result.precision + result.recall;
-  result.f_score = sum > 0 ? 2 * result.precision * result.recall / sum : 0;
-  return result;
-}
-
 Json distances_json(const DistanceStatistics& d, double diagonal, double spacing) {
   const auto scaled = [&](double by) {
     return Json{{"mean", d.mean * by}, {"rms", d.rms * by}, {"p95", d.p95 * by}, {"max", d.max * by}};
@@ -148,7 +129,7 @@ Metrics measure_against(const Mesh& mesh, const std::string& name, const Shape& 
   const double diagonal = diagonal_of(surface), threshold = options.tau * diagonal;
   exec::Cpu ex(options.threads);
   const Direction there = mesh_to_shape(ex, mesh, shape, options, threshold);
-  metrics.comparison = combine(there, shape_to_mesh(ex, surface, mesh, threshold), diagonal);
+  metrics.comparison = mesh_detail::both_ways(there, shape_to_mesh(ex, surface, mesh, threshold), diagonal);
   return metrics;
 }
 

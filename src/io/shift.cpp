@@ -1,5 +1,6 @@
 #include "io/shift.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/stray_limit.hpp"
@@ -10,20 +11,20 @@ namespace {
 /// Float keeps a surface exact enough if no coordinate is this many times its extent.
 constexpr double kExactEnough = 1000;
 
+double largest_magnitude(const Box& box) {
+  double largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+  return largest;
+}
+
 Vec3d shift_of(const Box& box) {
-  const double magnitude = box.largest_magnitude();
+  const double magnitude = largest_magnitude(box);
   if (magnitude == 0 || magnitude < kExactEnough * box.longest_side()) return {0, 0, 0};
   Vec3d centre{};
   // Adding zero turns -0 into 0, which compares and prints as expected.
   for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = std::round((box.lower[axis] + box.upper[axis]) / 2) + 0.0;
   return centre;
-}
-
-/// The `rank`-th smallest value, counted from 0; `otherwise` if there are not so many.
-double smallest(std::vector<double> values, std::int64_t rank, double otherwise) {
-  if (static_cast<std::int64_t>(values.size()) <= rank) return otherwise;
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
 }
 
 /// The `rank`-th smallest lower and the `rank`-th largest upper ends along every axis.
@@ -39,31 +40,7 @@ Box ends_of(const std::vector<Box>& runs, std::int64_t rank) {
   return ends;
 }
 
-/// Along every axis, from the `rank`-th smallest to the `rank`-th largest coordinate of all points.
-/// @param outside  all points beyond `ends`, at or beyond which are more than `rank` points
-Box middle_of(const std::vector<Vec3d>& outside, const Box& ends, std::int64_t rank) {
-  Box middle;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::vector<double> below;
-    std::vector<double> above;  // with the sign turned, so that the largest is the smallest
-    for (const Vec3d& p : outside) {
-      if (p[axis] < ends.lower[axis]) below.push_back(p[axis]);
-      if (p[axis] > ends.upper[axis]) above.push_back(-p[axis]);
-    }
-    middle.lower[axis] = smallest(std::move(below), rank, ends.lower[axis]);
-    middle.upper[axis] = -smallest(std::move(above), rank, -ends.upper[axis]);
-  }
-  return middle;
-}
-
 }  // namespace
-
-double Box::largest_magnitude() const {
-  double largest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    largest = std::max({largest, std::abs(lower[axis]), std::abs(upper[axis])});
-  return largest;
-}
 
 Vec3d automatic_shift(const std::vector<Box>& runs, std::int64_t points,
                       const std::function<std::vector<Vec3d>(const Box&)>& beyond) {
@@ -73,12 +50,13 @@ Vec3d automatic_shift(const std::vector<Box>& runs, std::int64_t points,
   const std::int64_t limit = stray_limit(points);
   // Coordinates after the shift are up to this large. That is exact enough for the points without the strays if their
   // extent is not far below.
-  const double reach = shift == Vec3d{} ? all.largest_magnitude() : all.longest_side();
+  const double reach = shift == Vec3d{} ? largest_magnitude(all) : all.longest_side();
   const auto is_wide = [&](const Box& box) { return kExactEnough * box.longest_side() >= reach; };
   // Each of the six ends of the middle leaves out `limit` points, so one of the wide runs would lie in it as a whole.
   if (limit == 0 || std::count_if(runs.begin(), runs.end(), is_wide) > 6 * limit) return shift;
   const Box ends = ends_of(runs, limit);
-  const Box middle = middle_of(beyond(ends), ends, limit);
+  const Box middle = middle_of(
+      beyond(ends), [](const Vec3d& p) { return p; }, ends, limit);
   return is_wide(middle) ? shift : shift_of(middle);
 }
 

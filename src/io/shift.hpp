@@ -1,35 +1,15 @@
 // Which offset to subtract from coordinates before they become float.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include <pointskin/vector.hpp>
 
+#include "core/box.hpp"
+
 namespace pointskin::io {
-
-/// Bounding box in double; as it begins, it holds nothing.
-struct Box {
-  Vec3d lower{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-              std::numeric_limits<double>::infinity()};
-  Vec3d upper{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-              -std::numeric_limits<double>::infinity()};
-
-  void add(const Vec3d& low, const Vec3d& high) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], low[axis]);
-      upper[axis] = std::max(upper[axis], high[axis]);
-    }
-  }
-  [[nodiscard]] double longest_side() const {
-    return std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
-  }
-  /// Of all coordinates.
-  [[nodiscard]] double largest_magnitude() const;
-};
 
 /// Rows of a table that share a box.
 inline constexpr std::int64_t kRunRows = 64;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "exec/cpu_primitives.hpp"
+#include "mesh/both_ways.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/surface_samples.hpp"
 #include "mesh/triangle_tree.hpp"
@@ -19,6 +20,7 @@ namespace pointskin {
 namespace {
 
 using exec::Cpu;
+using mesh_detail::Direction;
 using mesh_detail::dot;
 using mesh_detail::SurfaceSample;
 using mesh_detail::SurfaceSampler;
@@ -39,13 +41,6 @@ struct Sums {
   double distance = 0, squared = 0, largest = 0, cosine = 0;
   std::int64_t near = 0;     ///< samples within the threshold
   std::int64_t cosines = 0;  ///< pairs of faces that both have a normal
-};
-
-/// Result of one direction.
-struct Direction {
-  DistanceStatistics distances;
-  double normal_consistency = 0;
-  double share_near = 0;
 };
 
 /// Measures samples on one mesh to the nearest points of another.
@@ -135,38 +130,23 @@ mesh_detail::CornerBounds check_mesh(Cpu& ex, const Mesh& mesh, const std::strin
   return box;
 }
 
-DistanceStatistics both_ways(const DistanceStatistics& a, const DistanceStatistics& b) {
-  return {(a.mean + b.mean) / 2, std::sqrt((a.rms * a.rms + b.rms * b.rms) / 2), std::max(a.p95, b.p95),
-          std::max(a.max, b.max)};
-}
-
 }  // namespace
 
 MeshComparison compare(const Mesh& mesh, const Mesh& reference, const CompareOptions& options) {
   check_options(options);
   Cpu ex(options.threads);
   check_mesh(ex, mesh, "the mesh");
-  MeshComparison result;
-  result.reference_diagonal = check_mesh(ex, reference, "the reference").diagonal();
-  if (!(result.reference_diagonal > 0))
+  const double diagonal = check_mesh(ex, reference, "the reference").diagonal();
+  if (!(diagonal > 0))
     throw Error(ErrorCode::invalid_input, "the reference has no extent; distances cannot be compared with its size");
-  const double threshold = options.tau * result.reference_diagonal;
+  const double threshold = options.tau * diagonal;
 
   // Both live in the reference's coordinates; only a difference of origins, taken in double, enters them.
   const Side ours(ex, mesh, mesh_detail::minus(mesh.origin, reference.origin));
   const Side theirs(ex, reference, Vec3d{0, 0, 0});
   const Direction there = OneWay(ours.sampler, theirs.tree, options.samples, threshold).measure(ex);
   const Direction back = OneWay(theirs.sampler, ours.tree, options.samples, threshold).measure(ex);
-
-  result.to_reference = there.distances;
-  result.from_reference = back.distances;
-  result.two_sided = both_ways(there.distances, back.distances);
-  result.normal_consistency = (there.normal_consistency + back.normal_consistency) / 2;
-  result.precision = there.share_near;
-  result.recall = back.share_near;
-  const double sum = result.precision + result.recall;
-  result.f_score = sum > 0 ? 2 * result.precision * result.recall / sum : 0;
-  return result;
+  return mesh_detail::both_ways(there, back, diagonal);
 }
 
 }  // namespace pointskin

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/box.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "octree/strays_impl.hpp"
 
@@ -14,26 +15,12 @@ namespace {
 
 Vec3d wide(const Vec3f& p) { return {p.x, p.y, p.z}; }
 
-/// A box in double, where differences of floats cannot overflow.
-struct Box {
-  Vec3d lower, upper;
-
-  [[nodiscard]] double longest_side() const {
-    return std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
-  }
-  /// Of `p`, along the axis where it is largest; 0 inside.
-  [[nodiscard]] double distance(const Vec3d& p) const {
-    double largest = 0;
-    for (std::size_t a = 0; a < 3; ++a) largest = std::max({largest, lower[a] - p[a], p[a] - upper[a]});
-    return largest;
-  }
-  void add(const Vec3d& p) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      lower[a] = std::min(lower[a], p[a]);
-      upper[a] = std::max(upper[a], p[a]);
-    }
-  }
-};
+/// Of `p` from the box, along the axis where it is largest; 0 inside.
+double distance(const Box& box, const Vec3d& p) {
+  double largest = 0;
+  for (std::size_t a = 0; a < 3; ++a) largest = std::max({largest, box.lower[a] - p[a], p[a] - box.upper[a]});
+  return largest;
+}
 
 Box wide(const Bounds& box) { return {wide(box.lower), wide(box.upper)}; }
 
@@ -46,37 +33,13 @@ double largest_difference(const Vec3d& p, const Vec3d& q) {
   return std::max({std::abs(p[0] - q[0]), std::abs(p[1] - q[1]), std::abs(p[2] - q[2])});
 }
 
-/// The `rank`-th smallest of the values below `end`, counted from 0; `end` where there are not so many.
-double smallest(std::vector<double> below, std::int64_t rank, double end) {
-  if (static_cast<std::int64_t>(below.size()) <= rank) return end;
-  std::nth_element(below.begin(), below.begin() + rank, below.end());
-  return below[static_cast<std::size_t>(rank)];
-}
-
-/// Along every axis, between the `rank`-th smallest and the `rank`-th largest coordinate of all points, counted from 0.
-/// With the number of strays as the rank, every core must hold it.
-Box middle_of(const std::vector<Place>& candidates, const Box& ends, std::int64_t rank) {
-  Box middle;
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::vector<double> below;
-    std::vector<double> above;  // with the sign turned, so that the largest is the smallest
-    for (const Place& p : candidates) {
-      if (p.at[a] < ends.lower[a]) below.push_back(p.at[a]);
-      if (p.at[a] > ends.upper[a]) above.push_back(-p.at[a]);
-    }
-    middle.lower[a] = smallest(std::move(below), rank, ends.lower[a]);
-    middle.upper[a] = -smallest(std::move(above), rank, -ends.upper[a]);
-  }
-  return middle;
-}
-
 /// Moves the places for which `belongs` holds from `outside` into the core. All are asked before the core grows.
 /// @returns false if there are none
 template <class Belongs>
 bool take_in(Box& core, std::vector<Place>& outside, const Belongs& belongs) {
   const auto first = std::stable_partition(outside.begin(), outside.end(), [&](const Place& p) { return !belongs(p); });
   if (first == outside.end()) return false;
-  std::for_each(first, outside.end(), [&](const Place& p) { core.add(p.at); });
+  std::for_each(first, outside.end(), [&](const Place& p) { core.add(p.at, p.at); });
   outside.erase(first, outside.end());
   return true;
 }
@@ -84,7 +47,7 @@ bool take_in(Box& core, std::vector<Place>& outside, const Belongs& belongs) {
 /// What lies within the core's longest side belongs to it.
 bool take_in_near(Box& core, std::vector<Place>& outside) {
   const double reach = core.longest_side();
-  return take_in(core, outside, [&](const Place& p) { return core.distance(p.at) <= reach; });
+  return take_in(core, outside, [&](const Place& p) { return distance(core, p.at) <= reach; });
 }
 
 /// Of more than a few points, those belong to the cloud that are parts of something: that have company at other places
@@ -96,7 +59,7 @@ bool take_in_parts(Box& core, std::vector<Place>& outside) {
   const std::vector<Place> all = outside;
   const Box before = core;
   return take_in(core, outside, [&](const Place& p) {
-    const double close = kClose * before.distance(p.at);
+    const double close = kClose * distance(before, p.at);
     return kCompany <= std::count_if(all.begin(), all.end(), [&](const Place& q) {
              return q.at != p.at && largest_difference(p.at, q.at) <= close;
            });
@@ -119,7 +82,7 @@ Bounds box_without(const std::vector<Place>& strays, const Candidates& candidate
 StrayPoints farthest_first(std::vector<Place> strays, const Bounds& core) {
   const Box box = wide(core);
   std::sort(strays.begin(), strays.end(), [&](const Place& p, const Place& q) {
-    return std::tuple(-box.distance(p.at), p.at, p.index) < std::tuple(-box.distance(q.at), q.at, q.index);
+    return std::tuple(-distance(box, p.at), p.at, p.index) < std::tuple(-distance(box, q.at), q.at, q.index);
   });
   StrayPoints result;
   result.core = core;
@@ -161,9 +124,11 @@ StrayPoints choose_strays(const Candidates& candidates, const Bounds& ends, cons
   std::vector<Place> outside;
   for (std::size_t i = 0; i < candidates.indices.size(); ++i)
     outside.push_back({wide(candidates.positions[i]), candidates.indices[i]});
-  Box core = middle_of(outside, wide(ends), limit);
+  // With the number of strays as the rank, every core must hold it.
+  Box core = middle_of(
+      outside, [](const Place& p) { return p.at; }, wide(ends), limit);
   if (!(core.longest_side() > 0)) return none;  // nearly all points are at one place: the others make the shape
-  take_in(core, outside, [&](const Place& p) { return core.distance(p.at) == 0; });
+  take_in(core, outside, [&](const Place& p) { return distance(core, p.at) == 0; });
   while (take_in_near(core, outside) || take_in_parts(core, outside)) {
   }
   if (outside.empty() || static_cast<std::int64_t>(outside.size()) > limit) return none;

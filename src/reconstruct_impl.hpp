@@ -18,6 +18,7 @@
 #include "points.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
+#include "poisson/resolution.hpp"
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
 #include "poisson/trust.hpp"
@@ -66,6 +67,7 @@ inline void announce(const Options& options, const char* phase, double fraction)
 struct FieldData {
   octree::Frame frame;
   octree::OctreeData tree;
+  poisson::Resolution resolution;
   exec::Buffer<float> values;
   poisson::Density density;
   field::AttributeSamples attributes;  ///< without positions unless there are channels
@@ -73,7 +75,8 @@ struct FieldData {
   float trim_limit = 0;  // spacing in finest cells, with Options::trim
 
   [[nodiscard]] field::FieldView view(DomainFaces faces) const {
-    return {tree.view(), values.data(), static_cast<float>(isovalue), faces == DomainFaces::closed};
+    return {resolution.view(tree), values.data(), static_cast<float>(isovalue), faces == DomainFaces::closed,
+            resolution.bricks.data()};
   }
 };
 
@@ -135,7 +138,8 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
   if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
   if (!options.density && options.trim == 0) field.density.counts.reset();
   if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
-  exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view());
+  field.resolution = poisson::find_resolution(ex, field.tree, samples.view());
+  exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
   samples.normals.reset();
   poisson::Screening screening;
   if (options.screening > 0) screening = poisson::collapse_samples(ex, field.tree, samples.view());
@@ -146,7 +150,7 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
     announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
   };
   poisson::Solution solution =
-      poisson::solve_poisson(ex, field.tree, divergence.cview(), screening,
+      poisson::solve_poisson(ex, field.resolution.view(field.tree), divergence.cview(), screening,
                              {options.screening, options.iterations, options.residuals, before_level});
   divergence.reset();
   screening = {};

@@ -16,9 +16,22 @@ struct FieldView {
   const float* values = nullptr;  ///< over the nodes of all levels, level-major
   float isovalue = 0;
   bool closed = true;  ///< corners on the faces of the cube count as outside
+  const std::uint8_t* counts = nullptr;  ///< (bricks of all levels) 0: cells of the brick do not count, and the cell
+                                         ///< above is a leaf; null: all count
 
   [[nodiscard]] PSK_HD float value(int level, std::int32_t node) const {
     return values[tree.levels[level].first_node + node];
+  }
+
+  [[nodiscard]] PSK_HD bool does_count(int level, std::int32_t brick) const {
+    return counts == nullptr || counts[tree.levels[level].first_node / 8 + brick] != 0;
+  }
+  [[nodiscard]] PSK_HD bool is_cell(int level, std::int32_t node) const {
+    return tree.levels[level].is_cell(node) && does_count(level, node >> 3);
+  }
+  /// True if the node is a cell with children that count.
+  [[nodiscard]] PSK_HD bool is_split(int level, std::int32_t node) const {
+    return tree.is_split(level, node) && does_count(level + 1, tree.levels[level].child_brick[node]);
   }
 
   /// True if the corner at these coordinates may be inside at all.

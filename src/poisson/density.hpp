@@ -57,7 +57,7 @@ struct WeighOptions {
 template <exec::Space Exec>
 Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const Vec3f> positions);
 
-/// Fills `samples.areas`, `splat_depths` and `coarsest_splat_depth`, and normalises `samples.normals` in place; with
+/// Fills `samples.areas`, `splat_depths` and what is known of all of these, and normalises `samples.normals` in place; with
 /// confidence, their former lengths scale the areas. O(n depth).
 template <exec::Space Exec>
 void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& density, const WeighOptions& options,

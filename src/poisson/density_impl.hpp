@@ -7,6 +7,7 @@
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
 #include "poisson/density.hpp"
+#include "poisson/resolution.hpp"
 
 namespace pointskin::poisson {
 namespace density {
@@ -115,7 +116,7 @@ struct Weigh {
   int coarsest;        // depth
   ArrayView<Vec3f> normals;
   ArrayView<float> areas;
-  ArrayView<std::uint8_t> splat_depths;
+  ArrayView<float> splat_depths;
 
   PSK_HD void operator()(std::int64_t i) const {
     const Vec3f n = normals[i];
@@ -125,19 +126,34 @@ struct Weigh {
                             : Vec3f{};
     const float per_cell = density.samples_per_cell(tree, positions[i]);
     areas[i] = (mean_length > 0 ? static_cast<float>(length / mean_length) : 1.0F) / per_cell;
-    int depth = tree.depth;
-    float samples = per_cell * kKernelFaces;  // under the kernel at `depth`: four times more at each coarser one
-    while (depth > coarsest && samples < samples_per_node) {
+    splat_depths[i] = splat_depth(per_cell * kKernelFaces);
+  }
+
+  /// @param samples  under the splat kernel at the finest level: four times more at each coarser one
+  [[nodiscard]] PSK_HD float splat_depth(float samples) const {
+    int finer = tree.depth;
+    while (finer > coarsest && 4 * samples < samples_per_node) {
       samples *= 4;
-      --depth;
+      --finer;
     }
-    splat_depths[i] = static_cast<std::uint8_t>(depth);
+    if (finer == coarsest || samples >= samples_per_node) return static_cast<float>(finer);
+    if (samples / samples_per_node < kResolvedShare) return static_cast<float>(finer - 1);
+    const float share = (samples / samples_per_node - 0.25F) * (4.0F / 3);
+    return static_cast<float>(finer - 1) + share;
   }
 };
 
-struct DepthBit {
-  ArrayView<const std::uint8_t> depths;
-  PSK_HD std::uint32_t operator()(std::int64_t i) const { return 1U << depths[i]; }
+/// Bit d: the normal is splatted at level d; kSparse: the sample does not resolve the finest one.
+struct SplatLevels {
+  static constexpr std::uint32_t kSparse = 1U << 31;
+
+  ArrayView<const float> splat_depths;
+  int finest;
+  PSK_HD std::uint32_t operator()(std::int64_t i) const {
+    const float depth = splat_depths[i];
+    const std::uint32_t sparse = sampled_share(depth, finest) < kResolvedShare ? kSparse : 0;
+    return 1U << static_cast<int>(depth) | 1U << finer_level(depth) | sparse;
+  }
 };
 struct Union {
   PSK_HD std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const { return a | b; }
@@ -183,7 +199,7 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
                    Samples& samples) {
   const std::int64_t n = samples.positions.size();
   samples.areas = exec::make_buffer<float>(ex, n);
-  samples.splat_depths = exec::make_buffer<std::uint8_t>(ex, n);
+  samples.splat_depths = exec::make_buffer<float>(ex, n);
   const double mean_length = options.confidence ? density::mean_length(ex, samples.normals.cview()) : 0;
   for_each(ex, "density.weigh", n,
            density::Weigh{tree.view(),
@@ -195,8 +211,10 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
                           samples.normals.view(),
                           samples.areas.view(),
                           samples.splat_depths.view()});
-  samples.splat_depth_set = exec::reduce<std::uint32_t>(
-      ex, "density.coarsest", n, density::DepthBit{samples.splat_depths.cview()}, density::Union{});
+  const auto found = exec::reduce<std::uint32_t>(
+      ex, "density.coarsest", n, density::SplatLevels{samples.splat_depths.cview(), tree.depth}, density::Union{});
+  samples.resolve_all = (found & density::SplatLevels::kSparse) == 0;
+  samples.splat_depth_set = found & ~density::SplatLevels::kSparse;
   samples.coarsest_splat_depth = std::countr_zero(samples.splat_depth_set);
 }
 

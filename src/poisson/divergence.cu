@@ -5,6 +5,6 @@
 
 namespace pointskin::poisson {
 
-template exec::Buffer<float> splat_divergence(exec::Cuda&, const octree::OctreeData&, const SamplesView&);
+template exec::Buffer<float> splat_divergence(exec::Cuda&, const octree::OctreeData&, const SamplesView&, const Resolution&);
 
 }  // namespace pointskin::poisson

@@ -5,6 +5,7 @@
 
 #include "exec/space.hpp"
 #include "octree/octree_data.hpp"
+#include "poisson/resolution.hpp"
 #include "poisson/samples.hpp"
 
 namespace pointskin::poisson {
@@ -15,6 +16,7 @@ namespace pointskin::poisson {
 /// @returns shape (nodes of all levels), level-major
 /// O(27 n + 81 nodes), no atomics, deterministic.
 template <exec::Space Exec>
-exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples);
+exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples,
+                                     const Resolution& resolution);
 
 }  // namespace pointskin::poisson

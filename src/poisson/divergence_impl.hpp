@@ -14,8 +14,8 @@
 namespace pointskin::poisson {
 namespace divergence {
 
-/// Samples of one splat depth: positions among all samples (`rank`) and the samples themselves (`chosen`). Where most
-/// samples are wanted both are empty, and samples of other depths are passed over.
+/// Samples splatted at one level: positions among all samples (`rank`) and the samples themselves (`chosen`). Where most
+/// samples are wanted both are empty, and others are passed over.
 struct Subset {
   ArrayView<const std::int32_t> rank;    // (n + 1) chosen samples before a sample
   ArrayView<const std::int32_t> chosen;  // sample of each rank
@@ -51,7 +51,7 @@ struct ProlongField {
   }
 };
 
-/// Samples to be splatted at one depth.
+/// Samples to be splatted at one level.
 struct SplatSource {
   octree::LevelView level;
   SamplesView samples;
@@ -59,13 +59,13 @@ struct SplatSource {
   float area_scale;  // finest cells^2 -> cells^2 of this level
 
   [[nodiscard]] PSK_HD bool is_splatted(std::int32_t sample) const {
-    return subset.is_list() || samples.splat_depths[sample] == level.depth;
+    return subset.is_list() || splat_share(samples.splat_depths[sample], level.depth) > 0;
   }
 
-  /// -area n, what the sample adds to V.
+  /// What the sample adds to V of the level: -area n.
   [[nodiscard]] PSK_HD Vec3f vector(std::int32_t sample) const {
     const Vec3f n = samples.normals[sample];
-    const float area = samples.areas[sample] * area_scale;
+    const float area = samples.areas[sample] * (area_scale * splat_share(samples.splat_depths[sample], level.depth));
     return {-area * n.x, -area * n.y, -area * n.z};
   }
 };
@@ -218,15 +218,17 @@ PSK_HD inline float divergence_by_cells(int leaves, const float (&element)[8][8]
 struct Divergence {
   octree::LevelView level;
   std::int32_t finer_cell_bricks;  // of the level below; 0 at the finest level, where all cells are leaves
+  const std::uint8_t* counts;        // (bricks) whether a brick's cells count; null: all do
+  const std::uint8_t* finer_counts;  // of the level below
   VectorField field;
   Coefficients coefficients;
   ArrayView<float> b;
 
   [[nodiscard]] PSK_HD bool is_leaf(std::int32_t node) const {
-    if (!level.is_cell(node)) return false;
+    if (!level.is_cell(node) || (counts != nullptr && counts[node >> 3] == 0)) return false;
     if (finer_cell_bricks == 0) return true;
     const std::int32_t brick = level.child_brick[node];
-    return brick < 0 || brick >= finer_cell_bricks;
+    return brick < 0 || brick >= finer_cell_bricks || (finer_counts != nullptr && finer_counts[brick] == 0);
   }
 
   [[nodiscard]] PSK_HD int leaves_around(std::int32_t node) const {
@@ -287,7 +289,7 @@ struct DivergenceOfBricks : Divergence {
 
  private:
   PSK_INLINE void find_leaves(std::int64_t brick, int (&leaves)[8]) const {
-    if (finer_cell_bricks == 0 && level.depth > 0) return find_finest_cells(brick, leaves);
+    if (finer_cell_bricks == 0 && counts == nullptr && level.depth > 0) return find_finest_cells(brick, leaves);
     PSK_UNROLL for (int t = 0; t < 8; ++t) leaves[t] = 0;
     for (int s = 0; s < 8; ++s) {
       const int around = leaves_around(static_cast<std::int32_t>(8 * brick + s));
@@ -359,11 +361,11 @@ struct RestrictLevels : exec::SweepAll {
   }
 };
 
-struct FlagDepth {
-  ArrayView<const std::uint8_t> depths;
+struct FlagLevel {
+  ArrayView<const float> splat_depths;
   int depth;
   ArrayView<std::int32_t> flags;
-  PSK_HD void operator()(std::int64_t i) const { flags[i] = depths[i] == depth ? 1 : 0; }
+  PSK_HD void operator()(std::int64_t i) const { flags[i] = splat_share(splat_depths[i], depth) > 0 ? 1 : 0; }
 };
 struct ListChosen {
   ArrayView<const std::int32_t> rank;
@@ -373,7 +375,7 @@ struct ListChosen {
   }
 };
 
-/// The samples whose splat depth is `depth`.
+/// The samples that are splatted at level `depth`.
 struct ChosenSamples {
   exec::Buffer<std::int32_t> rank, chosen;
 };
@@ -381,7 +383,7 @@ template <exec::Space Exec>
 ChosenSamples choose_samples(Exec& ex, const SamplesView& samples, int depth) {
   const std::int64_t n = samples.positions.size;
   ChosenSamples result{exec::make_buffer<std::int32_t>(ex, n + 1), exec::make_buffer<std::int32_t>(ex, n)};
-  for_each(ex, "splat.choose", n, FlagDepth{samples.splat_depths, depth, result.chosen.view()});
+  for_each(ex, "splat.choose", n, FlagLevel{samples.splat_depths, depth, result.chosen.view()});
   exclusive_scan(ex, "splat.choose", result.chosen.cview(), result.rank.view());
   for_each(ex, "splat.choose", n, ListChosen{result.rank.cview(), result.chosen.view()});
   return result;
@@ -397,7 +399,7 @@ void find_divergence(Exec& ex, const Divergence& divergence) {
   for_each(ex, "splat.divergence", divergence.level.bricks, DivergenceOfBricks{divergence});
 }
 
-/// Adds the samples of splat depth `level.depth` to V.
+/// Adds the samples that are splatted at the level to V.
 template <exec::Space Exec>
 void splat_samples(Exec& ex, const octree::OctreeView& tree, const octree::LevelView& level, const SamplesView& samples,
                    const VectorField& field) {
@@ -441,7 +443,8 @@ std::vector<FieldLevel> splat_field(Exec& ex, const octree::OctreeView& tree, co
 }  // namespace divergence
 
 template <exec::Space Exec>
-exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples) {
+exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples,
+                                     const Resolution& resolution) {
   using namespace divergence;
   const octree::OctreeView view = tree.view();
   const int coarsest = samples.coarsest_splat_depth;
@@ -454,7 +457,7 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
     const bool finest = d == view.depth;
     const bool has_field = d >= coarsest;
     if (has_field) {
-      const Divergence divergence{level, finest ? 0 : view.levels[d + 1].cell_bricks,
+      const Divergence divergence{level, finest ? 0 : view.levels[d + 1].cell_bricks, resolution.counts(level), finest ? nullptr : resolution.counts(view.levels[d + 1]),
                                   field[static_cast<std::size_t>(d)].view(), make_coefficients(), own};
       find_divergence(ex, divergence);
     }

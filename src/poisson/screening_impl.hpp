@@ -63,8 +63,7 @@ struct CollapsePoints {
   }
 
   PSK_HD float weight(std::int32_t p) const {
-    const int sparser = level.depth - samples.splat_depths[p];
-    const float area = samples.areas[p] / static_cast<float>(sparser > 0 ? std::int64_t{1} << 2 * sparser : 1);
+    const float area = samples.areas[p] * sampled_share(samples.splat_depths[p], level.depth);
     return samples.trust.empty() ? area : samples.trust[p] * area;
   }
 };

@@ -3,7 +3,7 @@
 
 namespace pointskin::poisson {
 
-template Solution solve_poisson(exec::Cpu&, const octree::OctreeData&, ArrayView<const float>, const Screening&,
+template Solution solve_poisson(exec::Cpu&, const octree::OctreeView&, ArrayView<const float>, const Screening&,
                                 const SolveOptions&);
 template double mean_at_samples(exec::Cpu&, const octree::OctreeData&, ArrayView<const float>, const SamplesView&);
 

@@ -4,7 +4,7 @@
 
 namespace pointskin::poisson {
 
-template Solution solve_poisson(exec::Cuda&, const octree::OctreeData&, ArrayView<const float>, const Screening&,
+template Solution solve_poisson(exec::Cuda&, const octree::OctreeView&, ArrayView<const float>, const Screening&,
                                 const SolveOptions&);
 template double mean_at_samples(exec::Cuda&, const octree::OctreeData&, ArrayView<const float>, const SamplesView&);
 

@@ -41,7 +41,7 @@ struct Solution {
 /// O(iterations (27 nodes + 64 occupied cells)); one launch an iteration, no round trips unless residuals are asked
 /// for. Deterministic, the same bits on every device.
 template <exec::Space Exec>
-Solution solve_poisson(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> b, const Screening& screening,
+Solution solve_poisson(Exec& ex, const octree::OctreeView& view, ArrayView<const float> b, const Screening& screening,
                        const SolveOptions& options);
 
 /// Mean of u over the samples, weighted by their areas: the isovalue. O(n depth), in double.

@@ -219,9 +219,8 @@ struct ValuesInCell {
 }  // namespace solve
 
 template <exec::Space Exec>
-Solution solve_poisson(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> b, const Screening& screening,
+Solution solve_poisson(Exec& ex, const octree::OctreeView& view, ArrayView<const float> b, const Screening& screening,
                        const SolveOptions& options) {
-  const octree::OctreeView view = tree.view();
   Solution solution{exec::make_buffer<float>(ex, view.nodes), {}};
   const ArrayView<float> all = solution.u.view();
   for (int d = 0; d <= view.depth; ++d) {

@@ -28,7 +28,7 @@ struct TrustInCell {
   }
 
   [[nodiscard]] PSK_HD bool is_meant(std::int32_t sample) const {
-    const int splat_depth = samples.splat_depths[sample];
+    const auto splat_depth = static_cast<int>(samples.splat_depths[sample]);
     return splat_depth == depth || (last && splat_depth < depth);
   }
 

@@ -31,7 +31,7 @@ class LeafCell {
       const int d[3] = {j / 9 - 1, j / 3 % 3 - 1, j % 3 - 1};
       const int distance = (d[0] != 0) + (d[1] != 0) + (d[2] != 0);
       if (distance == 0 || distance == 3) continue;
-      if (f_.tree.is_split(level_, f_.tree.levels[level_].neighbour(node_, d[0], d[1], d[2]))) finer |= 1U << j;
+      if (f_.is_split(level_, f_.tree.levels[level_].neighbour(node_, d[0], d[1], d[2]))) finer |= 1U << j;
     }
     return finer;
   }

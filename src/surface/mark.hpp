@@ -55,7 +55,7 @@ struct Marker {
   }
 
   PSK_HD unsigned mark_cell(int level, std::int32_t node, unsigned signs, bool uniform) const {
-    if (!f.tree.levels[level].is_cell(node) || f.tree.is_split(level, node)) return 0;
+    if (!f.is_cell(level, node) || f.is_split(level, node)) return 0;
     const LeafCell cell(f, level, node);
     // Middles are interpolated between corners, so equal corners mean no crossing, except where a corner on the cube's
     // face was made outside.
@@ -74,8 +74,8 @@ struct Marker {
       d[(axis + 1) % 3] = -(i >> 1);
       d[(axis + 2) % 3] = -(i & 1);
       const std::int32_t cell = l.neighbour(node, d[0], d[1], d[2]);
-      if (!l.is_cell(cell)) continue;
-      if (f.tree.is_split(level, cell)) return false;
+      if (!f.is_cell(level, cell)) continue;
+      if (f.is_split(level, cell)) return false;
       any_leaf = true;
     }
     return any_leaf;

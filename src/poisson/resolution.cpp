@@ -1,0 +1,8 @@
+#include "exec/cpu_primitives.hpp"
+#include "poisson/resolution_impl.hpp"
+
+namespace pointskin::poisson {
+
+template Resolution find_resolution(exec::Cpu&, const octree::OctreeData&, const SamplesView&);
+
+}  // namespace pointskin::poisson

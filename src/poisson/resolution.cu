@@ -1,0 +1,8 @@
+#include "exec/cuda_primitives.cuh"
+#include "poisson/resolution_impl.hpp"
+
+namespace pointskin::poisson {
+
+template Resolution find_resolution(exec::Cuda&, const octree::OctreeData&, const SamplesView&);
+
+}  // namespace pointskin::poisson

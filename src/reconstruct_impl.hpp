@@ -135,10 +135,10 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
     field.attributes.weights = poisson::confidence_weights(ex, samples.normals.cview());
   field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
   poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
+  field.resolution = poisson::find_resolution(ex, field.tree, samples);
   if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
   if (!options.density && options.trim == 0) field.density.counts.reset();
   if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
-  field.resolution = poisson::find_resolution(ex, field.tree, samples.view());
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
   samples.normals.reset();
   poisson::Screening screening;

@@ -15,7 +15,7 @@ struct FieldView {
   octree::OctreeView tree;
   const float* values = nullptr;  ///< over the nodes of all levels, level-major
   float isovalue = 0;
-  bool closed = true;  ///< corners on the faces of the cube count as outside
+  bool closed = true;                    ///< corners on the faces of the cube count as outside
   const std::uint8_t* counts = nullptr;  ///< (bricks of all levels) 0: cells of the brick do not count, and the cell
                                          ///< above is a leaf; null: all count
 

@@ -17,9 +17,9 @@ inline constexpr float kReliableSamples = 8;
 /// face.
 inline constexpr float kPlaneFactor = 2.0F / 3;
 
-/// Cell faces that the splat kernel averages over in the plane of the surface: 1 / (integral B^2)^2 with integral B^2 =
-/// 11/20 for the quadratic B-spline. Samples per node are counted over this area.
-inline constexpr float kKernelFaces = 400.0F / 121;
+/// Cell faces over which samples per node are counted. Below 1 / (integral B^2)^2 = 3.3, the faces that the splat
+/// kernel averages over: sparse samples are better splatted coarser (docs/decisions/0018-sparse-samples.md).
+inline constexpr float kKernelFaces = 2;
 
 /// Splatted sample counts of the coarser levels.
 struct Density {
@@ -57,8 +57,9 @@ struct WeighOptions {
 template <exec::Space Exec>
 Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const Vec3f> positions);
 
-/// Fills `samples.areas`, `splat_depths` and what is known of all of these, and normalises `samples.normals` in place; with
-/// confidence, their former lengths scale the areas. O(n depth).
+/// Fills `samples.areas` and `splat_depths` (each from the density at its sample alone, and up to two levels below the
+/// finest: find_resolution evens them out), and normalises `samples.normals` in place; with confidence, their former
+/// lengths scale the areas. O(n depth).
 template <exec::Space Exec>
 void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& density, const WeighOptions& options,
                    Samples& samples);

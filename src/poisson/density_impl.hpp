@@ -1,13 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
 #include "poisson/density.hpp"
-#include "poisson/resolution.hpp"
 
 namespace pointskin::poisson {
 namespace density {
@@ -108,6 +106,8 @@ inline int coarsest_splat_depth(std::int64_t points, int depth) {
 }
 
 struct Weigh {
+  static constexpr int kDepthsBelow = 2;  ///< splat depths may be this far below the finest level
+
   octree::OctreeView tree;
   DensityView density;
   ArrayView<const Vec3f> positions;
@@ -131,33 +131,18 @@ struct Weigh {
 
   /// @param samples  under the splat kernel at the finest level: four times more at each coarser one
   [[nodiscard]] PSK_HD float splat_depth(float samples) const {
-    int finer = tree.depth;
+    int finer = tree.depth + kDepthsBelow;
+    samples /= static_cast<float>(1 << 2 * kDepthsBelow);
     while (finer > coarsest && 4 * samples < samples_per_node) {
       samples *= 4;
       --finer;
     }
     if (finer == coarsest || samples >= samples_per_node) return static_cast<float>(finer);
-    if (samples / samples_per_node < kResolvedShare) return static_cast<float>(finer - 1);
     const float share = (samples / samples_per_node - 0.25F) * (4.0F / 3);
     return static_cast<float>(finer - 1) + share;
   }
 };
 
-/// Bit d: the normal is splatted at level d; kSparse: the sample does not resolve the finest one.
-struct SplatLevels {
-  static constexpr std::uint32_t kSparse = 1U << 31;
-
-  ArrayView<const float> splat_depths;
-  int finest;
-  PSK_HD std::uint32_t operator()(std::int64_t i) const {
-    const float depth = splat_depths[i];
-    const std::uint32_t sparse = sampled_share(depth, finest) < kResolvedShare ? kSparse : 0;
-    return 1U << static_cast<int>(depth) | 1U << finer_level(depth) | sparse;
-  }
-};
-struct Union {
-  PSK_HD std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const { return a | b; }
-};
 struct EvaluateDensity {
   octree::OctreeView tree;
   DensityView density;
@@ -211,11 +196,6 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
                           samples.normals.view(),
                           samples.areas.view(),
                           samples.splat_depths.view()});
-  const auto found = exec::reduce<std::uint32_t>(
-      ex, "density.coarsest", n, density::SplatLevels{samples.splat_depths.cview(), tree.depth}, density::Union{});
-  samples.resolve_all = (found & density::SplatLevels::kSparse) == 0;
-  samples.splat_depth_set = found & ~density::SplatLevels::kSparse;
-  samples.coarsest_splat_depth = std::countr_zero(samples.splat_depth_set);
 }
 
 template <exec::Space Exec>

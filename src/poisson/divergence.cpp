@@ -3,6 +3,7 @@
 
 namespace pointskin::poisson {
 
-template exec::Buffer<float> splat_divergence(exec::Cpu&, const octree::OctreeData&, const SamplesView&, const Resolution&);
+template exec::Buffer<float> splat_divergence(exec::Cpu&, const octree::OctreeData&, const SamplesView&,
+                                              const Resolution&);
 
 }  // namespace pointskin::poisson

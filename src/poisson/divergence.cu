@@ -5,6 +5,7 @@
 
 namespace pointskin::poisson {
 
-template exec::Buffer<float> splat_divergence(exec::Cuda&, const octree::OctreeData&, const SamplesView&, const Resolution&);
+template exec::Buffer<float> splat_divergence(exec::Cuda&, const octree::OctreeData&, const SamplesView&,
+                                              const Resolution&);
 
 }  // namespace pointskin::poisson

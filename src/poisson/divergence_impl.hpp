@@ -14,8 +14,8 @@
 namespace pointskin::poisson {
 namespace divergence {
 
-/// Samples splatted at one level: positions among all samples (`rank`) and the samples themselves (`chosen`). Where most
-/// samples are wanted both are empty, and others are passed over.
+/// Samples splatted at one level: positions among all samples (`rank`) and the samples themselves (`chosen`). Where
+/// most samples are wanted both are empty, and others are passed over.
 struct Subset {
   ArrayView<const std::int32_t> rank;    // (n + 1) chosen samples before a sample
   ArrayView<const std::int32_t> chosen;  // sample of each rank
@@ -217,7 +217,7 @@ PSK_HD inline float divergence_by_cells(int leaves, const float (&element)[8][8]
 /// Divergence of V over the leaf cells of a level, tested with the hats at its corners.
 struct Divergence {
   octree::LevelView level;
-  std::int32_t finer_cell_bricks;  // of the level below; 0 at the finest level, where all cells are leaves
+  std::int32_t finer_cell_bricks;    // of the level below; 0 at the finest level, where all cells are leaves
   const std::uint8_t* counts;        // (bricks) whether a brick's cells count; null: all do
   const std::uint8_t* finer_counts;  // of the level below
   VectorField field;
@@ -457,8 +457,13 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
     const bool finest = d == view.depth;
     const bool has_field = d >= coarsest;
     if (has_field) {
-      const Divergence divergence{level, finest ? 0 : view.levels[d + 1].cell_bricks, resolution.counts(level), finest ? nullptr : resolution.counts(view.levels[d + 1]),
-                                  field[static_cast<std::size_t>(d)].view(), make_coefficients(), own};
+      const Divergence divergence{level,
+                                  finest ? 0 : view.levels[d + 1].cell_bricks,
+                                  resolution.counts(level),
+                                  finest ? nullptr : resolution.counts(view.levels[d + 1]),
+                                  field[static_cast<std::size_t>(d)].view(),
+                                  make_coefficients(),
+                                  own};
       find_divergence(ex, divergence);
     }
     field[static_cast<std::size_t>(d)] = {};

@@ -3,6 +3,6 @@
 
 namespace pointskin::poisson {
 
-template Resolution find_resolution(exec::Cpu&, const octree::OctreeData&, const SamplesView&);
+template Resolution find_resolution(exec::Cpu&, const octree::OctreeData&, Samples&);
 
 }  // namespace pointskin::poisson

@@ -15,7 +15,12 @@ namespace pointskin::poisson {
 
 /// A level is resolved where samples can speak for this share of its cells' faces (sampled_share). Measured in
 /// docs/decisions/0018-sparse-samples.md.
-inline constexpr float kResolvedShare = 0.8F;
+inline constexpr float kResolvedShare = 0.42F;
+
+/// True if a sample of this splat depth resolves level `depth`.
+PSK_HD inline bool resolves(float splat_depth, int depth) {
+  return sampled_share(splat_depth, depth) >= kResolvedShare;
+}
 
 /// Which bricks of all levels are resolved. Empty: all are.
 struct Resolution {
@@ -36,12 +41,17 @@ struct Resolution {
   }
 };
 
+/// Evens out `samples.splat_depths`, and fills what is known of all of them.
+/// A sample's splat depth becomes the mean over the samples in the 27 bricks of level D - 1 around its own, so that the
+/// noise of the density does not tear the resolution into patches; at most D; and a level that it does not resolve
+/// gets no share of its normal. Means are of integers: they do not depend on the order.
+///
 /// Marks a brick if a sample in the 27 bricks around it resolves the brick's level, and all bricks of complete levels.
 /// So the cells that count are an octree again, and graded: a marked brick is within one cell of the level above of a
 /// sample that resolves that level too, and so are the bricks around its parent's.
-/// O(n + 27 bricks), three launches; none if all samples resolve the finest level. Deterministic, the same on every
-/// device.
+/// O(n + 27 bricks), six launches and a read-back; three launches less if all samples resolve the finest level.
+/// Deterministic, the same bits on every device.
 template <exec::Space Exec>
-Resolution find_resolution(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples);
+Resolution find_resolution(Exec& ex, const octree::OctreeData& tree, Samples& samples);
 
 }  // namespace pointskin::poisson

@@ -1,10 +1,81 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <utility>
+
 #include "exec/algorithms.hpp"
 #include "poisson/resolution.hpp"
 
 namespace pointskin::poisson {
 namespace resolution {
+
+/// Sum of the splat depths in each brick of a level.
+struct SumDepths {
+  static constexpr float kUnit = 65536;  // parts of a level
+
+  octree::LevelView level;
+  ArrayView<const float> splat_depths;
+  ArrayView<std::int64_t> sums;
+  PSK_HD void operator()(std::int64_t brick) const {
+    const std::int32_t end = level.point_begin[8 * brick + 8];
+    std::int64_t sum = 0;
+    for (std::int32_t i = level.point_begin[8 * brick]; i < end; ++i)
+      sum += static_cast<std::int64_t>(splat_depths[i] * kUnit);
+    sums[brick] = sum;
+  }
+};
+
+/// Gives the samples of a brick the mean over the 27 bricks around it, cut to what can be splatted.
+struct EvenOut {
+  octree::LevelView level;
+  ArrayView<const std::int64_t> sums;
+  int finest;
+  ArrayView<float> splat_depths;
+
+  PSK_HD void operator()(std::int64_t brick) const {
+    const std::int32_t first = level.point_begin[8 * brick];
+    const std::int32_t end = level.point_begin[8 * brick + 8];
+    if (first == end) return;
+    const float depth = splattable(mean_around(brick));
+    for (std::int32_t i = first; i < end; ++i) splat_depths[i] = depth;
+  }
+
+  [[nodiscard]] PSK_HD float mean_around(std::int64_t brick) const {
+    std::int64_t sum = 0;
+    std::int64_t count = 0;
+    for (int j = 0; j < octree::kNeighbours; ++j) {
+      const std::int64_t other = level.neighbours[brick * octree::kNeighbours + j];
+      if (other < 0 || other >= level.cell_bricks) continue;
+      sum += sums[other];
+      count += level.point_begin[8 * other + 8] - level.point_begin[8 * other];
+    }
+    return static_cast<float>(static_cast<double>(sum) /
+                              (static_cast<double>(SumDepths::kUnit) * static_cast<double>(count)));
+  }
+
+  [[nodiscard]] PSK_HD float splattable(float depth) const {
+    if (depth >= static_cast<float>(finest)) return static_cast<float>(finest);
+    const int finer = finer_level(depth);
+    return resolves(depth, finer) ? depth : static_cast<float>(finer - 1);
+  }
+};
+
+/// Bit d: the normal is splatted at level d; kSparse: the sample does not resolve the finest one.
+struct SplatLevels {
+  static constexpr std::uint32_t kSparse = 1U << 31;
+
+  ArrayView<const float> splat_depths;
+  int finest;
+  PSK_HD std::uint32_t operator()(std::int64_t i) const {
+    const float depth = splat_depths[i];
+    const std::uint32_t levels = 1U << static_cast<int>(depth) | 1U << finer_level(depth);
+    return resolves(depth, finest) ? levels : levels | kSparse;
+  }
+};
+struct Union {
+  PSK_HD std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const { return a | b; }
+};
 
 /// 1 for cell bricks (of all levels) with a sample that resolves their level.
 struct FlagOwn {
@@ -21,7 +92,7 @@ struct FlagOwn {
     if (brick >= level.cell_bricks) return false;
     const std::int32_t end = level.point_begin[8 * brick + 8];
     for (std::int32_t i = level.point_begin[8 * brick]; i < end; ++i)
-      if (sampled_share(splat_depths[i], level.depth) >= kResolvedShare) return true;
+      if (resolves(splat_depths[i], level.depth)) return true;
     return false;
   }
 };
@@ -55,9 +126,9 @@ struct MarkUnknowns {
     const std::int64_t first = level.first_node / 8;
     unsigned left = level.unknowns[brick - first];
     for (int s = 0; s < 8 && left != 0; ++s) {
-      const std::int32_t other = level.neighbours[(brick - first) * octree::kNeighbours +
-                                                  octree::neighbour_index(-octree::slot_x(s), -octree::slot_y(s),
-                                                                          -octree::slot_z(s))];
+      const std::int32_t other =
+          level.neighbours[(brick - first) * octree::kNeighbours +
+                           octree::neighbour_index(-octree::slot_x(s), -octree::slot_y(s), -octree::slot_z(s))];
       if (other >= 0 && bricks[first + other] == 0) left &= ~corners_at(s);
     }
     unknowns[brick] = static_cast<std::uint8_t>(left);
@@ -75,18 +146,30 @@ struct MarkUnknowns {
 }  // namespace resolution
 
 template <exec::Space Exec>
-Resolution find_resolution(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples) {
-  Resolution result;
-  if (samples.resolve_all) return result;
+Resolution find_resolution(Exec& ex, const octree::OctreeData& tree, Samples& samples) {
+  using namespace resolution;
+  constexpr const char* kLabel = "splat.resolution";
   const octree::OctreeView view = tree.view();
+  const octree::LevelView& pooled = view.levels[std::max(0, view.depth - 1)];
+  auto sums = exec::make_buffer<std::int64_t>(ex, pooled.cell_bricks);
+  for_each(ex, kLabel, sums.size(), SumDepths{pooled, samples.splat_depths.cview(), sums.view()});
+  for_each(ex, kLabel, sums.size(), EvenOut{pooled, sums.cview(), view.depth, samples.splat_depths.view()});
+  sums.reset();
+
+  const auto levels = exec::reduce<std::uint32_t>(ex, kLabel, samples.splat_depths.size(),
+                                                  SplatLevels{samples.splat_depths.cview(), view.depth}, Union{});
+  samples.splat_depth_set = levels & ~SplatLevels::kSparse;
+  samples.coarsest_splat_depth = std::countr_zero(samples.splat_depth_set);
+  Resolution result;
+  if ((levels & SplatLevels::kSparse) == 0) return result;
+
   const std::int64_t bricks = view.nodes / 8;
   auto own = exec::make_buffer<std::uint8_t>(ex, bricks);
-  for_each(ex, "splat.resolution", bricks, resolution::FlagOwn{view, samples.splat_depths, own.view()});
+  for_each(ex, kLabel, bricks, FlagOwn{view, samples.splat_depths.cview(), own.view()});
   result.bricks = exec::make_buffer<std::uint8_t>(ex, bricks);
-  for_each(ex, "splat.resolution", bricks, resolution::FlagAround{view, own.cview(), result.bricks.view()});
+  for_each(ex, kLabel, bricks, FlagAround{view, own.cview(), result.bricks.view()});
   result.unknowns = std::move(own);
-  for_each(ex, "splat.resolution", bricks,
-           resolution::MarkUnknowns{view, result.bricks.cview(), result.unknowns.view()});
+  for_each(ex, kLabel, bricks, MarkUnknowns{view, result.bricks.cview(), result.unknowns.view()});
   return result;
 }
 

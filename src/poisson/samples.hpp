@@ -44,7 +44,6 @@ struct SamplesView {
   ArrayView<const float> trust;         ///< factor on the weight in the screening, > 0; empty: 1 everywhere
   int coarsest_splat_depth = 0;         ///< coarsest level that normals are splatted at
   std::uint32_t splat_depth_set = ~0U;  ///< bit d: some normals may be splatted at level d
-  bool resolve_all = true;              ///< all samples resolve the finest level (resolution.hpp)
 };
 
 /// Owns what SamplesView shows.
@@ -56,11 +55,10 @@ struct Samples {
   exec::Buffer<float> trust;
   int coarsest_splat_depth = 0;
   std::uint32_t splat_depth_set = ~0U;
-  bool resolve_all = true;
 
   [[nodiscard]] SamplesView view() const {
     return {positions.cview(), normals.cview(),      areas.cview(),  splat_depths.cview(),
-            trust.cview(),     coarsest_splat_depth, splat_depth_set, resolve_all};
+            trust.cview(),     coarsest_splat_depth, splat_depth_set};
   }
 };
 

@@ -45,8 +45,9 @@ struct Collapse {
   }
 };
 
-/// A cell of an occupied brick, from its samples. A sample sparser than the cells weighs what it weighed at its splat
-/// depth: its share of the surface there, not more, or isolated noisy samples would pull bubbles out of the surface.
+/// A cell of an occupied brick, from its samples. Samples sparser than the cells weigh less, by the square of what they
+/// can speak for: else each would dent the smooth field around it, and noisy ones would pull bubbles out of the
+/// surface.
 struct CollapsePoints {
   octree::LevelView level;
   SamplesView samples;
@@ -63,7 +64,8 @@ struct CollapsePoints {
   }
 
   PSK_HD float weight(std::int32_t p) const {
-    const float area = samples.areas[p] * sampled_share(samples.splat_depths[p], level.depth);
+    const float share = sampled_share(samples.splat_depths[p], level.depth);
+    const float area = samples.areas[p] * share * share;
     return samples.trust.empty() ? area : samples.trust[p] * area;
   }
 };

@@ -10,6 +10,10 @@ namespace trust {
 
 /// The samples of one cell of `level` that are splatted at `depth`, at the last depth also those above.
 struct TrustInCell {
+  struct Scatter {
+    float sum = 0, pairs = 0;
+  };
+
   octree::LevelView level;
   int depth;
   bool last;
@@ -22,9 +26,9 @@ struct TrustInCell {
     std::int32_t at = first;
     while (at < end && !is_meant(at)) ++at;
     if (at == end) return;
-    const float value = trust_of(first, end);
+    const Scatter scatter = scatter_of(first, end);
     for (; at < end; ++at)
-      if (is_meant(at)) trust[at] = value;
+      if (is_meant(at)) trust[at] = trust_in(scatter, samples.splat_depths[at]);
   }
 
   [[nodiscard]] PSK_HD bool is_meant(std::int32_t sample) const {
@@ -32,11 +36,19 @@ struct TrustInCell {
     return splat_depth == depth || (last && splat_depth < depth);
   }
 
-  [[nodiscard]] PSK_HD float trust_of(std::int32_t first, std::int32_t end) const {
+  [[nodiscard]] PSK_HD float trust_in(const Scatter& s, float splat_depth) const {
     constexpr float kPriorVariance = kTrustScale - kCleanVariance;  // where trust is 1
+    const float finer = splat_depth - static_cast<float>(depth);
+    const float squared_cells = finer > 0 ? 1 + 3 * finer : 1.0F;
+    const float variance = (kPriorPairs * kPriorVariance + 0.5F * squared_cells * s.sum) / (s.pairs + kPriorPairs);
+    const float value = kTrustScale / (kCleanVariance + variance);
+    return value > kSmallestTrust ? value : kSmallestTrust;
+  }
+
+  [[nodiscard]] PSK_HD Scatter scatter_of(std::int32_t first, std::int32_t end) const {
     const auto scale = static_cast<float>(std::int64_t{1} << depth);
-    float sum = 2 * kPriorPairs * kPriorVariance;
-    float pairs = kPriorPairs;
+    float sum = 0;
+    float pairs = 0;
     PSK_UNROLL_BY_4 for (std::int32_t i = first; i + 1 < end; ++i) {
       const Vec3f n = samples.normals[i];
       const Vec3f m = samples.normals[i + 1];
@@ -49,8 +61,7 @@ struct TrustInCell {
       sum += counts ? across * across : 0;
       pairs += counts ? 1.0F : 0.0F;
     }
-    const float value = kTrustScale / (kCleanVariance + 0.5F * sum / pairs);
-    return value > kSmallestTrust ? value : kSmallestTrust;
+    return {sum, pairs};
   }
 };
 

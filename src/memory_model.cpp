@@ -29,6 +29,7 @@ constexpr std::int64_t kPointRanges = 32;        // of cell bricks
 constexpr std::int64_t kNodeValue = 32;          // one float a node
 constexpr std::int64_t kScreening = 5;           // place of the collapsed samples, corners that they touch
 constexpr std::int64_t kCollapsedSamples = 128;  // of occupied bricks
+constexpr std::int64_t kFree = 1;                // unknowns that are solved for, where some are held
 constexpr std::int64_t kWeightedValues = 128;    // of cell bricks: two doubles a cell
 constexpr std::int64_t kHats = 256;              // of cell bricks: eight floats a cell
 constexpr std::int64_t kMarks = 16;              // two bytes a node
@@ -135,7 +136,8 @@ struct Model {
   [[nodiscard]] std::int64_t solve() const {
     const std::int64_t screening =
         options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
-    return kCollapsed * points + kept() + kept_counts() + screening + kNodeValue * (2 * bricks + most_bricks);
+    const std::int64_t free = options.boundary == Boundary::dirichlet ? kFree * bricks : 0;
+    return kCollapsed * points + kept() + kept_counts() + screening + free + kNodeValue * (2 * bricks + most_bricks);
   }
 
   [[nodiscard]] std::int64_t isovalue() const {

@@ -16,6 +16,7 @@
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
 #include "points.hpp"
+#include "poisson/boundary.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
 #include "poisson/screening.hpp"
@@ -145,9 +146,12 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
   const auto before_level = [&](int depth) {  // every level costs about four times the one before
     announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
   };
-  poisson::Solution solution =
-      poisson::solve_poisson(ex, field.tree, divergence.cview(), screening,
-                             {options.screening, options.iterations, options.residuals, before_level});
+  exec::Buffer<std::uint8_t> free_unknowns;
+  if (options.boundary == Boundary::dirichlet) free_unknowns = poisson::free_unknowns(ex, field.tree, true);
+  poisson::Solution solution = poisson::solve_poisson(
+      ex, field.tree, divergence.cview(), screening,
+      {options.screening, options.iterations, options.residuals, before_level, free_unknowns.cview()});
+  free_unknowns.reset();
   divergence.reset();
   screening = {};
   field.isovalue = poisson::mean_at_samples(ex, field.tree, solution.u.cview(), samples.view());

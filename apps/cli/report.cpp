@@ -28,6 +28,7 @@ Json options_json(const Record& record) {
                {"attributes", options.attributes},
                {"normals", options.normals},
                {"open", options.domain_faces == DomainFaces::open},
+               {"boundary", options.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
                {"trim", options.trim},
                {"island_ratio", options.island_ratio},
                {"keep_strays", options.keep_strays},

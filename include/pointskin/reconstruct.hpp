@@ -20,6 +20,13 @@ enum class DomainFaces {
   open,    ///< the surface ends there in boundary edges
 };
 
+/// The field on the faces of the working cube.
+enum class Boundary {
+  free,            ///< the natural condition of the hats, no flux through the faces: surfaces may run into them
+  neumann = free,  ///< the same thing
+  dirichlet,       ///< the field is 0: the surface closes before it reaches them
+};
+
 /// Where a run is; handed to Options::progress.
 struct Progress {
   const char* phase = "";  ///< one of "octree", "splat", "solve", "extract"
@@ -46,6 +53,7 @@ struct Options {
   bool attributes = false;
   bool normals = true;  ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;
+  Boundary boundary = Boundary::free;
   double trim = 0;  ///< > 0: the mesh ends where samples lie 1.75 times farther apart than at the sparsest samples,
                     ///< this share of all; in [0, 1); 0: off, the mesh is closed. 0.01 to 0.1 suit open scans
   double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,

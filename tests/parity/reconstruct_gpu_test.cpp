@@ -123,12 +123,13 @@ std::vector<Options> options_to_try() {
   all.push_back({.depth = 7, .density = true});
   all.push_back({.depth = 7, .normals = false});
   all.push_back({.depth = 7, .domain_faces = DomainFaces::open});
+  all.push_back({.depth = 7, .boundary = Boundary::dirichlet});
   all.push_back({.depth = 7, .residuals = true});
   all.push_back({.depth = 7, .trim = 0.3});
   all.push_back({.depth = 7, .density = true, .normals = false, .trim = 0.9, .island_ratio = 0});
   return all;
 }
-constexpr int kOptions = 17;
+constexpr int kOptions = 18;
 
 class GpuWithOptions : public Gpu, public testing::WithParamInterface<int> {};
 

@@ -18,6 +18,7 @@ constexpr std::int64_t kKey = 8;
 constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
 constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
 constexpr std::int64_t kTrust = 4;
+constexpr std::int64_t kArea = 4;       // once more, with an envelope
 constexpr std::int64_t kSpacing = 16;   // trimming: key, and both again
 constexpr std::int64_t kAttribute = 4;  // of each
 constexpr std::int64_t kUnit = 12;      // position in the cube
@@ -80,6 +81,7 @@ struct Model {
   [[nodiscard]] std::int64_t tree() const {
     return kBrick * bricks + kChildren * (bricks - level(depth()).bricks) + kPointRanges * cell_bricks;
   }
+  [[nodiscard]] bool has_envelope() const { return options.envelope != nullptr; }
   [[nodiscard]] bool trims() const { return options.trim > 0; }
   [[nodiscard]] std::int64_t kept_counts() const {
     return options.density || trims() ? kNodeValue * counted_bricks : 0;
@@ -136,19 +138,21 @@ struct Model {
   [[nodiscard]] std::int64_t solve() const {
     const std::int64_t screening =
         options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
-    const std::int64_t free = options.boundary == Boundary::dirichlet ? kFree * bricks : 0;
+    const std::int64_t free = options.boundary == Boundary::dirichlet || has_envelope() ? kFree * bricks : 0;
     return kCollapsed * points + kept() + kept_counts() + screening + free + kNodeValue * (2 * bricks + most_bricks);
   }
 
   [[nodiscard]] std::int64_t isovalue() const {
-    return kCollapsed * points + kept() + kept_counts() + kNodeValue * bricks +
+    const std::int64_t inside = has_envelope() ? kArea * points : 0;
+    return kCollapsed * points + inside + kept() + kept_counts() + kNodeValue * bricks +
            kWeightedValues * level(depth()).cell_bricks;
   }
 
   /// The largest of: marks with their counts and sums; the mesh as it is made; the mesh as its vertices are sorted.
   [[nodiscard]] std::int64_t extract() const {
     const std::int64_t mark = (kMarks + 2 * kNumbering) * bricks;
-    const std::int64_t make = mesh() + kVertexKey * vertices() + (kMarks + kNumbering) * bricks;
+    const std::int64_t ends = has_envelope() ? kPosition : 0;  // of the edges
+    const std::int64_t make = mesh() + (kVertexKey + ends) * vertices() + (kMarks + kNumbering) * bricks;
     const std::int64_t sort = mesh() + (std::max(2 * kVertexKey + kOrder, vertex()) + kOrder) * vertices();
     return field() + std::max({mark, make, sort});
   }

@@ -57,6 +57,10 @@ void define_surface(CLI::App& command, ReconstructArgs& args) {
   add_value(command, "--boundary", args.boundary,
             "field on the cube's faces: free (also called neumann), or dirichlet: 0")
       ->type_name("B");
+  command.add_option("--envelope", args.envelope, "closed mesh that the surface stays inside of [default none]")
+      ->type_name("MESH")
+      ->group("Surface")
+      ->check([](const std::string& file) { return std::string(file.empty() ? "needs the name of a file" : ""); });
   add_value(command, "--trim", options.trim, "cut where samples end: share that counts as sparse, 0 (off) to below 1")
       ->type_name("Q");
   add_value(command, "--island-ratio", options.island_ratio, "trim: smallest piece, share of the area, 0 to below 1")

@@ -15,6 +15,7 @@ struct ReconstructArgs {
   std::vector<std::string> named_inputs;  ///< of --in; come after inputs
   std::string output;                     ///< empty: none
   std::string report;                     ///< empty: none
+  std::string envelope;                   ///< empty: none
   std::string device = "auto";
   std::string shift = "auto";
   std::string max_memory;        ///< empty: no limit

@@ -207,14 +207,15 @@ surface::Surface extract(Exec& ex, const FieldData& field, const Options& option
   surface::ExtractOptions extraction{options.linear_fit ? 0 : kCurvature, options.normals || trim};
   if (field.envelope != nullptr) extraction.move_vertices = clip_to(ex, *field.envelope, field.frame, report.envelope);
   surface::Surface surface = surface::extract_surface(ex, field.view(options.domain_faces), extraction);
+  if (trim) {
+    surface::TrimCounts counts;
+    surface = trim_to_samples(ex, field.tree, field.density, std::move(surface),
+                              {field.trim_limit, options.island_ratio}, counts);
+    report.trim = trim_report(counts, field.frame, field.tree.depth, field.trim_limit);
+    if (!options.normals) surface.normals.reset();
+  }
   if (field.envelope != nullptr)
     project_onto(ex, *field.envelope, field.frame, surface.positions.view(), report.envelope);
-  if (!trim) return surface;
-  surface::TrimCounts counts;
-  surface = trim_to_samples(ex, field.tree, field.density, std::move(surface), {field.trim_limit, options.island_ratio},
-                            counts);
-  report.trim = trim_report(counts, field.frame, field.tree.depth, field.trim_limit);
-  if (!options.normals) surface.normals.reset();
   return surface;
 }
 

@@ -108,7 +108,8 @@ auto clip_to(Exec& ex, const envelope::Envelope& envelope, const octree::Frame& 
   };
 }
 
-/// Moves what is outside still: vertices between corners that hold interpolated values, and centres of loops.
+/// Moves what is outside still: vertices between corners that hold interpolated values, centres of loops, and those
+/// that trimming has added.
 template <exec::Space Exec>
 void project_onto(Exec& ex, const envelope::Envelope& envelope, const octree::Frame& frame, ArrayView<Vec3f> vertices,
                   EnvelopeReport& report) {

@@ -216,6 +216,14 @@ TEST(Envelope, GoesWithOtherOptions) {
   }
 }
 
+TEST(Envelope, HoldsForTheBorderOfATrimmedSurfaceToo) {
+  const Case c = cases()[4];  // a plane in a torus
+  const Outcome r = run(c.cloud, {.depth = 6, .envelope = shared(c.envelope), .trim = 0.3});
+  EXPECT_TRUE(measure(r.mesh).manifold());
+  EXPECT_GT(r.report.trim.triangles_split, 0);
+  EXPECT_LT(protrusion_of(r.mesh, c.envelope).vertices, 1e-6);
+}
+
 TEST(Envelope, RefusesMeshesThatEncloseNothing) {
   const Cloud cloud = test::sphere_cloud(1000, 11);
   Mesh open = test::box_mesh();

@@ -39,6 +39,7 @@
 #include "points_impl.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
+#include "poisson/resolution.hpp"
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
 #include "shapes.hpp"
@@ -56,6 +57,7 @@ struct Pipeline {
   poisson::Samples samples;
   octree::OctreeData tree;
   poisson::Density density;
+  poisson::Resolution resolution;
   exec::Buffer<float> divergence;
   poisson::Screening screening;
   Options options;
@@ -74,18 +76,19 @@ struct Pipeline {
     tree = octree::build_octree(ex, keys.cview(), depth);
     density = poisson::splat_density(ex, tree, samples.positions.cview());
     poisson::weigh_samples(ex, tree, density, {options.samples_per_node, options.confidence}, samples);
-    divergence = poisson::splat_divergence(ex, tree, samples.view());
+    resolution = poisson::find_resolution(ex, tree, samples);
+    divergence = poisson::splat_divergence(ex, tree, samples.view(), resolution);
     screening = poisson::collapse_samples(ex, tree, samples.view());
     solution = solve(ex);
     isovalue = poisson::mean_at_samples(ex, tree, solution.u.cview(), samples.view());
   }
 
   poisson::Solution solve(Exec& ex) const {
-    return poisson::solve_poisson(ex, tree, divergence.cview(), screening, {options.screening, options.iterations});
+    return poisson::solve_poisson(ex, resolution.view(tree), divergence.cview(), screening, {options.screening, options.iterations});
   }
   surface::Surface extract(Exec& ex) const {
     return surface::extract_surface(
-        ex, field::FieldView{tree.view(), solution.u.data(), static_cast<float>(isovalue), true}, {});
+        ex, field::FieldView{resolution.view(tree), solution.u.data(), static_cast<float>(isovalue), true, resolution.bricks.data()}, {});
   }
 };
 
@@ -139,9 +142,10 @@ bool add_phases() {
       {"weigh",
        [](Exec& ex, P& p) {
          poisson::weigh_samples(ex, p.tree, p.density, {p.options.samples_per_node, p.options.confidence}, p.samples);
+         poisson::find_resolution(ex, p.tree, p.samples);
        },
-       41, 4},
-      {"splat", [](Exec& ex, P& p) { poisson::splat_divergence(ex, p.tree, p.samples.view()); }, 29, 28},
+       56, 4},
+      {"splat", [](Exec& ex, P& p) { poisson::splat_divergence(ex, p.tree, p.samples.view(), p.resolution); }, 29, 28},
       {"screening", [](Exec& ex, P& p) { poisson::collapse_samples(ex, p.tree, p.samples.view()); }, 16, 0},
       {"solve", [](Exec& ex, P& p) { p.solve(ex); }, 0, 25.5 * kIterations},
       {"isovalue", [](Exec& ex, P& p) { poisson::mean_at_samples(ex, p.tree, p.solution.u.cview(), p.samples.view()); },

@@ -15,9 +15,10 @@ constexpr std::int64_t kSorting = kUploaded + 44;  // position in the cube, hash
 constexpr std::int64_t kSelected = 4;              // index of a point that is used, where some are not
 constexpr std::int64_t kSorted = 24;               // position in the cube, normal
 constexpr std::int64_t kKey = 8;
-constexpr std::int64_t kWeighed = kSorted + 5;      // area, splat depth
+constexpr std::int64_t kWeighed = kSorted + 8;      // area, splat depth
 constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
 constexpr std::int64_t kTrust = 4;
+constexpr std::int64_t kArea = 4;       // once more, with an envelope
 constexpr std::int64_t kSpacing = 16;   // trimming: key, and both again
 constexpr std::int64_t kAttribute = 4;  // of each
 constexpr std::int64_t kUnit = 12;      // position in the cube
@@ -27,8 +28,10 @@ constexpr std::int64_t kBrick = 121;             // key, parent, 27 neighbours, 
 constexpr std::int64_t kChildren = 32;           // of bricks above the finest level
 constexpr std::int64_t kPointRanges = 32;        // of cell bricks
 constexpr std::int64_t kNodeValue = 32;          // one float a node
+constexpr std::int64_t kResolution = 2;          // whether its cells count, their unknowns
 constexpr std::int64_t kScreening = 5;           // place of the collapsed samples, corners that they touch
 constexpr std::int64_t kCollapsedSamples = 128;  // of occupied bricks
+constexpr std::int64_t kFree = 1;                // unknowns that are solved for, where some are held
 constexpr std::int64_t kWeightedValues = 128;    // of cell bricks: two doubles a cell
 constexpr std::int64_t kHats = 256;              // of cell bricks: eight floats a cell
 constexpr std::int64_t kMarks = 16;              // two bytes a node
@@ -49,6 +52,11 @@ constexpr std::int64_t kPieces = 4 + 8;  // trimming: piece, its area
 /// surface fills the cube like a sponge. Meshes have two triangles a vertex.
 constexpr std::int64_t kNodesPerVertex = 7;
 constexpr std::int64_t kTrianglesPerVertex = 2;
+
+/// Vertices a sample where samples are sparse: cells that they do not resolve have none. Complete levels have some
+/// anyway.
+constexpr std::int64_t kVerticesPerPoint = 10;
+constexpr std::int64_t kCompleteVertices = 5000;
 
 /// Sums over the levels.
 struct Model {
@@ -79,11 +87,14 @@ struct Model {
   [[nodiscard]] std::int64_t tree() const {
     return kBrick * bricks + kChildren * (bricks - level(depth()).bricks) + kPointRanges * cell_bricks;
   }
+  [[nodiscard]] bool has_envelope() const { return options.envelope != nullptr; }
   [[nodiscard]] bool trims() const { return options.trim > 0; }
   [[nodiscard]] std::int64_t kept_counts() const {
     return options.density || trims() ? kNodeValue * counted_bricks : 0;
   }
-  [[nodiscard]] std::int64_t vertices() const { return 8 * bricks / kNodesPerVertex; }
+  [[nodiscard]] std::int64_t vertices() const {
+    return std::min(8 * bricks / kNodesPerVertex, kVerticesPerPoint * points + kCompleteVertices);
+  }
   [[nodiscard]] std::int64_t vertex() const { return options.normals || trims() ? 2 * kPosition : kPosition; }
   [[nodiscard]] std::int64_t mesh() const { return (vertex() + kTrianglesPerVertex * kTriangle) * vertices(); }
 
@@ -94,7 +105,7 @@ struct Model {
   }
 
   /// What is there from the tree to the mesh.
-  [[nodiscard]] std::int64_t kept() const { return tree() + kept_attributes(); }
+  [[nodiscard]] std::int64_t kept() const { return tree() + kResolution * bricks + kept_attributes(); }
   /// Positions of the samples, for their attributes.
   [[nodiscard]] std::int64_t kept_positions() const { return attributes > 0 ? kUnit * points : 0; }
   /// The solved field.
@@ -135,18 +146,21 @@ struct Model {
   [[nodiscard]] std::int64_t solve() const {
     const std::int64_t screening =
         options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
-    return kCollapsed * points + kept() + kept_counts() + screening + kNodeValue * (2 * bricks + most_bricks);
+    const std::int64_t free = options.boundary == Boundary::dirichlet || has_envelope() ? kFree * bricks : 0;
+    return kCollapsed * points + kept() + kept_counts() + screening + free + kNodeValue * (2 * bricks + most_bricks);
   }
 
   [[nodiscard]] std::int64_t isovalue() const {
-    return kCollapsed * points + kept() + kept_counts() + kNodeValue * bricks +
+    const std::int64_t inside = has_envelope() ? kArea * points : 0;
+    return kCollapsed * points + inside + kept() + kept_counts() + kNodeValue * bricks +
            kWeightedValues * level(depth()).cell_bricks;
   }
 
   /// The largest of: marks with their counts and sums; the mesh as it is made; the mesh as its vertices are sorted.
   [[nodiscard]] std::int64_t extract() const {
     const std::int64_t mark = (kMarks + 2 * kNumbering) * bricks;
-    const std::int64_t make = mesh() + kVertexKey * vertices() + (kMarks + kNumbering) * bricks;
+    const std::int64_t ends = has_envelope() ? kPosition : 0;  // of the edges
+    const std::int64_t make = mesh() + (kVertexKey + ends) * vertices() + (kMarks + kNumbering) * bricks;
     const std::int64_t sort = mesh() + (std::max(2 * kVertexKey + kOrder, vertex()) + kOrder) * vertices();
     return field() + std::max({mark, make, sort});
   }

@@ -16,6 +16,7 @@
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
 #include "points.hpp"
+#include "poisson/boundary.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
 #include "poisson/resolution.hpp"
@@ -25,6 +26,7 @@
 #include "reconstruct_engine.hpp"
 #include "surface/extract.hpp"
 #include "trim_to_samples.hpp"
+#include "within_envelope.hpp"
 
 namespace pointskin::detail {
 
@@ -70,7 +72,8 @@ struct FieldData {
   poisson::Resolution resolution;
   exec::Buffer<float> values;
   poisson::Density density;
-  field::AttributeSamples attributes;  ///< without positions unless there are channels
+  field::AttributeSamples attributes;                  ///< without positions unless there are channels
+  std::shared_ptr<const envelope::Envelope> envelope;  ///< with Options::envelope
   double isovalue = 0;
   float trim_limit = 0;  // spacing in finest cells, with Options::trim
 
@@ -112,12 +115,41 @@ octree::Frame fit_cube(Exec& ex, DevicePoints& points, const Options& options, R
   return octree::frame_around(strays.core, options.scale);
 }
 
+/// The unknowns to solve for, where some are held at 0; else none.
+template <exec::Space Exec>
+exec::Buffer<std::uint8_t> find_free_unknowns(Exec& ex, const octree::OctreeView& tree, const FieldData& field,
+                                              const Options& options) {
+  exec::Buffer<std::uint8_t> free;
+  const bool hold_faces = options.boundary == Boundary::dirichlet;
+  if (hold_faces || field.envelope != nullptr) free = poisson::free_unknowns(ex, tree, hold_faces);
+  if (field.envelope != nullptr) hold_outside(ex, *field.envelope, field.frame, tree, free.view());
+  return free;
+}
+
+/// Mean of the field at the samples, with an envelope at those inside.
+template <exec::Space Exec>
+double find_isovalue(Exec& ex, const FieldData& field, ArrayView<const float> u, const poisson::Samples& samples,
+                     RunReport& report) {
+  poisson::SamplesView view = samples.view();
+  if (field.envelope == nullptr) return poisson::mean_at_samples(ex, field.tree, u, view);
+  const exec::Buffer<float> areas =
+      areas_inside(ex, *field.envelope, field.frame, samples, report.envelope.samples_outside);
+  view.areas = areas.cview();
+  const double isovalue = poisson::mean_at_samples(ex, field.tree, u, view);
+  if (!(isovalue > 0))  // all that is held at 0 would be inside
+    throw Error(ErrorCode::empty_result,
+                "the field is not positive at the points; are their normals oriented outwards, away from the inside?");
+  return isovalue;
+}
+
 /// Points to implicit function. The report's places are relative to the cloud's origin. Frees `points` once they are
 /// sorted, unless they are to be kept for another run.
 template <exec::Space Exec>
-FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Options& options, RunReport& report) {
+FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Options& options,
+                    std::shared_ptr<const envelope::Envelope> envelope, RunReport& report) {
   PhaseClock clock(ex);
   FieldData field;
+  field.envelope = std::move(envelope);
 
   announce(options, "octree", 0.05);
   field.frame = fit_cube(ex, points, options, report);
@@ -149,12 +181,15 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
   const auto before_level = [&](int depth) {  // every level costs about four times the one before
     announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
   };
-  poisson::Solution solution =
-      poisson::solve_poisson(ex, field.resolution.view(field.tree), divergence.cview(), screening,
-                             {options.screening, options.iterations, options.residuals, before_level});
+  const octree::OctreeView tree = field.resolution.view(field.tree);
+  exec::Buffer<std::uint8_t> free_unknowns = find_free_unknowns(ex, tree, field, options);
+  poisson::Solution solution = poisson::solve_poisson(
+      ex, tree, divergence.cview(), screening,
+      {options.screening, options.iterations, options.residuals, before_level, free_unknowns.cview()});
+  free_unknowns.reset();
   divergence.reset();
   screening = {};
-  field.isovalue = poisson::mean_at_samples(ex, field.tree, solution.u.cview(), samples.view());
+  field.isovalue = find_isovalue(ex, field, solution.u.cview(), samples, report);
   field.values = std::move(solution.u);
   if (has_attributes) field.attributes.positions = std::move(samples.positions);
   clock.lap(report.solve_ms);
@@ -171,18 +206,22 @@ FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Opti
 inline constexpr float kCurvature = 0.5F;
 
 /// Implicit function to mesh, on the device.
-/// @param trimmed  receives what was cut, with Options::trim
+/// @param report  receives what was cut, with Options::trim, and what was moved, with an envelope
 template <exec::Space Exec>
-surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, TrimReport& trimmed) {
+surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, RunReport& report) {
   const bool trim = options.trim > 0;  // which needs normals
-  surface::Surface surface = surface::extract_surface(ex, field.view(options.domain_faces),
-                                                      {options.linear_fit ? 0 : kCurvature, options.normals || trim});
-  if (!trim) return surface;
-  surface::TrimCounts counts;
-  surface = trim_to_samples(ex, field.tree, field.density, std::move(surface), {field.trim_limit, options.island_ratio},
-                            counts);
-  trimmed = trim_report(counts, field.frame, field.tree.depth, field.trim_limit);
-  if (!options.normals) surface.normals.reset();
+  surface::ExtractOptions extraction{options.linear_fit ? 0 : kCurvature, options.normals || trim};
+  if (field.envelope != nullptr) extraction.move_vertices = clip_to(ex, *field.envelope, field.frame, report.envelope);
+  surface::Surface surface = surface::extract_surface(ex, field.view(options.domain_faces), extraction);
+  if (trim) {
+    surface::TrimCounts counts;
+    surface = trim_to_samples(ex, field.tree, field.density, std::move(surface),
+                              {field.trim_limit, options.island_ratio}, counts);
+    report.trim = trim_report(counts, field.frame, field.tree.depth, field.trim_limit);
+    if (!options.normals) surface.normals.reset();
+  }
+  if (field.envelope != nullptr)
+    project_onto(ex, *field.envelope, field.frame, surface.positions.view(), report.envelope);
   return surface;
 }
 
@@ -221,8 +260,8 @@ class FieldOn final : public FieldImpl {
   }
 
   void extract(Mesh& mesh) const override {
-    TrimReport trimmed;
-    surface::Surface surface = extract_surface(trimmed);
+    RunReport unused;
+    surface::Surface surface = extract_surface(unused);
     std::vector<Attribute> attributes = attributes_at(surface);
     download(*ex_, std::move(surface), data_.frame, origin_, mesh);
     mesh.attributes = std::move(attributes);
@@ -230,7 +269,7 @@ class FieldOn final : public FieldImpl {
 
   void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
-    surface::Surface surface = extract_surface(report.trim);
+    surface::Surface surface = extract_surface(report);
     data_.values.reset();
     std::vector<Attribute> attributes = attributes_at(surface);
     clock.lap(report.extract_ms);
@@ -244,10 +283,10 @@ class FieldOn final : public FieldImpl {
   }
 
  private:
-  [[nodiscard]] surface::Surface extract_surface(TrimReport& trimmed) const {
+  [[nodiscard]] surface::Surface extract_surface(RunReport& report) const {
     ex_->activate();
-    surface::Surface surface = detail::extract(*ex_, data_, options_, trimmed);
-    if (surface.triangles.empty() && trimmed.triangles_before > 0)
+    surface::Surface surface = detail::extract(*ex_, data_, options_, report);
+    if (surface.triangles.empty() && report.trim.triangles_before > 0)
       throw Error(ErrorCode::empty_result,
                   "all of the surface was trimmed away; choose a smaller trim quantile or island ratio");
     if (surface.triangles.empty())
@@ -292,12 +331,13 @@ class EngineOn final : public Engine {
   std::shared_ptr<FieldImpl> solve(const Cloud& cloud, const Options& options, RunReport& report) override {
     ex_->activate();
     ex_->pool()->reset_peak();
+    std::shared_ptr<const envelope::Envelope> envelope = make_envelope(*ex_, options, cloud.origin);
     PhaseClock clock(*ex_);
     DevicePoints points = upload(*ex_, cloud);
     points.attributes = upload_attributes(*ex_, cloud, options);
     clock.lap(report.upload_ms);
     clock.read();
-    FieldData data = fit_field(*ex_, points, false, options, report);
+    FieldData data = fit_field(*ex_, points, false, options, std::move(envelope), report);
     for (Vec3d& p : report.farthest_strays)
       for (std::size_t a = 0; a < 3; ++a) p[a] += cloud.origin[a];
     report.device_peak_bytes = ex_->pool()->peak_bytes();
@@ -306,14 +346,15 @@ class EngineOn final : public Engine {
 
   std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) override {
     ex_->activate();
+    const std::shared_ptr<const envelope::Envelope> envelope = make_envelope(*ex_, options, cloud.origin);
     DevicePoints points = upload(*ex_, cloud);
     points.attributes = upload_attributes(*ex_, cloud, options);
     std::vector<RunTimes> runs;
     for (int i = 0; i < times; ++i) {
       PhaseClock clock(*ex_);
       RunReport report;
-      const FieldData data = fit_field(*ex_, points, true, options, report);
-      const surface::Surface surface = detail::extract(*ex_, data, options, report.trim);
+      const FieldData data = fit_field(*ex_, points, true, options, envelope, report);
+      const surface::Surface surface = detail::extract(*ex_, data, options, report);
       field::interpolate(*ex_, data.tree, data.attributes, surface.positions.cview(),
                          [](const field::Channel&, const exec::Buffer<float>&) {});
       RunTimes run{report.octree_ms, report.splat_ms, report.solve_ms};

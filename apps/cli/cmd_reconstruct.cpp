@@ -41,9 +41,11 @@ void check_files(const ReconstructArgs& args) {
   if (args.inputs.empty()) throw_usage("no input; name one or more clouds, or - for stdin");
   if (args.output.empty() && !args.dry_run && !args.repeat_given) throw_usage("no output; name it with -o");
   if (args.report == "-") throw_usage("--report: stdout carries the mesh only; name a file");
-  if (std::count(args.inputs.begin(), args.inputs.end(), "-") > 1) throw_usage("stdin (-) can be read only once");
+  std::vector<std::string> inputs = args.inputs;
+  if (!args.envelope.empty()) inputs.push_back(args.envelope);
+  if (std::count(inputs.begin(), inputs.end(), "-") > 1) throw_usage("stdin (-) can be read only once");
   if (!args.report.empty() && args.report == args.output) throw_usage("--report and -o name the same file");
-  for (const std::string& input : args.inputs) {
+  for (const std::string& input : inputs) {
     std::error_code ignored;  // files that do not exist are not the same
     if (!args.report.empty() && std::filesystem::equivalent(input, args.report, ignored))
       throw_usage("--report would overwrite the input " + input);
@@ -73,6 +75,15 @@ Cloud read_input(const ReconstructArgs& args, Record& record) {
   return cloud;
 }
 
+/// The envelope, if one is named.
+std::shared_ptr<const Mesh> read_envelope(const ReconstructArgs& args) {
+  if (args.envelope.empty()) return nullptr;
+  Mesh mesh = read_mesh(args.envelope, {.shift = std::nullopt, .threads = args.threads});
+  if (mesh.triangles.empty())
+    throw Error(ErrorCode::invalid_input, args.envelope + ": has no triangles; the envelope must be a closed mesh");
+  return std::make_shared<const Mesh>(std::move(mesh));
+}
+
 /// Side of the working cube.
 double cube_world(const Cloud& cloud, const Options& options, int threads) {
   const Bounds box = options.keep_strays ? bounds_of(cloud.positions) : find_strays(cloud.positions, threads).core;
@@ -86,17 +97,26 @@ std::int64_t host_bytes(const Cloud& cloud) {
   return bytes;
 }
 
+/// The mesh itself and what measuring distances to it takes.
+std::int64_t host_bytes(const Mesh& envelope) {
+  constexpr std::int64_t kTriangle = 12 + 76 + 16 + 36 + 72;  // ids, tree, its nodes, normal and neighbours; being made
+  constexpr std::int64_t kVertex = 12 + 24;                   // its normal
+  return kTriangle * static_cast<std::int64_t>(envelope.triangles.size()) +
+         kVertex * static_cast<std::int64_t>(envelope.vertices.size());
+}
+
 /// What a run takes where the limit counts.
 struct Estimate {
   std::int64_t buffers = 0;  ///< of the work; memory.device_peak_bytes of the report
-  std::int64_t cloud = 0;    ///< on the CPU, the cloud shares the memory with the work
+  std::int64_t cloud = 0;    ///< on the CPU, the cloud and the envelope share the memory with the work
 
   [[nodiscard]] std::int64_t total() const { return buffers + cloud; }
 };
 
 Estimate estimate_memory(const Cloud& cloud, const Record& record, int threads) {
-  return {estimate_device_bytes(cloud, record.options, threads),
-          record.device.kind == DeviceKind::cpu ? host_bytes(cloud) : 0};
+  const Mesh* envelope = record.options.envelope.get();
+  const std::int64_t shared = host_bytes(cloud) + (envelope != nullptr ? host_bytes(*envelope) : 0);
+  return {estimate_device_bytes(cloud, record.options, threads), record.device.kind == DeviceKind::cpu ? shared : 0};
 }
 
 std::string bytes_text(std::int64_t bytes) {
@@ -120,7 +140,10 @@ void warn_about_strays(const Cloud& cloud, int threads) {
 }
 
 void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record, const Estimate& estimate) {
-  const std::string with_cloud = estimate.cloud > 0 ? ", with the cloud " + bytes_text(estimate.total()) : "";
+  const std::string with_cloud =
+      estimate.cloud > 0 ? (args.envelope.empty() ? ", with the cloud " : ", with the cloud and the envelope ") +
+                               bytes_text(estimate.total())
+                         : "";
   const std::string text = fmt::format("points {}, depth {}, device {}: estimate {}{}, available {}", cloud.size(),
                                        record.options.depth, record.device.name(), bytes_text(estimate.buffers),
                                        with_cloud, format_bytes(static_cast<double>(record.device.available_bytes())));
@@ -131,6 +154,7 @@ void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Recor
 /// The options of the report that the library does not know.
 nlohmann::ordered_json other_options(const ReconstructArgs& args) {
   nlohmann::ordered_json json = {{"device", args.device}, {"threads", args.threads}, {"shift", args.shift}};
+  json["envelope"] = args.envelope.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(args.envelope);
   json["repeat"] = args.repeat;
   json["inputs"] = args.inputs;
   json["output"] = args.output.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(args.output);
@@ -187,6 +211,7 @@ int run(const ReconstructArgs& given) {
   record.device = parse_device(args.device, args.threads);
   warn_about_options(args);
 
+  record.options.envelope = read_envelope(args);
   Cloud cloud = read_input(args, record);
   settle_options(args, cloud, record);
   if (args.dry_run || record.options.max_memory_bytes > 0) {

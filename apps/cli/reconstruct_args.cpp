@@ -54,6 +54,13 @@ void define_surface(CLI::App& command, ReconstructArgs& args) {
       ->group("Surface");
   command.add_flag("--open", args.open, "leave the surface open at the cube's faces, instead of closed")
       ->group("Surface");
+  add_value(command, "--boundary", args.boundary,
+            "field on the cube's faces: free (also called neumann), or dirichlet: 0")
+      ->type_name("B");
+  command.add_option("--envelope", args.envelope, "closed mesh that the surface stays inside of [default none]")
+      ->type_name("MESH")
+      ->group("Surface")
+      ->check([](const std::string& file) { return std::string(file.empty() ? "needs the name of a file" : ""); });
   add_value(command, "--trim", options.trim, "cut where samples end: share that counts as sparse, 0 (off) to below 1")
       ->type_name("Q");
   add_value(command, "--island-ratio", options.island_ratio, "trim: smallest piece, share of the area, 0 to below 1")
@@ -103,6 +110,11 @@ void define_poisson_recon_names(CLI::App& command, ReconstructArgs& args) {
   alias("--out", args.output, "--output", "OUT");
   alias("--pointWeight", args.options.screening, "--screening", "W");
   alias("--samplesPerNode", args.options.samples_per_node, "--samples-per-node", "N");
+  command.add_option("--bType", args.boundary_type, "same as --boundary: 1 free, 2 dirichlet, 3 neumann")
+      ->type_name("1|2|3")
+      ->group(group)
+      ->excludes(command.get_option("--boundary"))
+      ->check(CLI::IsMember({1, 2, 3}));
   command.add_option("--width", args.width_world, "widest finest cell, world units; chooses the depth")
       ->type_name("W")
       ->group(group)
@@ -117,6 +129,13 @@ bool confidence_of(const std::string& exponent) {
   if (value == 0 || value == 1) return value == 1;
   throw Error(ErrorCode::usage,
               fmt::format("--confidence: {} is not 0 or 1; other exponents are not supported", exponent));
+}
+
+Boundary boundary_of(const ReconstructArgs& args) {
+  if (args.boundary_type != 0) return args.boundary_type == 2 ? Boundary::dirichlet : Boundary::free;
+  if (args.boundary == "dirichlet") return Boundary::dirichlet;
+  if (args.boundary == "free" || args.boundary == "neumann") return Boundary::free;
+  throw Error(ErrorCode::usage, fmt::format("--boundary: '{}' is not free, dirichlet or neumann", args.boundary));
 }
 
 }  // namespace
@@ -141,6 +160,7 @@ Options library_options(const ReconstructArgs& args) {
   options.attributes = options.attributes || args.colors;
   options.normals = !args.no_normals;
   options.domain_faces = args.open ? DomainFaces::open : DomainFaces::closed;
+  options.boundary = boundary_of(args);
   options.residuals = args.verbose || !args.report.empty();
   if (!args.max_memory.empty()) options.max_memory_bytes = parse_bytes(args.max_memory);
   validate(options);

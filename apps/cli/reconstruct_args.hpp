@@ -15,10 +15,13 @@ struct ReconstructArgs {
   std::vector<std::string> named_inputs;  ///< of --in; come after inputs
   std::string output;                     ///< empty: none
   std::string report;                     ///< empty: none
+  std::string envelope;                   ///< empty: none
   std::string device = "auto";
   std::string shift = "auto";
   std::string max_memory;        ///< empty: no limit
   std::string confidence = "0";  ///< PoissonRecon's exponent of the normals' length: 0 or 1 here
+  std::string boundary = "free";
+  int boundary_type = 0;  ///< PoissonRecon's number of the boundary; 0: none
   Options options;
   double width_world = 0;  ///< > 0: chooses the depth
   int threads = 0;

@@ -28,6 +28,7 @@ Json options_json(const Record& record) {
                {"attributes", options.attributes},
                {"normals", options.normals},
                {"open", options.domain_faces == DomainFaces::open},
+               {"boundary", options.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
                {"trim", options.trim},
                {"island_ratio", options.island_ratio},
                {"keep_strays", options.keep_strays},
@@ -74,6 +75,14 @@ Json trim_json(const TrimReport& trim) {
           {"holes_filled", trim.holes_filled}};
 }
 
+Json envelope_json(const Record& record) {
+  const EnvelopeReport& envelope = record.run.envelope;
+  return {{"file", record.other_options.at("envelope")},
+          {"samples_outside", envelope.samples_outside},
+          {"vertices_moved", envelope.vertices_moved},
+          {"farthest_move", envelope.farthest_move}};
+}
+
 Json mesh_json(const MeshReport& mesh) {
   return {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
           {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler}};
@@ -101,6 +110,7 @@ Json to_json(const Record& record) {
   json["octree"] = octree_json(record.run);
   json["solve"] = solve_json(record.run);
   json["isovalue"] = record.run.isovalue;
+  if (record.options.envelope != nullptr) json["envelope"] = envelope_json(record);
   if (record.options.trim > 0) json["trim"] = trim_json(record.run.trim);
   json["mesh"] = mesh_json(record.mesh);
   json["ms"] = ms_json(record);

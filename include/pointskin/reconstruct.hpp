@@ -20,6 +20,13 @@ enum class DomainFaces {
   open,    ///< the surface ends there in boundary edges
 };
 
+/// The field on the faces of the working cube.
+enum class Boundary {
+  free,            ///< the natural condition of the hats, no flux through the faces: surfaces may run into them
+  neumann = free,  ///< the same thing
+  dirichlet,       ///< the field is 0: the surface closes before it reaches them
+};
+
 /// Where a run is; handed to Options::progress.
 struct Progress {
   const char* phase = "";  ///< one of "octree", "splat", "solve", "extract"
@@ -46,6 +53,12 @@ struct Options {
   bool attributes = false;
   bool normals = true;  ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;
+  Boundary boundary = Boundary::free;
+  /// A watertight mesh that the surface stays inside of, in world coordinates (its origin counts): the field is 0 at
+  /// corners of the octree outside of it, and no vertex lies farther outside than the cube's side times 2^-23. Points
+  /// outside are used, but not for the isovalue. Null: none. Must not change while runs or Fields use it.
+  /// Costs a query of the distance for every corner near it, on the host (docs/algorithm.md, section 10).
+  std::shared_ptr<const Mesh> envelope{};
   double trim = 0;  ///< > 0: the mesh ends where samples lie 1.75 times farther apart than at the sparsest samples,
                     ///< this share of all; in [0, 1); 0: off, the mesh is closed. 0.01 to 0.1 suit open scans
   double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,
@@ -78,6 +91,13 @@ struct TrimReport {
   std::int64_t holes_filled = 0;       ///< cut pieces below Options::island_ratio, which were kept
 };
 
+/// What Options::envelope did. All zero without it.
+struct EnvelopeReport {
+  std::int64_t samples_outside = 0;
+  std::int64_t vertices_moved = 0;  ///< of the mesh, onto the envelope
+  double farthest_move = 0;         ///< of such a vertex, world units
+};
+
 /// What a run did and what it cost. Times are milliseconds on the device's clock.
 struct RunReport {
   std::int64_t points = 0;             ///< points used
@@ -88,6 +108,7 @@ struct RunReport {
   std::vector<LevelReport> levels;  ///< depth 0 first
   double isovalue = 0;              ///< weighted mean of the field over the samples
   TrimReport trim;                  ///< with Options::trim
+  EnvelopeReport envelope;          ///< with Options::envelope
   double upload_ms = 0, octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0, download_ms = 0;
   std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
 };
@@ -123,9 +144,9 @@ class Reconstructor {
   /// The Field shares this reconstructor's device resources and may outlive it.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.
   /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),
-  ///         invalid_input (points that are not finite, an attribute of another length), empty_result (no points, or
-  ///         all points at one place), over_limit (memory or 32-bit indices), interrupted (Options::progress returned
-  ///         false)
+  ///         invalid_input (points that are not finite, an attribute of another length, an envelope that is not
+  ///         watertight), empty_result (no points, all at one place or outside of the envelope), over_limit (memory or
+  ///         32-bit indices), interrupted (Options::progress returned false)
   Field solve(const Cloud& cloud, const Options& options = {});
 
   /// Runs the in-memory job `times` times on points resident on the device, the mesh staying there too.

@@ -26,6 +26,14 @@ inline double squared_distance_to_segment(const Vec3d& ap, const Vec3d& ab) {
   return squared_length(minus(ap, times(t, ab)));
 }
 
+/// Below this squared sine of the angle at a, the normal is no better known than the triangle is wide.
+inline constexpr double kNoPlane = 1e-16;
+
+/// True if the triangle has a normal, which is `area_vector`.
+inline bool has_plane(const EdgedTriangle& t, const Vec3d& area_vector) {
+  return squared_length(area_vector) > kNoPlane * squared_length(t.ab) * squared_length(t.ac);
+}
+
 /// Squared distance of the point at `ap` (relative to corner a) from the border of `t`.
 inline double squared_distance_to_border(const Vec3d& ap, const EdgedTriangle& t) {
   return std::min({squared_distance_to_segment(ap, t.ab), squared_distance_to_segment(ap, t.ac),
@@ -34,8 +42,6 @@ inline double squared_distance_to_border(const Vec3d& ap, const EdgedTriangle& t
 
 /// Squared distance of `p` from the nearest point of `t`. Exact up to rounding, for triangles without area too.
 inline double squared_distance(const Vec3d& p, const EdgedTriangle& t) {
-  // Below this squared sine of the angle at a, the normal is no better known than the triangle is wide.
-  constexpr double kNoPlane = 1e-16;
   const Vec3d ap = minus(p, t.a);
   const double d1 = dot(t.ab, ap), d2 = dot(t.ac, ap);
   if (d1 <= 0 && d2 <= 0) return squared_length(ap);
@@ -48,7 +54,7 @@ inline double squared_distance(const Vec3d& p, const EdgedTriangle& t) {
 
   const Vec3d n = t.area_vector();
   const double nn = squared_length(n);
-  if (!(nn > kNoPlane * squared_length(t.ab) * squared_length(t.ac))) return squared_distance_to_border(ap, t);
+  if (!has_plane(t, n)) return squared_distance_to_border(ap, t);
   if (d1 * d4 - d3 * d2 <= 0 && d1 >= 0 && d3 <= 0) return squared_length(minus(ap, times(d1 / (d1 - d3), t.ab)));
   if (d5 * d2 - d1 * d6 <= 0 && d2 >= 0 && d6 <= 0) return squared_length(minus(ap, times(d2 / (d2 - d6), t.ac)));
   if (d3 * d6 - d5 * d4 <= 0 && d4 >= d3 && d5 >= d6) {

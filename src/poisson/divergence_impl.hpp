@@ -217,12 +217,12 @@ PSK_HD inline float divergence_by_cells(int leaves, const float (&element)[8][8]
 /// Divergence of V over the leaf cells of a level, tested with the hats at its corners.
 struct Divergence {
   octree::LevelView level;
-  std::int32_t finer_cell_bricks;    // of the level below; 0 at the finest level, where all cells are leaves
-  const std::uint8_t* counts;        // (bricks) whether a brick's cells count; null: all do
-  const std::uint8_t* finer_counts;  // of the level below
+  std::int32_t finer_cell_bricks;  // of the level below; 0 at the finest level, where all cells are leaves
   VectorField field;
   Coefficients coefficients;
   ArrayView<float> b;
+  const std::uint8_t* counts = nullptr;        // (bricks) whether a brick's cells count; null: all do
+  const std::uint8_t* finer_counts = nullptr;  // the same of the level below
 
   [[nodiscard]] PSK_HD bool is_leaf(std::int32_t node) const {
     if (!level.is_cell(node) || (counts != nullptr && counts[node >> 3] == 0)) return false;
@@ -459,11 +459,11 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
     if (has_field) {
       const Divergence divergence{level,
                                   finest ? 0 : view.levels[d + 1].cell_bricks,
-                                  resolution.counts(level),
-                                  finest ? nullptr : resolution.counts(view.levels[d + 1]),
                                   field[static_cast<std::size_t>(d)].view(),
                                   make_coefficients(),
-                                  own};
+                                  own,
+                                  resolution.counts(level),
+                                  finest ? nullptr : resolution.counts(view.levels[d + 1])};
       find_divergence(ex, divergence);
     }
     field[static_cast<std::size_t>(d)] = {};

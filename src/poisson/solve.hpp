@@ -21,6 +21,8 @@ struct SolveOptions {
   int iterations = 8;                       ///< Chebyshev iterations on every level finer than the complete ones, >= 1
   bool residuals = false;                   ///< measure the residual of every level before and after
   std::function<void(int)> before_level{};  ///< called on the host with every depth about to be solved; may throw
+  ArrayView<const std::uint8_t> free_unknowns{};  ///< (bricks of all levels) unknowns to solve for, from
+                                                  ///< poisson/boundary.hpp; others stay 0; empty: all
 };
 
 struct LevelSolve {
@@ -36,7 +38,8 @@ struct Solution {
 };
 
 /// Minimises  integral |grad u - V|^2 + w 2^d sum_p a_p (u(p) - 1/2)^2  level by level, d = 0..D: u_d starts as the
-/// interpolation of u_(d-1); corners that are not unknowns of their level keep that value.
+/// interpolation of u_(d-1); corners that are not unknowns of their level keep that value; unknowns that are not free
+/// are 0.
 /// @param b  shape (nodes of all levels), from splat_divergence
 /// O(iterations (27 nodes + 64 occupied cells)); one launch an iteration, no round trips unless residuals are asked
 /// for. Deterministic, the same bits on every device.

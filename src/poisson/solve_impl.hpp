@@ -25,6 +25,17 @@ struct Prolong {
   }
 };
 
+/// Unknowns that are not solved for are 0; other corners keep what was interpolated.
+struct HoldAtZero {
+  const std::uint8_t *unknowns, *free;  // of the level
+  ArrayView<float> u, other;
+  PSK_HD void operator()(std::int64_t brick) const {
+    const int held = unknowns[brick] & ~free[brick];
+    if (held == 0) return;
+    PSK_UNROLL for (int s = 0; s < 8; ++s) if ((held >> s & 1) != 0) u[8 * brick + s] = other[8 * brick + s] = 0;
+  }
+};
+
 /// One Chebyshev iteration:  step = momentum step + gain diagonal^-1 (b - A u);  u = u + step. The last step is the
 /// difference of the last two u: one is read, the other is there, to be written.
 struct ChebyshevStep {
@@ -225,7 +236,9 @@ Solution solve_poisson(Exec& ex, const octree::OctreeView& view, ArrayView<const
   const ArrayView<float> all = solution.u.view();
   for (int d = 0; d <= view.depth; ++d) {
     if (options.before_level) options.before_level(d);
-    const octree::LevelView& level = view.levels[d];
+    octree::LevelView level = view.levels[d];
+    const bool holds = !options.free_unknowns.empty();
+    if (holds) level.unknowns = options.free_unknowns.data + level.first_node / 8;
     LevelSystem system{level, b.data + level.first_node, {}, 0, make_axis_rows_f()};
     if (options.screening > 0) {
       system.screening = screening.view(d);
@@ -241,6 +254,9 @@ Solution solve_poisson(Exec& ex, const octree::OctreeView& view, ArrayView<const
       for_each(ex, "solve.prolong", level.nodes(),
                solve::Prolong{level, above, all.data + above.first_node, u, other.view()});
     }
+    if (holds)
+      for_each(ex, "solve.hold", level.bricks,
+               solve::HoldAtZero{view.levels[d].unknowns, level.unknowns, u, other.view()});
     solution.levels.push_back(solve::solve_level(ex, system, options, u.data, other.data()));
   }
   return solution;

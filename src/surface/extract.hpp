@@ -5,9 +5,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include <pointskin/vector.hpp>
 
+#include "core/array_view.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
 #include "field/field_view.hpp"
@@ -17,6 +19,9 @@ namespace pointskin::surface {
 struct ExtractOptions {
   float curvature = 1;  ///< crossings by the rescaled quadratic with this share of its curvature; 0: linear
   bool normals = true;  ///< vertex normals from the field's gradient
+  /// Called with the vertices on edges, in no order, and the inside ends of their edges, both shape (v) in the space,
+  /// before triangles and centres of loops are made; may move the vertices along their edges towards the inside ends.
+  std::function<void(ArrayView<Vec3f> vertices, ArrayView<const Vec3f> inside_ends)> move_vertices{};
 };
 
 /// A mesh in the space it was made in.

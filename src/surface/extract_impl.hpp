@@ -14,6 +14,7 @@
 #include "surface/case_table.hpp"
 #include "surface/edge_vertex.hpp"
 #include "surface/extract.hpp"
+#include "surface/inside_ends.hpp"
 #include "surface/leaf_cell.hpp"
 #include "surface/mark.hpp"
 
@@ -380,7 +381,15 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   const VertexLookup vertex_on{f.tree, numbering};
   for_each(ex, "extract.list", f.tree.nodes, ListItems{numbering, signs.cview(), mesh});
   signs.reset();
-  for_each(ex, "extract.vertices", low_count(table), EmitVertex{f, options.curvature, mesh});
+  const std::int32_t on_edges = low_count(table);
+  exec::Buffer<Vec3f> inside_ends;
+  if (options.move_vertices) {
+    inside_ends = exec::make_buffer<Vec3f>(ex, on_edges);
+    for_each(ex, "extract.ends", on_edges, InsideEnds{f, keys.cview(), inside_ends.view()});
+  }
+  for_each(ex, "extract.vertices", on_edges, EmitVertex{f, options.curvature, mesh});
+  if (options.move_vertices) options.move_vertices(surface.positions.view().part(0, on_edges), inside_ends.cview());
+  inside_ends.reset();
   for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh});
   for_each_apart(
       ex, "extract.traced", traced.size(),

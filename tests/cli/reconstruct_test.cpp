@@ -352,6 +352,22 @@ TEST_F(ReconstructCommand, RepeatNeedsNoOutputAndReportsFramesPerSecond) {
   EXPECT_LE(ms["median"].get<double>(), ms["max"].get<double>());
 }
 
+TEST_F(ReconstructCommand, TakesTheBoundaryByNameAndByPoissonReconsNumber) {
+  const std::string free = bytes_with({});
+  EXPECT_EQ(bytes_with({"--boundary", "free"}), free);
+  EXPECT_EQ(bytes_with({"--boundary", "neumann"}), free);
+  EXPECT_EQ(bytes_with({"--bType", "1"}), free);
+  EXPECT_EQ(bytes_with({"--bType", "3"}), free);
+  const std::string dirichlet = bytes_with({"--boundary", "dirichlet"});
+  EXPECT_NE(dirichlet, free);
+  EXPECT_EQ(bytes_with({"--bType", "2"}), dirichlet);
+  EXPECT_EQ(report_with({})["options"]["boundary"], "free");
+  EXPECT_EQ(report_with({"--boundary", "dirichlet"})["options"]["boundary"], "dirichlet");
+  for (const Args& wrong :
+       {Args{"--boundary", "robin"}, Args{"--bType", "4"}, Args{"--bType", "2", "--boundary", "free"}})
+    EXPECT_EQ(reconstruct(wrong).exit_code, 2) << wrong[1];
+}
+
 TEST_F(ReconstructCommand, KeepsSurveyCoordinates) {
   std::string text;
   for (const Sample& s : sphere(3000)) {

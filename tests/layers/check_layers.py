@@ -19,6 +19,7 @@ LAYERS = {
     "surface": {"core", "exec", "octree", "field", "surface"},
     "cloud": {"core", "exec", "octree", "field", "cloud"},
     "mesh": {"core", "exec", "mesh"},
+    "envelope": {"core", "exec", "octree", "mesh", "envelope"},
     "io": {"core", "exec", "io"},
     "render": {"core", "exec", "mesh", "render"},
 }

@@ -50,6 +50,10 @@ class Gpu : public testing::Test {
     expect_same_bytes(on_gpu.reconstruct(cloud, options), expected);
     EXPECT_EQ(on_gpu.report().isovalue, on_cpu.report().isovalue);
     EXPECT_EQ(on_gpu.report().nodes, on_cpu.report().nodes);
+    const EnvelopeReport& within = on_gpu.report().envelope;
+    EXPECT_EQ(within.samples_outside, on_cpu.report().envelope.samples_outside);
+    EXPECT_EQ(within.vertices_moved, on_cpu.report().envelope.vertices_moved);
+    EXPECT_EQ(within.farthest_move, on_cpu.report().envelope.farthest_move);
     const TrimReport& trimmed = on_gpu.report().trim;
     EXPECT_EQ(trimmed.density, on_cpu.report().trim.density);
     EXPECT_EQ(trimmed.area_removed, on_cpu.report().trim.area_removed);
@@ -123,12 +127,13 @@ std::vector<Options> options_to_try() {
   all.push_back({.depth = 7, .density = true});
   all.push_back({.depth = 7, .normals = false});
   all.push_back({.depth = 7, .domain_faces = DomainFaces::open});
+  all.push_back({.depth = 7, .boundary = Boundary::dirichlet});
   all.push_back({.depth = 7, .residuals = true});
   all.push_back({.depth = 7, .trim = 0.3});
   all.push_back({.depth = 7, .density = true, .normals = false, .trim = 0.9, .island_ratio = 0});
   return all;
 }
-constexpr int kOptions = 17;
+constexpr int kOptions = 18;
 
 class GpuWithOptions : public Gpu, public testing::WithParamInterface<int> {};
 
@@ -139,6 +144,24 @@ TEST_P(GpuWithOptions, GivesTheSameBytesAsTheCpu) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryOption, GpuWithOptions, testing::Range(0, kOptions));
+
+TEST_P(GpuOnCloud, StaysInsideOfAnEnvelopeWithTheSameBytesAsTheCpu) {
+  const auto [number, depth] = GetParam();
+  const NamedCloud c = cloud_number(number);
+  SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
+  const auto sphere = std::make_shared<const Mesh>(test::icosphere_mesh(4, 0.98));
+  for (const Boundary boundary : {Boundary::free, Boundary::dirichlet}) {
+    const Options options{.depth = depth, .boundary = boundary, .envelope = sphere};
+    const auto cpu_error = test::error_of([&] { (void)test::reconstructed(c.cloud, options); });
+    const auto gpu_error = test::error_of([&] { (void)Reconstructor(gpu_).reconstruct(c.cloud, options); });
+    EXPECT_EQ(gpu_error, cpu_error);
+    if (cpu_error) continue;
+    expect_parity(c.cloud, options);
+    Options trimmed = options;
+    trimmed.trim = 0.2;
+    if (!test::error_of([&] { (void)test::reconstructed(c.cloud, trimmed); })) expect_parity(c.cloud, trimmed);
+  }
+}
 
 TEST_P(GpuOnCloud, TrimsToTheSameBytesAsTheCpu) {
   const auto [number, depth] = GetParam();

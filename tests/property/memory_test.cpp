@@ -5,6 +5,7 @@
 #include <pointskin/reconstruct.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -108,6 +109,15 @@ TEST(MemoryEstimate, FollowsTheOptions) {
   expect_good_estimate(cloud, {.depth = 8, .screening = 0}, "no screening");
   expect_good_estimate(cloud, {.depth = 8, .scale = 3}, "scale");
   expect_good_estimate(cloud, {.depth = 8, .density = true, .normals = false}, "density, no normals");
+}
+
+TEST(MemoryEstimate, CountsHeldCorners) {
+  const Cloud cloud = test::torus_cloud(40'000, 16);
+  const auto envelope = std::make_shared<const Mesh>(test::icosphere_mesh(4, 1.5));
+  for (const int depth : {6, 8}) {
+    expect_good_estimate(cloud, {.depth = depth, .boundary = Boundary::dirichlet}, "Dirichlet");
+    expect_good_estimate(cloud, {.depth = depth, .envelope = envelope}, "envelope");
+  }
 }
 
 TEST(MemoryEstimate, IsWithin15PercentWhenTrimming) {

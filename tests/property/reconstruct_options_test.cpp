@@ -202,16 +202,27 @@ TEST(Options, ProgressRisesThroughAllPhasesAndMayCancelAtEachOfThem) {
   expect_same_bytes(expected, r.reconstruct(cloud, options));
 }
 
+TEST(Options, LevelsThatTheSamplesDoNotResolveHaveNoUnknowns) {
+  Reconstructor r(Device::cpu(2));
+  const Mesh mesh = r.reconstruct(test::sphere_cloud(5'000, 12), {.depth = 9, .residuals = true});
+  EXPECT_GT(r.report().levels[5].unknowns, 0);
+  EXPECT_EQ(r.report().levels[8].unknowns, 0);
+  EXPECT_EQ(r.report().levels[9].unknowns, 0);
+  EXPECT_TRUE(measure(mesh).watertight());
+  // About as many vertices as samples, not the thirty times more that the cells of level 9 would give.
+  EXPECT_LT(mesh.vertices.size(), 20'000U);
+}
+
 TEST(Options, ResidualsAreMeasuredWhenAskedFor) {
   Reconstructor r(Device::cpu(2));
-  (void)r.reconstruct(test::sphere_cloud(5'000, 12), {.depth = 7, .residuals = true});
+  (void)r.reconstruct(test::sphere_cloud(40'000, 12), {.depth = 7, .residuals = true});
   ASSERT_EQ(r.report().levels.size(), 8U);
   for (const LevelReport& level : r.report().levels) {
     EXPECT_GT(level.unknowns, 0);
     EXPECT_GT(level.residual_before, 0) << level.depth;
     EXPECT_LT(level.residual_after, level.residual_before) << level.depth;
   }
-  EXPECT_EQ(r.report().points, 5'000);
+  EXPECT_EQ(r.report().points, 40'000);
   EXPECT_EQ(r.report().depth, 7);
   EXPECT_GT(r.report().device_peak_bytes, 0);
   EXPECT_NEAR(r.report().isovalue, 0.5, 0.05);

@@ -135,18 +135,26 @@ TEST(DivergenceOfBricks, HasTheSameBitsInLanes) {
       const auto nodes = static_cast<std::size_t>(level.nodes());
       std::vector<float> v(3 * nodes);
       for (float& value : v) value = static_cast<float>(random.in(-1, 1));
+      std::vector<std::uint8_t> counts(static_cast<std::size_t>(level.bricks));
+      std::vector<std::uint8_t> finer_counts(static_cast<std::size_t>(d == depth ? 0 : tree.view.levels[d + 1].bricks));
+      for (std::uint8_t& c : counts) c = random.below(3) == 0 ? 0 : 1;
+      for (std::uint8_t& c : finer_counts) c = random.below(2) == 0 ? 0 : 1;
       const auto axis = [&](std::size_t a) { return ArrayView<float>{v.data() + a * nodes, level.nodes()}; };
-      const auto into = [&](std::vector<float>& b) {
+      const auto into = [&](std::vector<float>& b, bool all_count) {
         return divergence::Divergence{level,
                                       d == depth ? 0 : tree.view.levels[d + 1].cell_bricks,
                                       {{axis(0), axis(1), axis(2)}},
                                       divergence::make_coefficients(),
-                                      {b.data(), level.nodes()}};
+                                      {b.data(), level.nodes()},
+                                      all_count ? nullptr : counts.data(),
+                                      all_count || d == depth ? nullptr : finer_counts.data()};
       };
-      std::vector<float> plain(nodes, 1), wide(nodes, 2);
-      exec::run_range_plain(divergence::DivergenceOfBricks{into(plain)}, 0, level.bricks);
-      exec::run_range(divergence::DivergenceOfBricks{into(wide)}, 0, level.bricks);
-      for (std::size_t n = 0; n < nodes; ++n) ASSERT_EQ(bits_of(wide[n]), bits_of(plain[n])) << "node " << n;
+      for (const bool all_count : {true, false}) {
+        std::vector<float> plain(nodes, 1), wide(nodes, 2);
+        exec::run_range_plain(divergence::DivergenceOfBricks{into(plain, all_count)}, 0, level.bricks);
+        exec::run_range(divergence::DivergenceOfBricks{into(wide, all_count)}, 0, level.bricks);
+        for (std::size_t n = 0; n < nodes; ++n) ASSERT_EQ(bits_of(wide[n]), bits_of(plain[n])) << "node " << n;
+      }
     }
   }
 }

@@ -14,6 +14,7 @@
 #include "exec/cpu_primitives.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
+#include "poisson/resolution.hpp"
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
 #include "unit/poisson/reference_system.hpp"
@@ -29,11 +30,12 @@ struct Problem {
   explicit Problem(int depth, std::int64_t points = 1500) : tree(test::sphere_tree(points, 0.3, depth)) {
     const poisson::Density density = poisson::splat_density(tree.ex, tree.tree, tree.samples.positions.cview());
     poisson::weigh_samples(tree.ex, tree.tree, density, {1.5, false}, tree.samples);
-    b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view());
+    poisson::find_resolution(tree.ex, tree.tree, tree.samples);  // for the splat depths: all cells count here
+    b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view(), {});
     screening = poisson::collapse_samples(tree.ex, tree.tree, tree.samples.view());
   }
   poisson::Solution solve(const poisson::SolveOptions& options) {
-    return poisson::solve_poisson(tree.ex, tree.tree, b.cview(), screening, options);
+    return poisson::solve_poisson(tree.ex, tree.view, b.cview(), screening, options);
   }
 
   SmallTree tree;
@@ -85,14 +87,15 @@ TEST(Solve, EqualsTheDirectGalerkinSolutionOfAdaptiveLevelsWithoutScreening) {
 }
 
 TEST(Solve, SolvesTheCompleteLevelsWhateverTheNumberOfIterations) {
-  Problem problem(6);
+  Problem problem(6, 6000);
   const poisson::Solution solution = problem.solve({4, 1, false});
-  for (int d = 2; d <= octree::kCompleteDepth; ++d) {  // 8 and 27 unknowns above are only starting values
+  // A cloud that is dense on all levels, whose screening is the hardest. Levels above the last are starting values.
+  for (int d = 2; d <= octree::kCompleteDepth; ++d) {
     const octree::LevelView& level = problem.tree.view.levels[d];
     const auto system = test::assemble(level, problem.screening.view(d), std::ldexp(4.0, 2 * (d - 6)));
     const Eigen::VectorXd u = level_values(level, solution.u.data());
     const Eigen::VectorXd direct = test::solve_directly(system, level_values(level, problem.b.data()), u);
-    EXPECT_LT(difference(system, u, direct), 0.02) << "level " << d;
+    EXPECT_LT(difference(system, u, direct), d < octree::kCompleteDepth ? 0.04 : 0.01) << "level " << d;
   }
 }
 
@@ -241,7 +244,7 @@ TEST(Solve, ConvergesToAKnownSolutionAtSecondOrder) {
   ASSERT_EQ(tree.view.finest().cells(), 32 * 32 * 32);
   auto b = exec::make_buffer<float>(tree.ex, tree.view.nodes);
   for (int d = 0; d <= 5; ++d) assemble_right_side(tree.view.levels[d], b.data() + tree.view.levels[d].first_node);
-  const poisson::Solution solution = poisson::solve_poisson(tree.ex, tree.tree, b.cview(), {}, {0, 300, false});
+  const poisson::Solution solution = poisson::solve_poisson(tree.ex, tree.view, b.cview(), {}, {0, 300, false});
   std::vector<double> errors;
   for (int d = 2; d <= 5; ++d)
     errors.push_back(known_solution_error(tree.view.levels[d], solution.u.data() + tree.view.levels[d].first_node));

@@ -98,7 +98,7 @@ TEST(Divergence, HasTheSamplesNormalsAsItsFirstMomentsOnCompleteLevels) {
       SmallTree tree = random_samples(3, depth, 0.4, 0.6);
       test::Random random(5);
       tree.weigh_randomly(random, coarsest);
-      const exec::Buffer<float> b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view());
+      const exec::Buffer<float> b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view(), {});
       double total[3] = {0, 0, 0};
       for (std::int64_t i = 0; i < tree.samples.areas.size(); ++i) {
         const Vec3f& n = tree.samples.normals.data()[i];
@@ -123,7 +123,7 @@ TEST(Divergence, SumsToZeroOverEveryLevelForSamplesUpToTheCubesFaces) {
       SmallTree tree = random_samples(4, depth, 0, 0.9999999);
       test::Random random(6);
       tree.weigh_randomly(random, adaptive ? std::min(depth, 2) : depth);
-      const exec::Buffer<float> b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view());
+      const exec::Buffer<float> b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view(), {});
       for (int d = 0; d <= depth; ++d) {
         const Moments m = moments(tree.view.levels[d], b.data());
         EXPECT_NEAR(m.zeroth, 0, 1e-5 * m.magnitude + 1e-6)
@@ -136,7 +136,7 @@ TEST(Divergence, IsTheRestrictionOfTheFinerLevelsWhenAllSamplesAreSplattedAtTheF
   SmallTree tree = random_samples(5, 7, 0.1, 0.9);
   test::Random random(7);
   tree.weigh_randomly(random, 7);
-  const exec::Buffer<float> b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view());
+  const exec::Buffer<float> b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view(), {});
   for (int d = 0; d < 7; ++d) {  // sum_i b_i phi_i(x) at coarse corners against fine ones, by scattering
     const octree::LevelView& level = tree.view.levels[d];
     const octree::LevelView& below = tree.view.levels[d + 1];
@@ -159,16 +159,18 @@ TEST(Divergence, IsTheRestrictionOfTheFinerLevelsWhenAllSamplesAreSplattedAtTheF
   }
 }
 
-/// Weight and weighted mean position in the cell of the samples of a cell; a sample sparser than the cells of level d
-/// weighs what it weighed at its splat depth (screening.hpp).
+/// Weight and weighted mean position in the cell of the samples of a cell; a sample that is sparse for level d weighs
+/// less, by the square of its share.
 poisson::CollapsedSample collapsed_by_hand(const SmallTree& tree, int d, std::int64_t cell) {
   const octree::LevelView& level = tree.view.levels[d];
   const octree::Coordinates c = test::corner_at(level, cell);
   double weight = 0;
   double mean[3] = {0, 0, 0};
   for (std::int32_t i = level.point_begin[cell]; i < level.point_begin[cell + 1]; ++i) {
-    const int sparser = std::max(0, d - static_cast<int>(tree.samples.splat_depths.data()[i]));
-    const double area = std::ldexp(static_cast<double>(tree.samples.areas.data()[i]), -2 * sparser);
+    const auto depth = static_cast<double>(tree.samples.splat_depths.data()[i]);
+    const double finer = std::ceil(depth);
+    const double share = d < finer ? 1 : (0.25 + 0.75 * (depth - finer + 1)) * std::pow(4.0, finer - d);
+    const double area = static_cast<double>(tree.samples.areas.data()[i]) * share * share;
     const Vec3f& p = tree.samples.positions.data()[i];
     weight += area;
     mean[0] += area * (std::ldexp(p.x, d) - c.x);

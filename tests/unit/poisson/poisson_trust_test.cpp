@@ -42,7 +42,8 @@ struct Vector {
 };
 
 /// By definition: pairs of neighbours in order that lie in the same cell of `level`.
-double expected_trust(const test::SmallTree& tree, std::int64_t sample, int depth, int level) {
+/// @param finer  by how much the sample's splat depth is above `depth`
+double expected_trust(const test::SmallTree& tree, std::int64_t sample, int depth, int level, double finer) {
   const auto cell_of = [&](std::int64_t i) {
     const Vec3f& p = tree.samples.positions.data()[i];
     return octree::point_key(p.x, p.y, p.z) >> 3 * (octree::kPointBits - level);
@@ -61,7 +62,7 @@ double expected_trust(const test::SmallTree& tree, std::int64_t sample, int dept
     pairs += 1;
   }
   const double prior = poisson::kTrustScale - poisson::kCleanVariance;
-  const double variance = (sum / 2 + poisson::kPriorPairs * prior) / (pairs + poisson::kPriorPairs);
+  const double variance = ((1 + 3 * finer) * sum / 2 + poisson::kPriorPairs * prior) / (pairs + poisson::kPriorPairs);
   return std::max<double>(poisson::kSmallestTrust, poisson::kTrustScale / (poisson::kCleanVariance + variance));
 }
 
@@ -71,12 +72,13 @@ TEST(Trust, IsThatOfThePairsInTheCellTwoLevelsAboveTheSplatDepth) {
     test::Random random(32);
     tree.weigh(1, kDepth);
     for (std::int64_t i = 0; i < tree.samples.splat_depths.size(); ++i)
-      tree.samples.splat_depths.data()[i] = static_cast<std::uint8_t>(kDepth - random.below(5));
+      tree.samples.splat_depths.data()[i] = static_cast<float>(random.in(kDepth - 4, kDepth));
     tree.samples.coarsest_splat_depth = kDepth - 4;
     poisson::weigh_trust(tree.ex, tree.tree, tree.samples);
     for (std::int64_t i = 0; i < tree.samples.positions.size(); i += 97) {
-      const int depth = std::max<int>(tree.samples.splat_depths.data()[i], kDepth - 2);
-      const double expected = expected_trust(tree, i, depth, depth - 2);
+      const auto splat_depth = static_cast<double>(tree.samples.splat_depths.data()[i]);
+      const int depth = std::max<int>(static_cast<int>(splat_depth), kDepth - 2);
+      const double expected = expected_trust(tree, i, depth, depth - 2, std::max(0.0, splat_depth - depth));
       ASSERT_NEAR(tree.samples.trust.data()[i], expected, 2e-3 * expected) << "noise " << noise << " sample " << i;
     }
   }

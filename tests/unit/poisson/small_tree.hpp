@@ -37,25 +37,27 @@ struct SmallTree {
   }
 
   /// Gives every sample the same area (finest cells^2) and splat depth.
-  void weigh(float area, int splat_depth) {
+  void weigh(float area, float splat_depth) {
     const std::int64_t n = samples.positions.size();
     samples.areas = exec::make_buffer<float>(ex, n);
-    samples.splat_depths = exec::make_buffer<std::uint8_t>(ex, n);
+    samples.splat_depths = exec::make_buffer<float>(ex, n);
     for (std::int64_t i = 0; i < n; ++i) {
       samples.areas.data()[i] = area;
-      samples.splat_depths.data()[i] = static_cast<std::uint8_t>(splat_depth);
+      samples.splat_depths.data()[i] = splat_depth;
     }
-    samples.coarsest_splat_depth = splat_depth;
+    samples.coarsest_splat_depth = static_cast<int>(splat_depth);
   }
 
-  /// Gives samples areas between 0.5 and 1.5 and splat depths between `coarsest` and the tree's depth; at least one has
-  /// the coarsest.
+  /// Gives samples areas between 0.5 and 1.5 and splat depths between `coarsest` and the tree's depth, half of them
+  /// whole; at least one has the coarsest.
   void weigh_randomly(Random& random, int coarsest) {
-    weigh(1, coarsest);
+    weigh(1, static_cast<float>(coarsest));
     for (std::int64_t i = 0; i < samples.areas.size(); ++i) {
       samples.areas.data()[i] = static_cast<float>(random.in(0.5, 1.5));
-      if (i > 0)
-        samples.splat_depths.data()[i] = static_cast<std::uint8_t>(coarsest + random.below(view.depth - coarsest + 1));
+      if (i == 0 || coarsest == view.depth) continue;
+      const bool whole = random.below(2) == 0;
+      samples.splat_depths.data()[i] = static_cast<float>(
+          whole ? coarsest + random.below(view.depth - coarsest + 1) : random.in(coarsest, view.depth));
     }
   }
 

@@ -1,0 +1,214 @@
+// Dirichlet conditions: what is held is 0, and the rest is solved as a direct solver would.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "exec/algorithms.hpp"
+#include "exec/cpu_primitives.hpp"
+#include "poisson/boundary.hpp"
+#include "poisson/density.hpp"
+#include "poisson/divergence.hpp"
+#include "poisson/resolution.hpp"
+#include "poisson/screening.hpp"
+#include "poisson/solve.hpp"
+#include "unit/poisson/reference_system.hpp"
+#include "unit/poisson/small_tree.hpp"
+
+namespace pointskin {
+namespace {
+
+using test::SmallTree;
+
+/// Samples of a surface, ready to be solved.
+struct Problem {
+  template <class MakeTree>
+  explicit Problem(const MakeTree& make_tree) : tree(make_tree()) {
+    const poisson::Density density = poisson::splat_density(tree.ex, tree.tree, tree.samples.positions.cview());
+    poisson::weigh_samples(tree.ex, tree.tree, density, {1.5, false}, tree.samples);
+    poisson::find_resolution(tree.ex, tree.tree, tree.samples);  // for the splat depths: all cells count here
+    b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view(), {});
+    screening = poisson::collapse_samples(tree.ex, tree.tree, tree.samples.view());
+  }
+  poisson::Solution solve(poisson::SolveOptions options, const exec::Buffer<std::uint8_t>& free) {
+    options.free_unknowns = free.cview();
+    return poisson::solve_poisson(tree.ex, tree.view, b.cview(), screening, options);
+  }
+
+  SmallTree tree;
+  exec::Buffer<float> b;
+  poisson::Screening screening;
+};
+
+bool on_face(const octree::LevelView& level, const octree::Coordinates& c) {
+  const std::int32_t last = 1 << level.depth;
+  return c.x == 0 || c.y == 0 || c.z == 0 || c.x == last || c.y == last || c.z == last;
+}
+
+/// A plane of samples through the whole cube: free, its surface would run into the faces.
+std::vector<Vec3f> plane_points(std::int64_t n, std::uint64_t seed) {
+  test::Random random(seed);
+  std::vector<Vec3f> points;
+  for (std::int64_t i = 0; i < n; ++i)
+    points.push_back({static_cast<float>(random.unit()), static_cast<float>(random.unit()), 0.45F});
+  return points;
+}
+SmallTree plane_tree(int depth) {
+  const std::vector<Vec3f> points = plane_points(3000, 3);
+  return {points, std::vector<Vec3f>(points.size(), Vec3f{0, 0, 1}), depth};
+}
+
+TEST(Boundary, LeavesTheUnknownsOfTheFacesOutAndNoOthers) {
+  SmallTree tree = plane_tree(6);
+  const auto all = poisson::free_unknowns(tree.ex, tree.view, false);
+  const auto inner = poisson::free_unknowns(tree.ex, tree.view, true);
+  ASSERT_EQ(inner.size(), tree.view.nodes / 8);
+  std::int64_t held = 0;
+  for (int d = 0; d <= 6; ++d) {
+    const octree::LevelView& level = tree.view.levels[d];
+    for (std::int64_t n = 0; n < level.nodes(); ++n) {
+      const bool unknown = (level.unknowns[n >> 3] >> (n & 7) & 1) != 0;
+      const std::int64_t brick = (level.first_node + n) / 8;
+      ASSERT_EQ((all.data()[brick] >> (n & 7) & 1) != 0, unknown);
+      ASSERT_EQ((inner.data()[brick] >> (n & 7) & 1) != 0, unknown && !on_face(level, test::corner_at(level, n)));
+      if (unknown && on_face(level, test::corner_at(level, n))) ++held;
+    }
+  }
+  EXPECT_GT(held, 8 + 26 + 98);  // all corners of levels 0 to 2 but 1 + 27
+}
+
+TEST(Boundary, IsExactlyZeroOnTheFacesOfEveryLevel) {
+  Problem problem([] { return plane_tree(7); });
+  const auto free = poisson::free_unknowns(problem.tree.ex, problem.tree.view, true);
+  const poisson::Solution solution = problem.solve({2, 7, false}, free);
+  double largest = 0;
+  for (int d = 0; d <= 7; ++d) {
+    const octree::LevelView& level = problem.tree.view.levels[d];
+    for (std::int64_t n = 0; n < level.nodes(); ++n) {
+      const octree::Coordinates c = test::corner_at(level, n);
+      if (!test::in_cube(level, c)) continue;
+      const float u = solution.u.data()[level.first_node + n];
+      if (on_face(level, c)) {
+        ASSERT_EQ(u, 0) << "level " << d;
+      }
+      if (d == 7) largest = std::max(largest, static_cast<double>(u));
+    }
+  }
+  EXPECT_GT(largest, 0.5);
+}
+
+TEST(Boundary, EqualsTheDirectSolutionOfEveryLevelWithZeroOnTheFaces) {
+  Problem problem([] { return plane_tree(5); });
+  const auto free = poisson::free_unknowns(problem.tree.ex, problem.tree.view, true);
+  const double w = 4;
+  const poisson::Solution solution = problem.solve({w, 1000, true}, free);
+  for (int d = 0; d <= 5; ++d) {
+    octree::LevelView level = problem.tree.view.levels[d];
+    level.unknowns = free.data() + level.first_node / 8;  // of the reference, too
+    const auto system = test::assemble(level, problem.screening.view(d), std::ldexp(w, 2 * (d - 5)));
+    const auto nodes = static_cast<Eigen::Index>(level.nodes());
+    Eigen::VectorXd u(nodes), b(nodes);
+    for (Eigen::Index n = 0; n < nodes; ++n) {
+      u[n] = static_cast<double>(solution.u.data()[level.first_node + n]);
+      b[n] = static_cast<double>(problem.b.data()[level.first_node + n]);
+    }
+    EXPECT_EQ(solution.levels[static_cast<std::size_t>(d)].unknowns, static_cast<std::int64_t>(system.unknowns.size()));
+    if (system.unknowns.empty()) continue;  // level 0
+    const Eigen::VectorXd direct = test::solve_directly(system, b, u);
+    double worst = 0;
+    for (const std::int64_t n : system.unknowns) worst = std::max(worst, std::abs(u[n] - direct[n]));
+    EXPECT_LT(worst, 1e-3) << "level " << d;
+  }
+}
+
+TEST(Boundary, HeldCornersInsideOfTheCubeStayZeroAndOthersKeepWhatWasInterpolated) {
+  Problem problem([] { return test::sphere_tree(2000, 0.3, 6); });
+  auto free = poisson::free_unknowns(problem.tree.ex, problem.tree.view, false);
+  test::Random random(5);
+  for (std::int64_t b = 0; b < free.size(); ++b) free.data()[b] &= static_cast<std::uint8_t>(random.below(256));
+  const poisson::Solution solution = problem.solve({2, 8, false}, free);
+  int held = 0, kept = 0;
+  for (int d = 1; d <= 6; ++d) {
+    const octree::LevelView& level = problem.tree.view.levels[d];
+    const octree::LevelView& above = problem.tree.view.levels[d - 1];
+    const float* u = solution.u.data();
+    for (std::int64_t n = 0; n < level.nodes(); ++n) {
+      if (!test::in_cube(level, test::corner_at(level, n))) continue;
+      if (test::is_unknown(level, n)) {
+        if ((free.data()[(level.first_node + n) / 8] >> (n & 7) & 1) != 0) continue;
+        ++held;
+        ASSERT_EQ(u[level.first_node + n], 0);
+      } else {
+        ++kept;
+        ASSERT_EQ(u[level.first_node + n],
+                  octree::prolonged(above, u + above.first_node, level.parent[n >> 3], static_cast<int>(n & 7)));
+      }
+    }
+  }
+  EXPECT_GT(held, 1000);
+  EXPECT_GT(kept, 1000);
+}
+
+// u = sin(pi x) sin(pi y) sin(pi z) is 0 on the faces, -laplace u = 3 pi^2 u.
+double known(double x, double y, double z) {
+  using std::numbers::pi;
+  return std::sin(pi * x) * std::sin(pi * y) * std::sin(pi * z);
+}
+
+/// integral 3 pi^2 u phi_i / h over the cells of a complete level, by three Gauss points an axis.
+void assemble_right_side(const octree::LevelView& level, float* b) {
+  const double h = 1.0 / static_cast<double>(1 << level.depth);
+  const double points[3] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
+  const double weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  std::vector<double> sum(static_cast<std::size_t>(level.nodes()), 0.0);
+  for (std::int64_t cell = 0; cell < level.cells(); ++cell) {
+    const octree::Coordinates c = test::corner_at(level, cell);
+    for (int q = 0; q < 27; ++q) {
+      const Vec3f local{static_cast<float>(points[q / 9]), static_cast<float>(points[q / 3 % 3]),
+                        static_cast<float>(points[q % 3])};
+      const double f = 3 * std::numbers::pi * std::numbers::pi * weights[q / 9] * weights[q / 3 % 3] * weights[q % 3] *
+                       known((c.x + local.x) * h, (c.y + local.y) * h, (c.z + local.z) * h) * h * h;
+      for (int s = 0; s < 8; ++s)
+        sum[static_cast<std::size_t>(test::corner_of(level, cell, s))] +=
+            f * static_cast<double>(octree::corner_weight(s, local));
+    }
+  }
+  for (std::size_t n = 0; n < sum.size(); ++n) b[n] = static_cast<float>(sum[n]);
+}
+
+TEST(Boundary, ConvergesToAKnownSolutionAtSecondOrder) {
+  std::vector<Vec3f> centres;  // a point in every cell of depth 5 makes that level complete
+  for (int i = 0; i < 32 * 32 * 32; ++i)
+    centres.push_back({(static_cast<float>(i / 1024) + 0.5F) / 32, (static_cast<float>(i / 32 % 32) + 0.5F) / 32,
+                       (static_cast<float>(i % 32) + 0.5F) / 32});
+  SmallTree tree(centres, {}, 5);
+  auto b = exec::make_buffer<float>(tree.ex, tree.view.nodes);
+  for (int d = 0; d <= 5; ++d) assemble_right_side(tree.view.levels[d], b.data() + tree.view.levels[d].first_node);
+  const auto free = poisson::free_unknowns(tree.ex, tree.view, true);
+  const poisson::Solution solution =
+      poisson::solve_poisson(tree.ex, tree.view, b.cview(), {}, {0, 300, false, {}, free.cview()});
+  std::vector<double> errors;
+  for (int d = 2; d <= 5; ++d) {
+    const octree::LevelView& level = tree.view.levels[d];
+    const double h = 1.0 / static_cast<double>(1 << d);
+    double worst = 0;
+    for (std::int64_t n = 0; n < level.nodes(); ++n) {
+      const octree::Coordinates c = test::corner_at(level, n);
+      if (test::in_cube(level, c))
+        worst = std::max(worst, std::abs(static_cast<double>(solution.u.data()[level.first_node + n]) -
+                                         known(c.x * h, c.y * h, c.z * h)));
+    }
+    errors.push_back(worst);
+  }
+  for (std::size_t i = 1; i < errors.size(); ++i)
+    EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 2, 0.15) << "from level " << i + 1 << " to " << i + 2;
+  EXPECT_LT(errors.back(), 0.005);
+}
+
+}  // namespace
+}  // namespace pointskin

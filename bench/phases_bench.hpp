@@ -84,11 +84,14 @@ struct Pipeline {
   }
 
   poisson::Solution solve(Exec& ex) const {
-    return poisson::solve_poisson(ex, resolution.view(tree), divergence.cview(), screening, {options.screening, options.iterations});
+    return poisson::solve_poisson(ex, resolution.view(tree), divergence.cview(), screening,
+                                  {options.screening, options.iterations});
   }
   surface::Surface extract(Exec& ex) const {
-    return surface::extract_surface(
-        ex, field::FieldView{resolution.view(tree), solution.u.data(), static_cast<float>(isovalue), true, resolution.bricks.data()}, {});
+    return surface::extract_surface(ex,
+                                    field::FieldView{resolution.view(tree), solution.u.data(),
+                                                     static_cast<float>(isovalue), true, resolution.bricks.data()},
+                                    {});
   }
 };
 

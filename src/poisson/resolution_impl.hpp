@@ -28,16 +28,21 @@ struct SumDepths {
 
 /// Gives the samples of a brick the mean over the 27 bricks around it, cut to what can be splatted.
 struct EvenOut {
+  static constexpr std::uint32_t kSparse = 1U << 31;
+
   octree::LevelView level;
   ArrayView<const std::int64_t> sums;
   int finest;
   ArrayView<float> splat_depths;
+  ArrayView<std::uint32_t> levels;  // bit d: normals are splatted at level d; kSparse: the finest is not resolved
 
   PSK_HD void operator()(std::int64_t brick) const {
     const std::int32_t first = level.point_begin[8 * brick];
     const std::int32_t end = level.point_begin[8 * brick + 8];
+    levels[brick] = 0;
     if (first == end) return;
     const float depth = splattable(mean_around(brick));
+    levels[brick] = 1U << static_cast<int>(depth) | 1U << finer_level(depth) | (resolves(depth, finest) ? 0 : kSparse);
     for (std::int32_t i = first; i < end; ++i) splat_depths[i] = depth;
   }
 
@@ -61,18 +66,6 @@ struct EvenOut {
   }
 };
 
-/// Bit d: the normal is splatted at level d; kSparse: the sample does not resolve the finest one.
-struct SplatLevels {
-  static constexpr std::uint32_t kSparse = 1U << 31;
-
-  ArrayView<const float> splat_depths;
-  int finest;
-  PSK_HD std::uint32_t operator()(std::int64_t i) const {
-    const float depth = splat_depths[i];
-    const std::uint32_t levels = 1U << static_cast<int>(depth) | 1U << finer_level(depth);
-    return resolves(depth, finest) ? levels : levels | kSparse;
-  }
-};
 struct Union {
   PSK_HD std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const { return a | b; }
 };
@@ -153,15 +146,17 @@ Resolution find_resolution(Exec& ex, const octree::OctreeData& tree, Samples& sa
   const octree::LevelView& pooled = view.levels[std::max(0, view.depth - 1)];
   auto sums = exec::make_buffer<std::int64_t>(ex, pooled.cell_bricks);
   for_each(ex, kLabel, sums.size(), SumDepths{pooled, samples.splat_depths.cview(), sums.view()});
-  for_each(ex, kLabel, sums.size(), EvenOut{pooled, sums.cview(), view.depth, samples.splat_depths.view()});
-  sums.reset();
-
-  const auto levels = exec::reduce<std::uint32_t>(ex, kLabel, samples.splat_depths.size(),
-                                                  SplatLevels{samples.splat_depths.cview(), view.depth}, Union{});
-  samples.splat_depth_set = levels & ~SplatLevels::kSparse;
+  auto levels = exec::make_buffer<std::uint32_t>(ex, sums.size());
+  for_each(ex, kLabel, sums.size(),
+           EvenOut{pooled, sums.cview(), view.depth, samples.splat_depths.view(), levels.view()});
+  const auto found =
+      exec::reduce<std::uint32_t>(ex, kLabel, levels.size(), exec::LoadValue<std::uint32_t>{levels.cview()}, Union{});
+  samples.splat_depth_set = found & ~EvenOut::kSparse;
   samples.coarsest_splat_depth = std::countr_zero(samples.splat_depth_set);
+  sums.reset();
+  levels.reset();
   Resolution result;
-  if ((levels & SplatLevels::kSparse) == 0) return result;
+  if ((found & EvenOut::kSparse) == 0) return result;
 
   const std::int64_t bricks = view.nodes / 8;
   auto own = exec::make_buffer<std::uint8_t>(ex, bricks);

@@ -1,5 +1,6 @@
 #include "exec/cuda_primitives.cuh"
 #include "poisson/trust_impl.hpp"
+#include "poisson/trust_kernel.cuh"
 
 namespace pointskin::poisson {
 

@@ -56,8 +56,8 @@ struct SmallTree {
       samples.areas.data()[i] = static_cast<float>(random.in(0.5, 1.5));
       if (i == 0 || coarsest == view.depth) continue;
       const bool whole = random.below(2) == 0;
-      samples.splat_depths.data()[i] = static_cast<float>(
-          whole ? coarsest + random.below(view.depth - coarsest + 1) : random.in(coarsest, view.depth));
+      samples.splat_depths.data()[i] = static_cast<float>(whole ? coarsest + random.below(view.depth - coarsest + 1)
+                                                                : random.in(coarsest, view.depth));
     }
   }
 

@@ -1,0 +1,44 @@
+// Trust on a GPU, eight lanes a cell, with the bits of TrustInCell.
+#pragma once
+
+#include <cstdint>
+
+#include "exec/cuda_primitives.cuh"
+#include "poisson/trust_impl.hpp"
+
+namespace pointskin::poisson::trust {
+
+using exec::kWarp;
+inline constexpr int kCellsPerWarp = kWarp / kLanes;
+
+/// A warp's work on kCellsPerWarp cells.
+struct TrustByLanes {
+  TrustInCells cells;
+
+  struct Shared {};
+
+  __device__ void operator()(std::int64_t item, int lane, Shared&) const {
+    const std::int64_t cell = kCellsPerWarp * item + lane / kLanes;
+    const bool exists = cell < cells.level.cells();
+    const std::int32_t first = exists ? cells.level.point_begin[cell] : 0;
+    const std::int32_t end = exists ? cells.level.point_begin[cell + 1] : 0;
+    const int own = lane % kLanes;
+    Scatter scatter;
+    bool any = false;
+    for (std::int32_t i = first + own; i < end; i += kLanes) {
+      any = any || cells.is_meant(i);
+      if (i + 1 < end) scatter.add(cells.scatter_of(i));
+    }
+    if (__ballot_sync(~0U, any) == 0) return;
+    for (int step = kLanes / 2; step > 0; step /= 2)
+      scatter.add({__shfl_xor_sync(~0U, scatter.sum, step), __shfl_xor_sync(~0U, scatter.pairs, step)});
+    for (std::int32_t i = first + own; i < end; i += kLanes)
+      if (cells.is_meant(i)) cells.trust[i] = cells.trust_in(i, scatter);
+  }
+};
+
+inline void find_trust(exec::Cuda& ex, const TrustInCells& cells) {
+  for_each_warp(ex, "screening.trust", (cells.level.cells() + kCellsPerWarp - 1) / kCellsPerWarp, TrustByLanes{cells});
+}
+
+}  // namespace pointskin::poisson::trust

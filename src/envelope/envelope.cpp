@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,7 +88,24 @@ std::vector<Part> run_parts(exec::Cpu& ex, std::int64_t n, const Run& run) {
   return parts;
 }
 
-Moved sum_of(const std::vector<Moved>& parts) {
+/// Moves the vertices outside to where move_to(i, position, walk) wants them, if anywhere.
+template <class MoveTo>
+Moved move_outside(exec::Cpu& ex, const SignedDistance& distance, const octree::Frame& frame, ArrayView<Vec3f> vertices,
+                   const MoveTo& move_to) {
+  const auto parts = run_parts<Moved>(ex, vertices.size, [&](std::int64_t begin, std::int64_t end) {
+    Walk walk(distance);
+    Moved moved;
+    for (std::int64_t i = begin; i < end; ++i) {
+      const Vec3d p = to_world(frame, vertices[i]);
+      if (walk.is_inside(p, -kTolerance * frame.size)) continue;
+      const std::optional<Vec3d> to = move_to(i, p, walk);
+      if (!to) continue;
+      vertices[i] = to_unit(frame, *to);
+      ++moved.vertices;
+      moved.farthest = std::max(moved.farthest, length(minus(*to, p)));
+    }
+    return moved;
+  });
   Moved all;
   for (const Moved& part : parts) {
     all.vertices += part.vertices;
@@ -162,41 +180,21 @@ void Envelope::hold_outside(const octree::Frame& frame, const octree::LevelView&
 }
 
 Moved Envelope::clip(const octree::Frame& frame, ArrayView<Vec3f> vertices, ArrayView<const Vec3f> inside_ends) const {
-  const double tolerance = kTolerance * frame.size;
-  return sum_of(run_parts<Moved>(*ex_, vertices.size, [&](std::int64_t begin, std::int64_t end) {
-    Walk walk(*distance_);
-    Moved moved;
-    for (std::int64_t i = begin; i < end; ++i) {
-      const Vec3d p = to_world(frame, vertices[i]);
-      if (walk.is_inside(p, -tolerance)) continue;
-      const SurfacePlace outside = distance_->at(p);
-      const Vec3d end_point = to_world(frame, inside_ends[i]);
-      const SurfacePlace inside = distance_->at(end_point, outside.slot);
-      if (!(inside.distance > 0)) continue;
-      const Vec3d to = crossing(*distance_, end_point, inside, p, outside, tolerance / 4);
-      vertices[i] = to_unit(frame, to);
-      ++moved.vertices;
-      moved.farthest = std::max(moved.farthest, length(minus(to, p)));
-    }
-    return moved;
-  }));
+  const auto along_edge = [&](std::int64_t i, const Vec3d& p, Walk&) -> std::optional<Vec3d> {
+    const SurfacePlace outside = distance_->at(p);
+    const Vec3d end = to_world(frame, inside_ends[i]);
+    const SurfacePlace inside = distance_->at(end, outside.slot);
+    if (!(inside.distance > 0)) return std::nullopt;
+    return crossing(*distance_, end, inside, p, outside, kTolerance * frame.size / 4);
+  };
+  return move_outside(*ex_, *distance_, frame, vertices, along_edge);
 }
 
 Moved Envelope::project(const octree::Frame& frame, ArrayView<Vec3f> vertices) const {
-  const double tolerance = kTolerance * frame.size;
-  return sum_of(run_parts<Moved>(*ex_, vertices.size, [&](std::int64_t begin, std::int64_t end) {
-    Walk walk(*distance_);
-    Moved moved;
-    for (std::int64_t i = begin; i < end; ++i) {
-      const Vec3d p = to_world(frame, vertices[i]);
-      if (walk.is_inside(p, -tolerance)) continue;
-      const Vec3d to = walk.measured(p).position;
-      vertices[i] = to_unit(frame, to);
-      ++moved.vertices;
-      moved.farthest = std::max(moved.farthest, length(minus(to, p)));
-    }
-    return moved;
-  }));
+  const auto to_nearest = [](std::int64_t, const Vec3d& p, Walk& walk) -> std::optional<Vec3d> {
+    return walk.measured(p).position;
+  };
+  return move_outside(*ex_, *distance_, frame, vertices, to_nearest);
 }
 
 }  // namespace pointskin::envelope

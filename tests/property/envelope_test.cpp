@@ -26,20 +26,10 @@ namespace {
 
 using test::error_of;
 using test::expect_same_bytes;
+using test::Outcome;
+using test::run;
 
 std::shared_ptr<const Mesh> shared(Mesh mesh) { return std::make_shared<const Mesh>(std::move(mesh)); }
-
-struct Outcome {
-  Mesh mesh;
-  RunReport report;
-};
-Outcome run(const Cloud& cloud, const Options& options, int threads = 2) {
-  Reconstructor r(Device::cpu(threads));
-  Outcome result;
-  result.mesh = r.reconstruct(cloud, options);
-  result.report = r.report();
-  return result;
-}
 
 /// How far the vertices and the middles of the triangles lie outside of an envelope, at most.
 struct Protrusion {

@@ -20,6 +20,19 @@ inline Mesh reconstructed(const Cloud& cloud, const Options& options, int thread
   return Reconstructor(Device::cpu(threads)).reconstruct(cloud, options);
 }
 
+/// A mesh and how it came about.
+struct Outcome {
+  Mesh mesh;
+  RunReport report;
+};
+inline Outcome run(const Cloud& cloud, const Options& options, int threads = 2) {
+  Reconstructor r(Device::cpu(threads));
+  Outcome result;
+  result.mesh = r.reconstruct(cloud, options);
+  result.report = r.report();
+  return result;
+}
+
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);

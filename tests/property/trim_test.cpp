@@ -23,18 +23,8 @@ namespace {
 
 using test::error_of;
 using test::expect_same_bytes;
-
-struct Outcome {
-  Mesh mesh;
-  RunReport report;
-};
-Outcome run(const Cloud& cloud, const Options& options, int threads = 2) {
-  Reconstructor r(Device::cpu(threads));
-  Outcome result;
-  result.mesh = r.reconstruct(cloud, options);
-  result.report = r.report();
-  return result;
-}
+using test::Outcome;
+using test::run;
 
 /// The n samples of the unit sphere below z = `top`.
 Cloud cap_cloud(std::int64_t n, std::uint64_t seed, float top) {

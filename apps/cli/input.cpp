@@ -1,6 +1,7 @@
 #include "input.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -20,6 +21,24 @@ void rebase(Cloud& cloud, const Vec3d& origin) {
     p = {static_cast<float>(p.x + move[0]), static_cast<float>(p.y + move[1]), static_cast<float>(p.z + move[2])};
   }
   cloud.origin = origin;
+}
+
+/// Distance of the middle of a cloud from a place, times its points: what float positions around that place would lose.
+double loss_around(const Cloud& cloud, const Vec3d& place) {
+  Vec3d lower, upper;
+  lower.fill(std::numeric_limits<double>::infinity());
+  upper.fill(-std::numeric_limits<double>::infinity());
+  for (const Vec3f& p : cloud.positions) {
+    const double at[3] = {p.x, p.y, p.z};
+    for (std::size_t a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], at[a]);
+      upper[a] = std::max(upper[a], at[a]);
+    }
+  }
+  double farthest = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    farthest = std::max(farthest, std::abs(cloud.origin[a] + (lower[a] + upper[a]) / 2 - place[a]));
+  return farthest * static_cast<double>(cloud.size());
 }
 
 template <class T>
@@ -76,9 +95,11 @@ Cloud vertices_as_cloud(Mesh&& mesh) {
 }  // namespace
 
 void append(Cloud& to, Cloud&& from) {
-  constexpr Vec3d kZero{0, 0, 0};
-  if (to.origin == kZero && from.origin != kZero) rebase(to, from.origin);
-  if (to.origin != from.origin) rebase(from, to.origin);
+  if (to.origin != from.origin) {
+    const auto loss = [&](const Vec3d& place) { return loss_around(to, place) + loss_around(from, place); };
+    if (loss(from.origin) < loss(to.origin)) rebase(to, from.origin);
+    if (to.origin != from.origin) rebase(from, to.origin);
+  }
   const bool normals = to.has_normals() && from.has_normals();
   append_attributes(to.attributes, to.positions.size(), from.attributes, from.positions.size());
   append(to.positions, from.positions);

@@ -56,6 +56,18 @@ class StraysCommand : public testing::Test {
   std::string output_ = folder_ / "out.ply";
 };
 
+TEST_F(StraysCommand, OfAFileOfTheirOwnCostTheOthersNoDigits) {
+  const std::string sphere = save({});
+  const std::string expected = bytes_of(sphere);
+  write_file(folder_ / "far.xyz", "1000000 1000000 1000000 0 0 1\n");
+  for (const bool first : {false, true}) {
+    Args args = {"reconstruct", sphere, "-o", output_, "--depth", "6", "-q"};
+    args.insert(args.begin() + (first ? 1 : 2), folder_ / "far.xyz");
+    EXPECT_EQ(pointskin_run(args).exit_code, 0);
+    EXPECT_TRUE(read_file(output_) == expected) << first;
+  }
+}
+
 TEST_F(StraysCommand, GiveTheFileOfTheCloudWithoutThem) {
   const std::string expected = bytes_of(save({}));
   EXPECT_EQ(bytes_of(save({{1e6F, 0, 0}})), expected);

@@ -36,16 +36,17 @@ struct Progress {
 struct Options {
   int depth = 8;         ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
   double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
-  bool fixed_screening = false;  ///< true: all samples weigh alike; false: samples that scatter across the surface
-                                 ///< weigh less, those that agree more (0.05 to 3.1 times `screening`)
-  int iterations = 8;            ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
-                                 ///< max(this, twice their cells along an axis)
-  double scale = 1.1;            ///< working cube / bounding cube of the points used, in [1, 100]
-  double samples_per_node =
-      1.5;  ///< samples the splat kernel should average over; sparser ones are splatted coarser; in [0, 100]
-  bool confidence = false;  ///< true: a normal's length, relative to the mean length, is the weight of its point
-  bool linear_fit = false;  ///< true: edge crossings by linear instead of rescaled quadratic interpolation
-  bool density = false;     ///< true: the mesh carries "density", samples per unit of area (world units^-2)
+  bool fixed_screening = false;   ///< true: all samples weigh alike; false: samples that scatter across the surface
+                                  ///< weigh less, those that agree more (0.05 to 3.1 times `screening`)
+  int iterations = 8;             ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
+                                  ///< max(this, twice their cells along an axis)
+  double scale = 1.1;             ///< working cube / bounding cube of the points used, in [1, 100]
+  double samples_per_node = 1.5;  ///< samples that two cell faces of a level should hold; in [0, 100]. Sparser ones are
+                                  ///< splatted coarser, and where they hold less than 0.42 of it the surface keeps to
+                                  ///< the level above; 0: all levels are used everywhere
+  bool confidence = false;        ///< true: a normal's length, relative to the mean length, is the weight of its point
+  bool linear_fit = false;        ///< true: edge crossings by linear instead of rescaled quadratic interpolation
+  bool density = false;           ///< true: the mesh carries "density", samples per unit of area (world units^-2)
   /// true: the mesh carries every attribute of the cloud, interpolated at its vertices and smoothly extended over holes
   /// (docs/algorithm.md, section 8). Types stay: uint8 values are rounded. A point whose value is not finite does not
   /// count for that attribute; with `confidence` the others count by their weight. An attribute whose name the mesh has

@@ -16,7 +16,7 @@ namespace pointskin::poisson {
 /// All samples of a cell as one. Weight 0: the cell is empty.
 struct alignas(16) CollapsedSample {
   float x = 0, y = 0, z = 0;  ///< mean position in the cell, in [0, 1]
-  float weight = 0;           ///< sum of areas, in finest cells^2, of sparse samples no more than at their splat depth
+  float weight = 0;           ///< sum of areas, in finest cells^2, times trust and squared sampled_share
 };
 
 /// Collapsed samples of one level, kept for bricks that hold samples.

@@ -40,11 +40,12 @@ struct Solution {
 /// Minimises  integral |grad u - V|^2 + w 2^d sum_p a_p (u(p) - 1/2)^2  level by level, d = 0..D: u_d starts as the
 /// interpolation of u_(d-1); corners that are not unknowns of their level keep that value; unknowns that are not free
 /// are 0.
-/// @param b  shape (nodes of all levels), from splat_divergence
+/// @param tree  with the unknowns of the cells that count (Resolution::view)
+/// @param b     shape (nodes of all levels), from splat_divergence
 /// O(iterations (27 nodes + 64 occupied cells)); one launch an iteration, no round trips unless residuals are asked
 /// for. Deterministic, the same bits on every device.
 template <exec::Space Exec>
-Solution solve_poisson(Exec& ex, const octree::OctreeView& view, ArrayView<const float> b, const Screening& screening,
+Solution solve_poisson(Exec& ex, const octree::OctreeView& tree, ArrayView<const float> b, const Screening& screening,
                        const SolveOptions& options);
 
 /// Mean of u over the samples, weighted by their areas: the isovalue. O(n depth), in double.

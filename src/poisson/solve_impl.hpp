@@ -230,19 +230,19 @@ struct ValuesInCell {
 }  // namespace solve
 
 template <exec::Space Exec>
-Solution solve_poisson(Exec& ex, const octree::OctreeView& view, ArrayView<const float> b, const Screening& screening,
+Solution solve_poisson(Exec& ex, const octree::OctreeView& tree, ArrayView<const float> b, const Screening& screening,
                        const SolveOptions& options) {
-  Solution solution{exec::make_buffer<float>(ex, view.nodes), {}};
+  Solution solution{exec::make_buffer<float>(ex, tree.nodes), {}};
   const ArrayView<float> all = solution.u.view();
-  for (int d = 0; d <= view.depth; ++d) {
+  for (int d = 0; d <= tree.depth; ++d) {
     if (options.before_level) options.before_level(d);
-    octree::LevelView level = view.levels[d];
+    octree::LevelView level = tree.levels[d];
     const bool holds = !options.free_unknowns.empty();
     if (holds) level.unknowns = options.free_unknowns.data + level.first_node / 8;
     LevelSystem system{level, b.data + level.first_node, {}, 0, make_axis_rows_f()};
     if (options.screening > 0) {
       system.screening = screening.view(d);
-      system.screening_scale = static_cast<float>(std::ldexp(options.screening, 2 * (d - view.depth)));
+      system.screening_scale = static_cast<float>(std::ldexp(options.screening, 2 * (d - tree.depth)));
     }
     const ArrayView<float> u = all.part(level.first_node, level.nodes());
     auto other = exec::make_buffer<float>(ex, level.nodes());
@@ -250,13 +250,13 @@ Solution solve_poisson(Exec& ex, const octree::OctreeView& view, ArrayView<const
       exec::fill(ex, u, 0.0F);
       exec::fill(ex, other.view(), 0.0F);
     } else {
-      const octree::LevelView& above = view.levels[d - 1];
+      const octree::LevelView& above = tree.levels[d - 1];
       for_each(ex, "solve.prolong", level.nodes(),
                solve::Prolong{level, above, all.data + above.first_node, u, other.view()});
     }
     if (holds)
       for_each(ex, "solve.hold", level.bricks,
-               solve::HoldAtZero{view.levels[d].unknowns, level.unknowns, u, other.view()});
+               solve::HoldAtZero{tree.levels[d].unknowns, level.unknowns, u, other.view()});
     solution.levels.push_back(solve::solve_level(ex, system, options, u.data, other.data()));
   }
   return solution;

@@ -194,7 +194,7 @@ TEST_F(BenchCommand, AnInterruptLeavesNothingBehind) {
   start.args.insert(start.args.end(), {"--report", folder_ / "r.json"});
   start.environment = {"TMPDIR=" + folder_ / "tmp"};
   start.signal = SIGINT;
-  start.signal_after = std::chrono::milliseconds(3000 * kSlowdown);
+  start.signal_once_written = id;
   const Result result = run_program(start);
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_LT(result.seconds, 40);

@@ -9,7 +9,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 namespace pointskin::test {
 namespace {
@@ -99,6 +101,13 @@ class Process {
 
   [[nodiscard]] double elapsed() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
 
+  [[nodiscard]] bool may_signal() const {
+    if (elapsed() * 1000 < static_cast<double>(start_.signal_after.count())) return false;
+    std::error_code missing;
+    const std::string& file = start_.signal_once_written;
+    return file.empty() || (std::filesystem::file_size(file, missing) > 0 && !missing);
+  }
+
   /// Moves bytes for at most 5 ms and sends what is due.
   void step() {
     std::array<pollfd, 3> ends = {pollfd{out_.read, POLLIN, 0}, pollfd{err_.read, POLLIN, 0},
@@ -107,7 +116,7 @@ class Process {
     if (ends[0].revents != 0) receive(out_.read, result_.out);
     if (ends[1].revents != 0) receive(err_.read, result_.err);
     if (ends[2].revents != 0) feed();
-    if (start_.signal != 0 && !signalled_ && elapsed() * 1000 >= static_cast<double>(start_.signal_after.count())) {
+    if (start_.signal != 0 && !signalled_ && may_signal()) {
       signalled_ = true;
       if (!reaped_) kill(id_, start_.signal);
     }

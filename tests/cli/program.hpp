@@ -33,7 +33,8 @@ struct Start {
   std::vector<std::string> environment;       ///< "NAME=value", added
   std::string folder;                         ///< working folder; empty: the test's own
   int signal = 0;                             ///< signal to send...
-  std::chrono::milliseconds signal_after{0};  ///< ...after this time
+  std::chrono::milliseconds signal_after{0};  ///< ...after this time...
+  std::string signal_once_written;            ///< ...and not before this file holds something
   std::chrono::seconds limit{60 * kSlowdown};
 };
 

@@ -72,7 +72,9 @@ struct Pipeline {
     hashes = exec::make_buffer<std::uint64_t>(ex, n);
     for_each(ex, "unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view()});
     for_each(ex, "hash", n, detail::points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
-    samples = detail::sort_into_cube(ex, points, frame, keys);
+    detail::SortedSamples sorted = detail::sort_into_cube(ex, points, frame);
+    samples = std::move(sorted.samples);
+    keys = std::move(sorted.keys);
     tree = octree::build_octree(ex, keys.cview(), depth);
     density = poisson::splat_density(ex, tree, samples.positions.cview());
     poisson::weigh_samples(ex, tree, density, {options.samples_per_node, options.confidence}, samples);

@@ -5,9 +5,15 @@
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "exec/cpu.hpp"
+#include "exec/host_array.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
 #include "field/attributes.hpp"
@@ -29,6 +35,7 @@ struct DeviceAttribute {
 struct DevicePoints {
   exec::Buffer<Vec3f> positions, normals;
   std::vector<DeviceAttribute> attributes{};  ///< those that the mesh is to keep
+  exec::Buffer<std::uint8_t> added{};         ///< (n) 1: added by hand, has no say in the isovalue; empty: none is
   exec::Buffer<std::int32_t> used{};          ///< indices of the points to use, ascending; empty: all of them
 
   [[nodiscard]] std::int64_t used_count() const { return used.empty() ? positions.size() : used.size(); }
@@ -51,15 +58,33 @@ std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, con
 template <exec::Space Exec>
 void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points);
 
-/// The points to use as samples in the unit cube, sorted by key; normals as they came. `keys` receives the point keys,
-/// `channels` the attributes, if there are any; points that differ in nothing else are then sorted by them.
+/// The points to use, in the order of their keys.
+struct SortedSamples {
+  poisson::Samples samples;              ///< positions in the unit cube, normals as they came
+  exec::Buffer<std::uint64_t> keys;      ///< (n) point keys
+  std::vector<field::Channel> channels;  ///< the attributes
+  exec::Buffer<std::uint8_t> added;      ///< as DevicePoints::added
+};
+
+/// Moves the points to use into the unit cube and sorts them. Points that differ in nothing else are sorted by their
+/// attributes.
 template <exec::Space Exec>
-poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
-                                exec::Buffer<std::uint64_t>& keys, std::vector<field::Channel>* channels = nullptr);
+SortedSamples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame);
 
 /// Copies a surface to the host, into world coordinates relative to `origin` and the memory that `mesh` has. Every
 /// array is freed as soon as it is copied.
 template <exec::Space Exec>
 void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh);
+
+/// Moves an array to the host, into memory that `to` may have already.
+template <class T, exec::Space Exec>
+void download_array(Exec& ex, exec::Buffer<T>& from, std::vector<T>& to) {
+  if constexpr (std::is_same_v<Exec, exec::Cpu>)
+    exec::resize(ex, to, static_cast<std::size_t>(from.size()));
+  else
+    to.resize(static_cast<std::size_t>(from.size()));
+  copy_to_host(ex, from.cview(), to.data());
+  from.reset();
+}
 
 }  // namespace pointskin::detail

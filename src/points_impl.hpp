@@ -93,17 +93,6 @@ inline void require_normals(const Flaws& flaws) {
     throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
 }
 
-/// Moves to the host, into memory that `to` may have already.
-template <class T, exec::Space Exec>
-void download_array(Exec& ex, exec::Buffer<T>& from, std::vector<T>& to) {
-  if constexpr (std::is_same_v<Exec, exec::Cpu>)
-    exec::resize(ex, to, static_cast<std::size_t>(from.size()));
-  else
-    to.resize(static_cast<std::size_t>(from.size()));
-  copy_to_host(ex, from.cview(), to.data());
-  from.reset();
-}
-
 }  // namespace points
 
 template <exec::Space Exec>
@@ -150,8 +139,7 @@ std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, con
 }
 
 template <exec::Space Exec>
-poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame,
-                                exec::Buffer<std::uint64_t>& keys, std::vector<field::Channel>* channels) {
+SortedSamples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame) {
   const std::int64_t n = points.used_count();
   const octree::Selection selection{points.used.cview()};
   auto unit = exec::make_buffer<Vec3f>(ex, n);
@@ -163,7 +151,8 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
     for_each(ex, "octree.hash", n, points::HashAttribute{attribute.values.cview(), hashes.view(), selection});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   hashes.reset();
-  poisson::Samples samples;
+  SortedSamples out;
+  poisson::Samples& samples = out.samples;
   samples.positions = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, unit.cview(), sorted.order.cview(), samples.positions.view());
   unit.reset();
@@ -171,14 +160,17 @@ poisson::Samples sort_into_cube(Exec& ex, const DevicePoints& points, const octr
     exec::gather(ex, points.used.cview(), sorted.order.cview(), sorted.order.view());
   samples.normals = exec::make_buffer<Vec3f>(ex, n);
   exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
-  keys = std::move(sorted.keys);
-  if (channels == nullptr) return samples;
+  if (!points.added.empty()) {
+    out.added = exec::make_buffer<std::uint8_t>(ex, n);
+    exec::gather(ex, points.added.cview(), sorted.order.cview(), out.added.view());
+  }
+  out.keys = std::move(sorted.keys);
   for (const DeviceAttribute& attribute : points.attributes) {
     auto values = exec::make_buffer<float>(ex, n);
     exec::gather(ex, attribute.values.cview(), sorted.order.cview(), values.view());
-    channels->push_back(field::make_channel(ex, attribute.name, attribute.type, std::move(values)));
+    out.channels.push_back(field::make_channel(ex, attribute.name, attribute.type, std::move(values)));
   }
-  return samples;
+  return out;
 }
 
 template <exec::Space Exec>
@@ -187,9 +179,9 @@ void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, co
   for_each(ex, "download.world", positions.size, points::ToWorld{frame, positions});
   mesh.origin = origin;
   mesh.attributes.clear();
-  points::download_array(ex, surface.positions, mesh.vertices);
-  points::download_array(ex, surface.normals, mesh.normals);
-  points::download_array(ex, surface.triangles, mesh.triangles);
+  download_array(ex, surface.positions, mesh.vertices);
+  download_array(ex, surface.normals, mesh.normals);
+  download_array(ex, surface.triangles, mesh.triangles);
 }
 
 }  // namespace pointskin::detail

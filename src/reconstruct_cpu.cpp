@@ -1,5 +1,4 @@
 #include "exec/cpu_primitives.hpp"
-#include "points_impl.hpp"
 #include "reconstruct_impl.hpp"
 
 namespace pointskin::detail {

@@ -1,5 +1,4 @@
 #include "exec/cuda_primitives.cuh"
-#include "points_impl.hpp"
 #include "reconstruct_impl.hpp"
 
 namespace pointskin::detail {

@@ -1,327 +1,17 @@
-// The pipeline, once for every space. Reads as the paper's table of contents: octree, implicit function, isosurface.
+// What a Reconstructor delegates to, once for every space.
 #pragma once
 
-#include <pointskin/error.hpp>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "exec/algorithms.hpp"
-#include "field/attributes.hpp"
-#include "field/evaluate.hpp"
-#include "octree/frame.hpp"
-#include "octree/octree_data.hpp"
+#include "fit_field.hpp"
+#include "phase_clock.hpp"
 #include "points.hpp"
-#include "poisson/boundary.hpp"
-#include "poisson/density.hpp"
-#include "poisson/divergence.hpp"
-#include "poisson/resolution.hpp"
-#include "poisson/screening.hpp"
-#include "poisson/solve.hpp"
-#include "poisson/trust.hpp"
 #include "reconstruct_engine.hpp"
-#include "surface/extract.hpp"
-#include "trim_to_samples.hpp"
 #include "within_envelope.hpp"
 
 namespace pointskin::detail {
-
-/// Measures phases on the space's own clock, without waiting at their borders.
-template <exec::Space Exec>
-class PhaseClock {
- public:
-  explicit PhaseClock(Exec& ex) : ex_(ex), start_(ex.mark()) {}
-
-  /// Ends a phase and begins the next; the phase's milliseconds go to `to` when read() is called.
-  void lap(double& to) {
-    const Mark now = ex_.mark();
-    phases_.push_back({std::exchange(start_, now), now, &to});
-  }
-
-  /// Waits until all phases are done.
-  void read() {
-    for (const Phase& phase : phases_) *phase.milliseconds = ex_.milliseconds_between(phase.from, phase.to);
-    phases_.clear();
-  }
-
- private:
-  using Mark = typename Exec::Mark;
-  struct Phase {
-    Mark from, to;
-    double* milliseconds;
-  };
-  Exec& ex_;
-  Mark start_;
-  std::vector<Phase> phases_;
-};
-
-/// Tells the caller where the run is. @throws Error interrupted if it wants to stop
-inline void announce(const Options& options, const char* phase, double fraction) {
-  if (options.progress && !options.progress({phase, fraction}))
-    throw Error(ErrorCode::interrupted, std::string("cancelled before the phase \"") + phase + "\"");
-}
-
-/// Everything that is known of a field after the solve.
-struct FieldData {
-  octree::Frame frame;
-  octree::OctreeData tree;
-  poisson::Resolution resolution;
-  exec::Buffer<float> values;
-  poisson::Density density;
-  field::AttributeSamples attributes;                  ///< without positions unless there are channels
-  std::shared_ptr<const envelope::Envelope> envelope;  ///< with Options::envelope
-  double isovalue = 0;
-  float trim_limit = 0;  // spacing in finest cells, with Options::trim
-
-  [[nodiscard]] field::FieldView view(DomainFaces faces) const {
-    return {resolution.view(tree), values.data(), static_cast<float>(isovalue), faces == DomainFaces::closed,
-            resolution.bricks.data()};
-  }
-};
-
-inline void report_levels(const octree::OctreeData& tree, const std::vector<poisson::LevelSolve>& levels,
-                          RunReport& report) {
-  const octree::OctreeView view = tree.view();
-  report.depth = tree.depth;
-  report.nodes = tree.cells();
-  report.levels.clear();
-  for (const poisson::LevelSolve& level : levels)
-    report.levels.push_back({level.depth, view.levels[level.depth].cells(), level.unknowns, level.iterations,
-                             level.residual_before, level.residual_after});
-}
-
-inline void report_strays(const octree::StrayPoints& strays, RunReport& report) {
-  constexpr std::size_t kListed = 10;
-  report.strays = strays.size();
-  for (std::size_t i = 0; i < std::min(kListed, strays.positions.size()); ++i) {
-    const Vec3f& p = strays.positions[i];
-    report.farthest_strays.push_back({p.x, p.y, p.z});
-  }
-}
-
-/// The working cube; leaves strays out of the points that are used, unless they are to be kept.
-template <exec::Space Exec>
-octree::Frame fit_cube(Exec& ex, DevicePoints& points, const Options& options, RunReport& report) {
-  report.strays = 0;
-  report.farthest_strays.clear();
-  if (options.keep_strays) return octree::fit_frame(ex, points.positions.cview(), options.scale);
-  const octree::StrayPoints strays = octree::find_strays(ex, points.positions.cview());
-  report_strays(strays, report);
-  leave_out(ex, strays, points);
-  return octree::frame_around(strays.core, options.scale);
-}
-
-/// The unknowns to solve for, where some are held at 0; else none.
-template <exec::Space Exec>
-exec::Buffer<std::uint8_t> find_free_unknowns(Exec& ex, const octree::OctreeView& tree, const FieldData& field,
-                                              const Options& options) {
-  exec::Buffer<std::uint8_t> free;
-  const bool hold_faces = options.boundary == Boundary::dirichlet;
-  if (hold_faces || field.envelope != nullptr) free = poisson::free_unknowns(ex, tree, hold_faces);
-  if (field.envelope != nullptr) hold_outside(ex, *field.envelope, field.frame, tree, free.view());
-  return free;
-}
-
-/// Mean of the field at the samples, with an envelope at those inside.
-template <exec::Space Exec>
-double find_isovalue(Exec& ex, const FieldData& field, ArrayView<const float> u, const poisson::Samples& samples,
-                     RunReport& report) {
-  poisson::SamplesView view = samples.view();
-  if (field.envelope == nullptr) return poisson::mean_at_samples(ex, field.tree, u, view);
-  const exec::Buffer<float> areas =
-      areas_inside(ex, *field.envelope, field.frame, samples, report.envelope.samples_outside);
-  view.areas = areas.cview();
-  const double isovalue = poisson::mean_at_samples(ex, field.tree, u, view);
-  if (!(isovalue > 0))  // all that is held at 0 would be inside
-    throw Error(ErrorCode::empty_result,
-                "the field is not positive at the points; are their normals oriented outwards, away from the inside?");
-  return isovalue;
-}
-
-/// Points to implicit function. The report's places are relative to the cloud's origin. Frees `points` once they are
-/// sorted, unless they are to be kept for another run.
-template <exec::Space Exec>
-FieldData fit_field(Exec& ex, DevicePoints& points, bool keep_points, const Options& options,
-                    std::shared_ptr<const envelope::Envelope> envelope, RunReport& report) {
-  PhaseClock clock(ex);
-  FieldData field;
-  field.envelope = std::move(envelope);
-
-  announce(options, "octree", 0.05);
-  field.frame = fit_cube(ex, points, options, report);
-  report.points = points.used_count();
-  exec::Buffer<std::uint64_t> keys;
-  poisson::Samples samples = sort_into_cube(ex, points, field.frame, keys, &field.attributes.channels);
-  const bool has_attributes = !field.attributes.channels.empty();
-  if (!keep_points) points = {};
-  field.tree = octree::build_octree(ex, keys.cview(), options.depth);
-  keys.reset();
-  clock.lap(report.octree_ms);
-
-  announce(options, "splat", 0.25);
-  if (has_attributes && options.confidence)
-    field.attributes.weights = poisson::confidence_weights(ex, samples.normals.cview());
-  field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
-  poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
-  field.resolution = poisson::find_resolution(ex, field.tree, samples);
-  if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
-  if (!options.density && options.trim == 0) field.density.counts.reset();
-  if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
-  exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
-  samples.normals.reset();
-  poisson::Screening screening;
-  if (options.screening > 0) screening = poisson::collapse_samples(ex, field.tree, samples.view());
-  samples.trust.reset();
-  clock.lap(report.splat_ms);
-
-  const auto before_level = [&](int depth) {  // every level costs about four times the one before
-    announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
-  };
-  const octree::OctreeView tree = field.resolution.view(field.tree);
-  exec::Buffer<std::uint8_t> free_unknowns = find_free_unknowns(ex, tree, field, options);
-  poisson::Solution solution = poisson::solve_poisson(
-      ex, tree, divergence.cview(), screening,
-      {options.screening, options.iterations, options.residuals, before_level, free_unknowns.cview()});
-  free_unknowns.reset();
-  divergence.reset();
-  screening = {};
-  field.isovalue = find_isovalue(ex, field, solution.u.cview(), samples, report);
-  field.values = std::move(solution.u);
-  if (has_attributes) field.attributes.positions = std::move(samples.positions);
-  clock.lap(report.solve_ms);
-  clock.read();
-
-  report.isovalue = field.isovalue;
-  report_levels(field.tree, solution.levels, report);
-  return field;
-}
-
-/// Share of curvature that a crossing takes (surface/edge_vertex.hpp). The screening pulls the trilinear function to
-/// the samples, whose own crossing is linear; the smooth function that it stands for is curved. Halfway is nearest to
-/// the surface (docs/decisions/0017-noise-and-smoothness.md).
-inline constexpr float kCurvature = 0.5F;
-
-/// Implicit function to mesh, on the device.
-/// @param report  receives what was cut, with Options::trim, and what was moved, with an envelope
-template <exec::Space Exec>
-surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, RunReport& report) {
-  const bool trim = options.trim > 0;  // which needs normals
-  surface::ExtractOptions extraction{options.linear_fit ? 0 : kCurvature, options.normals || trim};
-  if (field.envelope != nullptr) extraction.move_vertices = clip_to(ex, *field.envelope, field.frame, report.envelope);
-  surface::Surface surface = surface::extract_surface(ex, field.view(options.domain_faces), extraction);
-  if (trim) {
-    surface::TrimCounts counts;
-    surface = trim_to_samples(ex, field.tree, field.density, std::move(surface),
-                              {field.trim_limit, options.island_ratio}, counts);
-    report.trim = trim_report(counts, field.frame, field.tree.depth, field.trim_limit);
-    if (!options.normals) surface.normals.reset();
-  }
-  if (field.envelope != nullptr)
-    project_onto(ex, *field.envelope, field.frame, surface.positions.view(), report.envelope);
-  return surface;
-}
-
-template <exec::Space Exec>
-class FieldOn final : public FieldImpl {
- public:
-  FieldOn(std::shared_ptr<Exec> ex, FieldData data, Options options, const Vec3d& origin)
-      : ex_(std::move(ex)), data_(std::move(data)), options_(std::move(options)), origin_(origin) {
-    options_.progress = nullptr;  // it may refer to what the caller no longer has
-  }
-
-  [[nodiscard]] double isovalue() const override { return data_.isovalue; }
-  [[nodiscard]] double cube_size_world() const override { return data_.frame.size; }
-  [[nodiscard]] Vec3d cube_lower_world() const override {
-    return {origin_[0] + data_.frame.lower[0], origin_[1] + data_.frame.lower[1], origin_[2] + data_.frame.lower[2]};
-  }
-
-  [[nodiscard]] std::vector<float> values(const std::vector<Vec3d>& points_world) const override {
-    ex_->activate();
-    const Vec3d lower = cube_lower_world();
-    std::vector<Vec3f> unit(points_world.size());
-    const auto to_unit = [&](const Vec3d& p, std::size_t a) {
-      return static_cast<float>(std::clamp((p[a] - lower[a]) / data_.frame.size, 0.0, 1.0));
-    };
-    std::transform(points_world.begin(), points_world.end(), unit.begin(), [&](const Vec3d& p) {
-      return Vec3f{to_unit(p, 0), to_unit(p, 1), to_unit(p, 2)};
-    });
-    const auto n = static_cast<std::int64_t>(unit.size());
-    auto points = exec::make_buffer<Vec3f>(*ex_, n);
-    auto out = exec::make_buffer<float>(*ex_, n);
-    copy_to_device(*ex_, unit.data(), points.view());
-    field::evaluate(*ex_, data_.view(options_.domain_faces), points.cview(), out.view());
-    std::vector<float> result(unit.size());
-    copy_to_host(*ex_, out.cview(), result.data());
-    return result;
-  }
-
-  void extract(Mesh& mesh) const override {
-    RunReport unused;
-    surface::Surface surface = extract_surface(unused);
-    std::vector<Attribute> attributes = attributes_at(surface);
-    download(*ex_, std::move(surface), data_.frame, origin_, mesh);
-    mesh.attributes = std::move(attributes);
-  }
-
-  void extract_and_release(Mesh& mesh, RunReport& report) override {
-    PhaseClock clock(*ex_);
-    surface::Surface surface = extract_surface(report);
-    data_.values.reset();
-    std::vector<Attribute> attributes = attributes_at(surface);
-    clock.lap(report.extract_ms);
-    const octree::Frame frame = data_.frame;
-    data_ = {};
-    download(*ex_, std::move(surface), frame, origin_, mesh);
-    mesh.attributes = std::move(attributes);
-    clock.lap(report.download_ms);
-    clock.read();
-    report.device_peak_bytes = ex_->pool()->peak_bytes();
-  }
-
- private:
-  [[nodiscard]] surface::Surface extract_surface(RunReport& report) const {
-    ex_->activate();
-    surface::Surface surface = detail::extract(*ex_, data_, options_, report);
-    if (surface.triangles.empty() && report.trim.triangles_before > 0)
-      throw Error(ErrorCode::empty_result,
-                  "all of the surface was trimmed away; choose a smaller trim quantile or island ratio");
-    if (surface.triangles.empty())
-      throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
-    return surface;
-  }
-
-  [[nodiscard]] std::vector<Attribute> attributes_at(const surface::Surface& surface) const {
-    std::vector<Attribute> attributes;
-    const auto keep = [&](const field::Channel& channel, exec::Buffer<float> values) {
-      attributes.push_back({channel.name, channel.type, {}});
-      points::download_array(*ex_, values, attributes.back().values);
-    };
-    field::interpolate(*ex_, data_.tree, data_.attributes, surface.positions.cview(), keep);
-    if (options_.density) attributes.push_back(density_at(surface));
-    return attributes;
-  }
-
-  /// Samples per unit of area at the vertices.
-  [[nodiscard]] Attribute density_at(const surface::Surface& surface) const {
-    const std::int64_t n = surface.positions.size();
-    auto out = exec::make_buffer<float>(*ex_, n);
-    poisson::evaluate_density(*ex_, data_.tree, data_.density, surface.positions.cview(), out.view());
-    Attribute density{"density", AttributeType::float32, std::vector<float>(static_cast<std::size_t>(n))};
-    copy_to_host(*ex_, out.cview(), density.values.data());
-    const double cell = data_.frame.size / static_cast<double>(std::int64_t{1} << data_.tree.depth);
-    for (float& value : density.values) value = static_cast<float>(value / (cell * cell));
-    return density;
-  }
-
-  std::shared_ptr<Exec> ex_;
-  FieldData data_;
-  Options options_;
-  Vec3d origin_;
-};
 
 template <exec::Space Exec>
 class EngineOn final : public Engine {
@@ -337,23 +27,23 @@ class EngineOn final : public Engine {
     points.attributes = upload_attributes(*ex_, cloud, options);
     clock.lap(report.upload_ms);
     clock.read();
-    FieldData data = fit_field(*ex_, points, false, options, std::move(envelope), report);
+    FieldData data = fit_field(*ex_, points, {.envelope = std::move(envelope)}, options, report);
     for (Vec3d& p : report.farthest_strays)
       for (std::size_t a = 0; a < 3; ++a) p[a] += cloud.origin[a];
     report.device_peak_bytes = ex_->pool()->peak_bytes();
-    return std::make_shared<FieldOn<Exec>>(ex_, std::move(data), options, cloud.origin);
+    return make_field(ex_, std::move(data), options, cloud.origin);
   }
 
   std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) override {
     ex_->activate();
-    const std::shared_ptr<const envelope::Envelope> envelope = make_envelope(*ex_, options, cloud.origin);
+    const FitSetup setup{.keep_points = true, .envelope = make_envelope(*ex_, options, cloud.origin)};
     DevicePoints points = upload(*ex_, cloud);
     points.attributes = upload_attributes(*ex_, cloud, options);
     std::vector<RunTimes> runs;
     for (int i = 0; i < times; ++i) {
       PhaseClock clock(*ex_);
       RunReport report;
-      const FieldData data = fit_field(*ex_, points, true, options, envelope, report);
+      const FieldData data = fit_field(*ex_, points, setup, options, report);
       const surface::Surface surface = detail::extract(*ex_, data, options, report);
       field::interpolate(*ex_, data.tree, data.attributes, surface.positions.cview(),
                          [](const field::Channel&, const exec::Buffer<float>&) {});

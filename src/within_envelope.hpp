@@ -65,10 +65,10 @@ std::shared_ptr<const envelope::Envelope> make_envelope(const Exec& ex, const Op
 /// @throws Error empty_result if all do
 template <exec::Space Exec>
 exec::Buffer<float> areas_inside(Exec& ex, const envelope::Envelope& envelope, const octree::Frame& frame,
-                                 const poisson::Samples& samples, std::int64_t& outside) {
-  auto areas = exec::make_buffer<float>(ex, samples.areas.size());
-  copy(ex, samples.areas.cview(), areas.view());
-  OnHost<const Vec3f, Exec> positions(ex, samples.positions.cview());
+                                 const poisson::SamplesView& samples, std::int64_t& outside) {
+  auto areas = exec::make_buffer<float>(ex, samples.areas.size);
+  copy(ex, samples.areas, areas.view());
+  OnHost<const Vec3f, Exec> positions(ex, samples.positions);
   OnHost<float, Exec> on_host(ex, areas.view());
   outside = envelope.drop_outside(frame, positions.view(), on_host.view());
   if (outside == areas.size())

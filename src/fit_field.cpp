@@ -1,0 +1,10 @@
+#include "exec/cpu_primitives.hpp"
+#include "fit_field_impl.hpp"
+
+namespace pointskin::detail {
+
+template FieldData fit_field(exec::Cpu&, DevicePoints&, const FitSetup&, const Options&, RunReport&);
+template surface::Surface extract(exec::Cpu&, const FieldData&, const Options&, RunReport&);
+template std::shared_ptr<FieldImpl> make_field(std::shared_ptr<exec::Cpu>, FieldData, const Options&, const Vec3d&);
+
+}  // namespace pointskin::detail

@@ -1,0 +1,12 @@
+#include "exec/cuda_primitives.cuh"
+#include "points_impl.hpp"
+
+namespace pointskin::detail {
+
+template DevicePoints upload(exec::Cuda&, const Cloud&);
+template std::vector<DeviceAttribute> upload_attributes(exec::Cuda&, const Cloud&, const Options&);
+template void leave_out(exec::Cuda&, const octree::StrayPoints&, DevicePoints&);
+template SortedSamples sort_into_cube(exec::Cuda&, const DevicePoints&, const octree::Frame&);
+template void download(exec::Cuda&, surface::Surface, const octree::Frame&, const Vec3d&, Mesh&);
+
+}  // namespace pointskin::detail

@@ -5,6 +5,7 @@ namespace pointskin::detail {
 
 template FieldData fit_field(exec::Cpu&, DevicePoints&, const FitSetup&, const Options&, RunReport&);
 template surface::Surface extract(exec::Cpu&, const FieldData&, const Options&, RunReport&);
+template void extract_mesh(exec::Cpu&, const FieldData&, const Options&, const Vec3d&, Mesh&, RunReport&);
 template std::shared_ptr<FieldImpl> make_field(std::shared_ptr<exec::Cpu>, FieldData, const Options&, const Vec3d&);
 
 }  // namespace pointskin::detail

@@ -3,6 +3,7 @@
 
 #include <pointskin/reconstruct.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -21,6 +22,13 @@
 
 namespace pointskin::detail {
 
+/// The samples of a field in the order of their keys, for what is done with it afterwards.
+struct FieldSamples {
+  exec::Buffer<Vec3f> positions;     ///< in the unit cube
+  exec::Buffer<Vec3f> normals;       ///< unit length or zero
+  exec::Buffer<std::uint8_t> added;  ///< as DevicePoints::added
+};
+
 /// Everything that is known of a field after the solve. Places are relative to the cloud's origin.
 struct FieldData {
   octree::Frame frame;
@@ -31,6 +39,7 @@ struct FieldData {
   field::AttributeSamples attributes;                  ///< without positions unless there are channels
   std::shared_ptr<const envelope::Envelope> envelope;  ///< with Options::envelope
   double isovalue = 0;
+  FieldSamples samples;  ///< with FitSetup::keep_samples
   float trim_limit = 0;  ///< spacing in finest cells, with Options::trim
 
   [[nodiscard]] field::FieldView view(DomainFaces faces) const {
@@ -44,6 +53,10 @@ struct FitSetup {
   bool keep_points = false;             ///< false: `points` are freed once they are sorted
   std::optional<octree::Frame> cube{};  ///< the working cube, for all points; unset: fitted, and strays are left out
   std::shared_ptr<const envelope::Envelope> envelope{};  ///< made ready from Options::envelope, or null
+  bool keep_samples = false;                             ///< fill FieldData::samples
+  /// Of nearly the same points, or null. It is started from if its cube and depth are the same, with half the
+  /// iterations (docs/decisions/0023-editing.md).
+  const FieldData* before = nullptr;
 };
 
 /// Points to implicit function (P1 to P8). The report's places are relative to the cloud's origin.
@@ -56,6 +69,13 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
 /// @param report  receives what was cut, with Options::trim, and what was moved, with an envelope
 template <exec::Space Exec>
 surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, RunReport& report);
+
+/// The same with what a user gets: in world units relative to `origin`, on the host, with attributes and density.
+/// @param mesh  receives it; its memory is used again
+/// @throws Error empty_result if nothing crosses the isovalue, or nothing is left after Options::trim
+template <exec::Space Exec>
+void extract_mesh(Exec& ex, const FieldData& field, const Options& options, const Vec3d& origin, Mesh& mesh,
+                  RunReport& report);
 
 /// `data` as what a Field delegates to.
 /// @param origin  of the cloud: what places in `data` are relative to

@@ -74,6 +74,18 @@ exec::Buffer<std::uint8_t> find_free_unknowns(Exec& ex, const octree::OctreeView
   return free;
 }
 
+inline bool may_start_from(const FieldData& before, const FieldData& field) {
+  return before.values.data() != nullptr && before.frame == field.frame && before.tree.depth == field.tree.depth;
+}
+
+/// Keeps what the fit needs no longer, or copies.
+template <exec::Space Exec>
+void keep_samples(Exec& ex, const poisson::Samples& samples, exec::Buffer<std::uint8_t> added, FieldSamples& kept) {
+  kept.positions = exec::make_buffer<Vec3f>(ex, samples.positions.size());
+  copy(ex, samples.positions.cview(), kept.positions.view());
+  kept.added = std::move(added);
+}
+
 /// Areas of the samples that decide on the isovalue: 0 for those that were added.
 struct AreaUnlessAdded {
   ArrayView<const float> areas_in;
@@ -135,25 +147,36 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
   if (!options.density && options.trim == 0) field.density.counts.reset();
   if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
+  if (setup.keep_samples) field.samples.normals = std::move(samples.normals);
   samples.normals.reset();
   poisson::Screening screening;
   if (options.screening > 0) screening = poisson::collapse_samples(ex, field.tree, samples.view());
   samples.trust.reset();
   clock.lap(report.splat_ms);
 
-  const auto before_level = [&](int depth) {  // every level costs about four times the one before
+  poisson::SolveOptions solving{options.screening, options.iterations, options.residuals};
+  solving.before_level = [&](int depth) {  // every level costs about four times the one before
     fit::announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
   };
   const octree::OctreeView tree = field.resolution.view(field.tree);
   exec::Buffer<std::uint8_t> free_unknowns = fit::find_free_unknowns(ex, tree, field, options);
-  poisson::Solution solution = poisson::solve_poisson(
-      ex, tree, divergence.cview(), screening,
-      {options.screening, options.iterations, options.residuals, before_level, free_unknowns.cview()});
+  solving.free_unknowns = free_unknowns.cview();
+  exec::Buffer<std::int32_t> matches;
+  if (setup.before != nullptr && fit::may_start_from(*setup.before, field)) {
+    solving.previous.tree = setup.before->resolution.view(setup.before->tree);
+    solving.previous.u = setup.before->values.data();
+    matches = poisson::match_bricks(ex, tree, solving.previous.tree);
+    solving.previous.bricks = matches.data();
+    solving.iterations = (options.iterations + 1) / 2;
+  }
+  poisson::Solution solution = poisson::solve_poisson(ex, tree, divergence.cview(), screening, solving);
+  matches.reset();
   free_unknowns.reset();
   divergence.reset();
   screening = {};
   field.isovalue = fit::find_isovalue(ex, field, solution.u.cview(), samples, sorted.added.cview(), report);
   field.values = std::move(solution.u);
+  if (setup.keep_samples) fit::keep_samples(ex, samples, std::move(sorted.added), field.samples);
   if (has_attributes) field.attributes.positions = std::move(samples.positions);
   clock.lap(report.solve_ms);
   clock.read();
@@ -184,6 +207,58 @@ surface::Surface extract(Exec& ex, const FieldData& field, const Options& option
   if (field.envelope != nullptr)
     project_onto(ex, *field.envelope, field.frame, surface.positions.view(), report.envelope);
   return surface;
+}
+
+namespace fit {
+
+/// The surface, with triangles.
+template <exec::Space Exec>
+surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& options, RunReport& report) {
+  ex.activate();
+  surface::Surface surface = detail::extract(ex, field, options, report);
+  if (surface.triangles.empty() && report.trim.triangles_before > 0)
+    throw Error(ErrorCode::empty_result,
+                "all of the surface was trimmed away; choose a smaller trim quantile or island ratio");
+  if (surface.triangles.empty())
+    throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
+  return surface;
+}
+
+/// Samples per unit of area at the vertices.
+template <exec::Space Exec>
+Attribute density_at(Exec& ex, const FieldData& field, const surface::Surface& surface) {
+  const std::int64_t n = surface.positions.size();
+  auto out = exec::make_buffer<float>(ex, n);
+  poisson::evaluate_density(ex, field.tree, field.density, surface.positions.cview(), out.view());
+  Attribute density{"density", AttributeType::float32, std::vector<float>(static_cast<std::size_t>(n))};
+  copy_to_host(ex, out.cview(), density.values.data());
+  const double cell = field.frame.size / static_cast<double>(std::int64_t{1} << field.tree.depth);
+  for (float& value : density.values) value = static_cast<float>(value / (cell * cell));
+  return density;
+}
+
+template <exec::Space Exec>
+std::vector<Attribute> attributes_at(Exec& ex, const FieldData& field, const Options& options,
+                                     const surface::Surface& surface) {
+  std::vector<Attribute> attributes;
+  const auto keep = [&](const field::Channel& channel, exec::Buffer<float> values) {
+    attributes.push_back({channel.name, channel.type, {}});
+    download_array(ex, values, attributes.back().values);
+  };
+  field::interpolate(ex, field.tree, field.attributes, surface.positions.cview(), keep);
+  if (options.density) attributes.push_back(density_at(ex, field, surface));
+  return attributes;
+}
+
+}  // namespace fit
+
+template <exec::Space Exec>
+void extract_mesh(Exec& ex, const FieldData& field, const Options& options, const Vec3d& origin, Mesh& mesh,
+                  RunReport& report) {
+  surface::Surface surface = fit::extract_some(ex, field, options, report);
+  std::vector<Attribute> attributes = fit::attributes_at(ex, field, options, surface);
+  download(ex, std::move(surface), field.frame, origin, mesh);
+  mesh.attributes = std::move(attributes);
 }
 
 template <exec::Space Exec>
@@ -222,17 +297,14 @@ class FieldOn final : public FieldImpl {
 
   void extract(Mesh& mesh) const override {
     RunReport unused;
-    surface::Surface surface = extract_surface(unused);
-    std::vector<Attribute> attributes = attributes_at(surface);
-    download(*ex_, std::move(surface), data_.frame, origin_, mesh);
-    mesh.attributes = std::move(attributes);
+    extract_mesh(*ex_, data_, options_, origin_, mesh, unused);
   }
 
   void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
-    surface::Surface surface = extract_surface(report);
+    surface::Surface surface = fit::extract_some(*ex_, data_, options_, report);
     data_.values.reset();
-    std::vector<Attribute> attributes = attributes_at(surface);
+    std::vector<Attribute> attributes = fit::attributes_at(*ex_, data_, options_, surface);
     clock.lap(report.extract_ms);
     const octree::Frame frame = data_.frame;
     data_ = {};
@@ -244,40 +316,6 @@ class FieldOn final : public FieldImpl {
   }
 
  private:
-  [[nodiscard]] surface::Surface extract_surface(RunReport& report) const {
-    ex_->activate();
-    surface::Surface surface = detail::extract(*ex_, data_, options_, report);
-    if (surface.triangles.empty() && report.trim.triangles_before > 0)
-      throw Error(ErrorCode::empty_result,
-                  "all of the surface was trimmed away; choose a smaller trim quantile or island ratio");
-    if (surface.triangles.empty())
-      throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
-    return surface;
-  }
-
-  [[nodiscard]] std::vector<Attribute> attributes_at(const surface::Surface& surface) const {
-    std::vector<Attribute> attributes;
-    const auto keep = [&](const field::Channel& channel, exec::Buffer<float> values) {
-      attributes.push_back({channel.name, channel.type, {}});
-      download_array(*ex_, values, attributes.back().values);
-    };
-    field::interpolate(*ex_, data_.tree, data_.attributes, surface.positions.cview(), keep);
-    if (options_.density) attributes.push_back(density_at(surface));
-    return attributes;
-  }
-
-  /// Samples per unit of area at the vertices.
-  [[nodiscard]] Attribute density_at(const surface::Surface& surface) const {
-    const std::int64_t n = surface.positions.size();
-    auto out = exec::make_buffer<float>(*ex_, n);
-    poisson::evaluate_density(*ex_, data_.tree, data_.density, surface.positions.cview(), out.view());
-    Attribute density{"density", AttributeType::float32, std::vector<float>(static_cast<std::size_t>(n))};
-    copy_to_host(*ex_, out.cview(), density.values.data());
-    const double cell = data_.frame.size / static_cast<double>(std::int64_t{1} << data_.tree.depth);
-    for (float& value : density.values) value = static_cast<float>(value / (cell * cell));
-    return density;
-  }
-
   std::shared_ptr<Exec> ex_;
   FieldData data_;
   Options options_;

@@ -35,8 +35,9 @@ struct DeviceAttribute {
 struct DevicePoints {
   exec::Buffer<Vec3f> positions, normals;
   std::vector<DeviceAttribute> attributes{};  ///< those that the mesh is to keep
-  exec::Buffer<std::uint8_t> added{};         ///< (n) 1: added by hand, has no say in the isovalue; empty: none is
-  exec::Buffer<std::int32_t> used{};          ///< indices of the points to use, ascending; empty: all of them
+  exec::Buffer<std::uint8_t>
+      added{};  ///< (n) cloud/point_kind.hpp; only original points have a say in the isovalue; empty: all are original
+  exec::Buffer<std::int32_t> used{};  ///< indices of the points to use, ascending; empty: all of them
 
   [[nodiscard]] std::int64_t used_count() const { return used.empty() ? positions.size() : used.size(); }
 };

@@ -19,6 +19,7 @@ void add_compare(CLI::App& program, Job& job);
 void add_convert(CLI::App& program, Job& job);
 void add_render(CLI::App& program, Job& job);
 void add_bench(CLI::App& program, Job& job);
+void add_edit(CLI::App& program, Job& job);
 
 /// Adds the command `name` to `program`.
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& description);

@@ -33,6 +33,7 @@ void define_program(CLI::App& program, Job& job) {
   program.set_help_flag("-h,--help", "print this help");
   program.footer(kFooter);
   add_reconstruct(program, job);
+  add_edit(program, job);
   add_info(program, job);
   add_check(program, job);
   add_compare(program, job);

@@ -30,7 +30,11 @@ struct ReconstructArgs {
   bool no_normals = false, open = false, colors = false, dry_run = false, quiet = false, verbose = false;
 };
 
-/// Defines the options on `command`, bound to `args`.
+/// Defines the options of the surface, or those of the device, for every command that reconstructs.
+void define_surface_options(CLI::App& command, ReconstructArgs& args);
+void define_device_options(CLI::App& command, ReconstructArgs& args);
+
+/// Defines the options of `pointskin reconstruct` on `command`, bound to `args`.
 void define_reconstruct_options(CLI::App& command, ReconstructArgs& args);
 
 /// Options as the library wants them. The depth is not settled yet when a width is given.

@@ -1,8 +1,10 @@
 // Everything of the library in one include.
 #pragma once
 
+#include <pointskin/camera.hpp>
 #include <pointskin/cloud.hpp>
 #include <pointskin/device.hpp>
+#include <pointskin/edit.hpp>
 #include <pointskin/error.hpp>
 #include <pointskin/field.hpp>
 #include <pointskin/io.hpp>

@@ -2,7 +2,6 @@
 
 #include "exec/cpu_primitives.hpp"
 #include "octree/engine_impl.hpp"
-#include "octree/search_impl.hpp"
 
 namespace pointskin::octree {
 

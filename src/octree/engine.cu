@@ -1,6 +1,5 @@
 #include "exec/cuda_primitives.cuh"
 #include "octree/engine_impl.hpp"
-#include "octree/search_impl.hpp"
 
 namespace pointskin::octree {
 

@@ -16,6 +16,7 @@ Frame frame_around(const Bounds& box, double scale) {
   return result;
 }
 
+template Bounds box_around(exec::Cpu&, ArrayView<const Vec3f>);
 template Frame fit_frame(exec::Cpu&, ArrayView<const Vec3f>, double);
 
 }  // namespace pointskin::octree

@@ -3,6 +3,7 @@
 
 namespace pointskin::octree {
 
+template Bounds box_around(exec::Cuda&, ArrayView<const Vec3f>);
 template Frame fit_frame(exec::Cuda&, ArrayView<const Vec3f>, double);
 
 }  // namespace pointskin::octree

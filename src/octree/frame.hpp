@@ -15,6 +15,7 @@ namespace pointskin::octree {
 struct Frame {
   Vec3d lower{0, 0, 0};  ///< lower corner, relative to the cloud's origin, world units
   double size = 1;       ///< side, world units
+  friend bool operator==(const Frame&, const Frame&) = default;
 
   PSK_HD Vec3f to_unit(const Vec3f& p) const {
     const double inverse = 1 / size;
@@ -48,7 +49,11 @@ struct ToUnit {
 /// @throws Error empty_result if the box is one place
 Frame frame_around(const Bounds& box, double scale);
 
-/// The same around the bounding box of all `positions`.
+/// Smallest box around `positions`, of which there is at least one. O(n), exact.
+template <exec::Space Exec>
+Bounds box_around(Exec& ex, ArrayView<const Vec3f> positions);
+
+/// frame_around the bounding box of all `positions`.
 /// @throws Error empty_result if there are no points or all are at one place
 /// O(n); exact but for the rounding of the cube itself, the same on every device.
 template <exec::Space Exec>

@@ -29,10 +29,14 @@ struct Join {
 }  // namespace frame
 
 template <exec::Space Exec>
+Bounds box_around(Exec& ex, ArrayView<const Vec3f> positions) {
+  return exec::reduce<Bounds>(ex, "octree.bounds", positions.size, frame::BoxOf{positions}, frame::Join{});
+}
+
+template <exec::Space Exec>
 Frame fit_frame(Exec& ex, ArrayView<const Vec3f> positions, double scale) {
   if (positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
-  return frame_around(exec::reduce<Bounds>(ex, "octree.bounds", positions.size, frame::BoxOf{positions}, frame::Join{}),
-                      scale);
+  return frame_around(box_around(ex, positions), scale);
 }
 
 }  // namespace pointskin::octree

@@ -11,6 +11,7 @@
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
 #include "octree/octree_data.hpp"
+#include "poisson/previous.hpp"
 #include "poisson/samples.hpp"
 #include "poisson/screening.hpp"
 
@@ -23,6 +24,7 @@ struct SolveOptions {
   std::function<void(int)> before_level{};  ///< called on the host with every depth about to be solved; may throw
   ArrayView<const std::uint8_t> free_unknowns{};  ///< (bricks of all levels) unknowns to solve for, from
                                                   ///< poisson/boundary.hpp; others stay 0; empty: all
+  PreviousField previous{};                       ///< a field to start from, if it has values
 };
 
 struct LevelSolve {
@@ -38,8 +40,8 @@ struct Solution {
 };
 
 /// Minimises  integral |grad u - V|^2 + w 2^d sum_p a_p (u(p) - 1/2)^2  level by level, d = 0..D: u_d starts as the
-/// interpolation of u_(d-1); corners that are not unknowns of their level keep that value; unknowns that are not free
-/// are 0.
+/// interpolation of u_(d-1), or as poisson/previous.hpp has it; corners that are not unknowns of their level keep that
+/// value; unknowns that are not free are 0.
 /// @param tree  with the unknowns of the cells that count (Resolution::view)
 /// @param b     shape (nodes of all levels), from splat_divergence
 /// O(iterations (27 nodes + 64 occupied cells)); one launch an iteration, no round trips unless residuals are asked

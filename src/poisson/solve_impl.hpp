@@ -8,6 +8,7 @@
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
 #include "poisson/operator.hpp"
+#include "poisson/previous_impl.hpp"
 #include "poisson/solve.hpp"
 
 namespace pointskin::poisson {
@@ -194,6 +195,17 @@ LevelSolve solve_level(Exec& ex, const LevelSystem& system, const SolveOptions& 
   return report;
 }
 
+/// Starts a level from the field before. Both arrays hold the interpolated values.
+template <exec::Space Exec>
+void add_detail(Exec& ex, const PreviousField& before, const octree::LevelView& level, ArrayView<float> u,
+                ArrayView<float> other) {
+  const octree::LevelView& old = before.tree.levels[level.depth];
+  const octree::LevelView& above = before.tree.levels[level.depth - 1];
+  for_each(ex, "solve.start", level.nodes(),
+           previous::AddDetail{level, old, above, before.u + old.first_node, before.u + above.first_node,
+                               before.bricks + level.first_node / 8, u, other});
+}
+
 struct WeightedValue {
   double sum = 0, weight = 0;
 };
@@ -253,6 +265,7 @@ Solution solve_poisson(Exec& ex, const octree::OctreeView& tree, ArrayView<const
       const octree::LevelView& above = tree.levels[d - 1];
       for_each(ex, "solve.prolong", level.nodes(),
                solve::Prolong{level, above, all.data + above.first_node, u, other.view()});
+      if (options.previous.u != nullptr) solve::add_detail(ex, options.previous, level, u, other.view());
     }
     if (holds)
       for_each(ex, "solve.hold", level.bricks,

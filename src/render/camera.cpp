@@ -1,6 +1,7 @@
 #include "render/camera.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -67,6 +68,37 @@ void Camera::orient(const RenderOptions& options) {
   right_ = turned(right, options.up);
   up_ = cross(back_, right_);
   up_in_view_ = to_view(turned({0, 1, 0}, options.up));
+}
+
+pointskin::Camera Camera::matrices(const Vec3d& origin, const RenderOptions& options) const {
+  pointskin::Camera camera;
+  camera.width = options.width;
+  camera.height = options.height;
+  const std::array<Vec3d, 3> axes = {right_, up_, back_};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t a = 0; a < 3; ++a) camera.view[4 * row + a] = axes[row][a];
+    const Vec3d centre_world{origin[0] + centre_[0], origin[1] + centre_[1], origin[2] + centre_[2]};
+    camera.view[4 * row + 3] = -dot(axes[row], centre_world) - (row == 2 ? distance_ * radius_ : 0);
+  }
+  const double pixels = focal_ / (kSupersampling * kSteps);  // per radius at unit depth
+  const double scale = perspective_ ? 1 : 1 / radius_;
+  camera.projection = {2 * pixels * scale / options.width,
+                       0,
+                       0,
+                       0,
+                       0,
+                       2 * pixels * scale / options.height,
+                       0,
+                       0,
+                       0,
+                       0,
+                       1,
+                       0,
+                       0,
+                       0,
+                       perspective_ ? -1.0 : 0.0,
+                       perspective_ ? 0.0 : 1.0};
+  return camera;
 }
 
 Vec3d Camera::to_view(const Vec3d& direction) const {

@@ -1,6 +1,7 @@
 // Where vertices land on the picture.
 #pragma once
 
+#include <pointskin/camera.hpp>
 #include <pointskin/render.hpp>
 
 #include <cstdint>
@@ -38,6 +39,9 @@ class Camera {
 
   /// A direction of the mesh in the viewer's frame: right, up, towards the viewer.
   [[nodiscard]] Vec3d to_view(const Vec3d& direction) const;
+
+  /// The same view for interactive programs. @param origin  of the mesh
+  [[nodiscard]] pointskin::Camera matrices(const Vec3d& origin, const RenderOptions& options) const;
 
   /// The mesh's up axis in the viewer's frame.
   [[nodiscard]] const Vec3d& up_in_view() const { return up_in_view_; }

@@ -1,5 +1,6 @@
 // The rasteriser: project the vertices, find what every sample of a band of rows sees, shade it, average to pixels.
 // Bands are independent of each other, which makes the picture the same for any number of threads.
+#include <pointskin/camera.hpp>
 #include <pointskin/error.hpp>
 #include <pointskin/render.hpp>
 
@@ -26,7 +27,6 @@ using mesh_detail::plus;
 using mesh_detail::times;
 using mesh_detail::to_double;
 using render_detail::Band;
-using render_detail::Camera;
 using render_detail::Colour;
 using render_detail::kSupersampling;
 using render_detail::ProjectedVertex;
@@ -159,7 +159,7 @@ class Renderer {
 
   const Mesh& mesh_;
   const RenderOptions& options_;
-  Camera camera_;
+  render_detail::Camera camera_;
   exec::Buffer<ProjectedVertex> vertices_;
   exec::Buffer<RowRange> rows_;
   std::vector<Vec3f> colours_;
@@ -177,6 +177,13 @@ Image render(const Mesh& mesh, const RenderOptions& options) {
   image.rgb.resize(std::size_t{3} * static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
   Renderer(ex, mesh, options).draw(ex, image);
   return image;
+}
+
+Camera camera_of(const Mesh& mesh, const RenderOptions& options) {
+  check_options(options);
+  Cpu ex(options.threads);
+  mesh_detail::check_indices(ex, mesh);
+  return render_detail::Camera(ex, mesh, options).matrices(mesh.origin, options);
 }
 
 }  // namespace pointskin

@@ -1,0 +1,249 @@
+#include "edit_script.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <pointskin/error.hpp>
+#include <pointskin/io.hpp>
+
+#include "json_reader.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using CameraOfPicture = std::function<Camera(const RenderOptions&)>;
+
+constexpr int kVersion = 1;
+
+Matrix4 matrix_at(const JsonReader& json) {
+  Matrix4 matrix{};
+  const std::vector<double> numbers = json.numbers(matrix.size());
+  std::copy(numbers.begin(), numbers.end(), matrix.begin());
+  return matrix;
+}
+
+int pixels_at(const JsonReader& json, const std::string& key, int otherwise) {
+  if (!json.has(key)) return otherwise;
+  const double pixels = json.at(key).number();
+  if (!(pixels >= 1 && pixels <= 16384 && pixels == std::floor(pixels)))
+    json.at(key).fail("must be a whole number of pixels in [1, 16384]");
+  return static_cast<int>(pixels);
+}
+
+/// As the options of `pointskin render`.
+RenderOptions picture_at(const JsonReader& json) {
+  json.allow({"azimuth", "elevation", "up", "orthographic", "width", "height"});
+  RenderOptions options;
+  options.width = pixels_at(json, "width", options.width);
+  options.height = pixels_at(json, "height", options.height);
+  if (json.has("azimuth")) options.azimuth_degrees = json.at("azimuth").number();
+  if (json.has("elevation")) options.elevation_degrees = json.at("elevation").number();
+  if (json.has("orthographic") && json.at("orthographic").boolean()) options.projection = Projection::orthographic;
+  if (json.has("up")) {
+    const std::string up = json.at("up").text();
+    if (up != "y" && up != "z") json.at("up").fail("must be \"y\" or \"z\"");
+    options.up = up == "z" ? UpAxis::z : UpAxis::y;
+  }
+  return options;
+}
+
+Camera camera_at(const JsonReader& json, const CameraOfPicture& camera_of_picture) {
+  if (!json.has("view")) return camera_of_picture(picture_at(json));
+  json.allow({"view", "projection", "width", "height"});
+  Camera camera;
+  camera.view = matrix_at(json.at("view"));
+  camera.projection = matrix_at(json.at("projection"));
+  camera.width = json.at("width").number();
+  camera.height = json.at("height").number();
+  return camera;
+}
+
+std::vector<Pixel> pixels_at(const JsonReader& json) {
+  std::vector<Pixel> pixels;
+  for (const JsonReader& element : json.elements()) {
+    const std::vector<double> xy = element.numbers(2);
+    pixels.push_back({xy[0], xy[1]});
+  }
+  return pixels;
+}
+
+/// "area": polygons, or "rectangle": two opposite corners.
+Area area_at(const JsonReader& json) {
+  Area area;
+  if (json.has("rectangle")) {
+    const std::vector<double> r = json.at("rectangle").numbers(4);
+    area.push_back({{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}});
+  } else if (json.has("area")) {
+    for (const JsonReader& polygon : json.at("area").elements()) area.push_back(pixels_at(polygon));
+  }
+  return area;
+}
+
+Guide guide_at(const JsonReader& json, const CameraOfPicture& camera_of_picture) {
+  json.allow({"op", "camera", "stroke", "area", "rectangle", "interval", "normals", "inside_only"});
+  Guide guide;
+  guide.camera = camera_at(json.at("camera"), camera_of_picture);
+  if (json.has("stroke")) guide.stroke = pixels_at(json.at("stroke"));
+  guide.area = area_at(json);
+  if (json.has("interval")) guide.interval = json.at("interval").number();
+  if (json.has("inside_only")) guide.inside_only = json.at("inside_only").boolean();
+  if (json.has("normals")) {
+    const std::string normals = json.at("normals").text();
+    if (normals != "cloud" && normals != "stroke") json.at("normals").fail("must be \"cloud\" or \"stroke\"");
+    guide.normals = normals == "stroke" ? GuideNormals::stroke : GuideNormals::cloud;
+  }
+  return guide;
+}
+
+Remove remove_at(const JsonReader& json, const CameraOfPicture& camera_of_picture) {
+  json.allow({"op", "camera", "area", "rectangle", "originals"});
+  Remove remove;
+  remove.camera = camera_at(json.at("camera"), camera_of_picture);
+  remove.area = area_at(json);
+  if (json.has("originals")) remove.originals = json.at("originals").boolean();
+  return remove;
+}
+
+/// "rotation": nine numbers, or {"axis": [x, y, z], "degrees": a}.
+std::array<double, 9> rotation_at(const JsonReader& json) {
+  std::array<double, 9> matrix{};
+  if (json.value().is_array()) {
+    const std::vector<double> numbers = json.numbers(9);
+    std::copy(numbers.begin(), numbers.end(), matrix.begin());
+    return matrix;
+  }
+  json.allow({"axis", "degrees"});
+  std::vector<double> axis = json.at("axis").numbers(3);
+  const double length = std::hypot(axis[0], axis[1], axis[2]);
+  if (!(length > 0)) json.at("axis").fail("must not be zero");
+  for (double& a : axis) a /= length;
+  const double angle = json.at("degrees").number() * std::numbers::pi / 180;
+  const double s = std::sin(angle);
+  const double c = 1 - std::cos(angle);
+  const double x = axis[0];
+  const double y = axis[1];
+  const double z = axis[2];
+  return {1 - c * (y * y + z * z), c * x * y - s * z,       c * x * z + s * y,
+          c * x * y + s * z,       1 - c * (x * x + z * z), c * y * z - s * x,
+          c * x * z - s * y,       c * y * z + s * x,       1 - c * (x * x + y * y)};
+}
+
+/// {"lower": [x, y, z], "upper": [x, y, z]}, either may be left out.
+void read_box(const JsonReader& json, Insert& insert) {
+  json.allow({"lower", "upper"});
+  const auto read = [&json](const char* key, Vec3d& corner) {
+    if (!json.has(key)) return;
+    const std::vector<double> xyz = json.at(key).numbers(3);
+    std::copy(xyz.begin(), xyz.end(), corner.begin());
+  };
+  read("lower", insert.lower);
+  read("upper", insert.upper);
+}
+
+Insert insert_at(const JsonReader& json, const std::filesystem::path& folder) {
+  json.allow({"op", "file", "box", "scale", "rotation", "translation", "snap"});
+  Insert insert;
+  insert.source = std::filesystem::absolute(folder / json.at("file").text()).lexically_normal().string();
+  insert.part = std::make_shared<const Cloud>(read_cloud(insert.source));
+  if (json.has("box")) read_box(json.at("box"), insert);
+  if (json.has("scale")) insert.placement.scale = json.at("scale").number();
+  if (json.has("rotation")) insert.placement.rotation = rotation_at(json.at("rotation"));
+  if (json.has("translation")) {
+    const std::vector<double> t = json.at("translation").numbers(3);
+    insert.placement.translation = {t[0], t[1], t[2]};
+  }
+  if (json.has("snap")) insert.snap = json.at("snap").boolean();
+  return insert;
+}
+
+Json to_json(const Camera& camera) {
+  return {{"view", camera.view}, {"projection", camera.projection}, {"width", camera.width}, {"height", camera.height}};
+}
+
+Json to_json(const Guide& guide, const std::filesystem::path& /*folder*/) {
+  Json json = {{"op", "guide"}, {"camera", to_json(guide.camera)}};
+  if (!guide.stroke.empty()) json["stroke"] = guide.stroke;
+  if (guide.stroke.empty()) json["area"] = guide.area;
+  json["interval"] = guide.interval;
+  json["normals"] = guide.normals == GuideNormals::stroke ? "stroke" : "cloud";
+  json["inside_only"] = guide.inside_only;
+  return json;
+}
+
+Json to_json(const Remove& remove, const std::filesystem::path& /*folder*/) {
+  return {{"op", "remove"}, {"camera", to_json(remove.camera)}, {"area", remove.area}, {"originals", remove.originals}};
+}
+
+/// Numbers that are not finite are not written: JSON has none.
+Json box_json(const Insert& insert) {
+  const auto is_finite = [](const Vec3d& v) {
+    return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
+  };
+  Json box = Json::object();
+  if (is_finite(insert.lower)) box["lower"] = insert.lower;
+  if (is_finite(insert.upper)) box["upper"] = insert.upper;
+  return box;
+}
+
+Json to_json(const Insert& insert, const std::filesystem::path& folder) {
+  Json json = {{"op", "insert"}, {"file", std::filesystem::proximate(insert.source, folder).string()}};
+  json["box"] = box_json(insert);
+  json["scale"] = insert.placement.scale;
+  json["rotation"] = insert.placement.rotation;
+  json["translation"] = insert.placement.translation;
+  json["snap"] = insert.snap;
+  return json;
+}
+
+JsonReader operations_of(const nlohmann::json& json, const std::string& path) {
+  const JsonReader script(json, path + ": ");
+  script.allow({"version", "operations"});
+  if (script.at("version").number() != kVersion) script.at("version").fail(fmt::format("must be {}", kVersion));
+  return script.at("operations");
+}
+
+}  // namespace
+
+EditScript::EditScript(const std::string& path) : path_(path), json_(read_json(path)) {
+  // Everything but pictures' cameras and parts is checked before any work.
+  const CameraOfPicture any = [](const RenderOptions&) { return Camera(); };
+  for (const JsonReader& entry : operations_of(json_, path_).elements()) {
+    const std::string op = entry.at("op").text();
+    if (op == "guide") {
+      guide_at(entry, any);
+    } else if (op == "remove") {
+      remove_at(entry, any);
+    } else if (op == "undo" || op == "redo") {
+      entry.allow({"op"});
+    } else if (op != "insert") {
+      entry.at("op").fail("must be \"guide\", \"remove\", \"insert\", \"undo\" or \"redo\"");
+    }
+  }
+}
+
+std::size_t EditScript::size() const { return json_["operations"].size(); }
+
+ScriptStep EditScript::step(std::size_t i, const CameraOfPicture& camera_of_picture) const {
+  const JsonReader entry = operations_of(json_, path_).elements()[i];
+  const std::string op = entry.at("op").text();
+  if (op == "undo") return {ScriptStep::Kind::undo, {}};
+  if (op == "redo") return {ScriptStep::Kind::redo, {}};
+  if (op == "guide") return {ScriptStep::Kind::apply, guide_at(entry, camera_of_picture)};
+  if (op == "remove") return {ScriptStep::Kind::apply, remove_at(entry, camera_of_picture)};
+  return {ScriptStep::Kind::apply, insert_at(entry, std::filesystem::path(path_).parent_path())};
+}
+
+nlohmann::ordered_json script_of(const std::vector<Operation>& operations, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  Json list = Json::array();
+  for (const Operation& operation : operations)
+    list.push_back(std::visit([&folder](const auto& kind) { return to_json(kind, folder); }, operation));
+  return {{"version", kVersion}, {"operations", list}};
+}
+
+}  // namespace pointskin::cli

@@ -1,0 +1,10 @@
+#include "cloud/placement_impl.hpp"
+#include "exec/cuda_primitives.cuh"
+
+namespace pointskin::cloud {
+
+template void place(exec::Cuda&, const Placement&, ArrayView<Vec3f>, ArrayView<Vec3f>);
+template std::optional<Placement> find_snap(exec::Cuda&, const SnapTarget&, ArrayView<const Vec3f>,
+                                            ArrayView<const Vec3f>);
+
+}  // namespace pointskin::cloud

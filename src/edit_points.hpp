@@ -1,0 +1,49 @@
+// What the operations of a session do to the points of a cloud, on one space.
+#pragma once
+
+#include <pointskin/edit.hpp>
+
+#include <string>
+
+#include "exec/space.hpp"
+#include "fit_field.hpp"
+#include "points.hpp"
+
+namespace pointskin::detail {
+
+/// What an operation starts from.
+struct EditInput {
+  const DevicePoints& points;  ///< relative to `origin`, all used, with DevicePoints::added
+  const FieldData& field;      ///< of these points, with samples
+  Vec3d origin;
+  Bounds base_box;           ///< of the original points
+  double normal_length = 1;  ///< of normals that are made
+  const Options& options;
+};
+
+/// The points after an operation, and what it did.
+struct EditedPoints {
+  DevicePoints points;
+  std::int64_t added = 0, removed = 0;
+  bool snapped = false;
+
+  [[nodiscard]] bool changed() const { return added > 0 || removed > 0; }
+};
+
+/// @throws Error usage, empty_result (no points left), over_limit, no_normals, invalid_input
+template <exec::Space Exec>
+EditedPoints edit_points(Exec& ex, const EditInput& input, const Operation& operation);
+
+/// A copy of the points that are used, without DevicePoints::used.
+template <exec::Space Exec>
+DevicePoints copy_used(Exec& ex, const DevicePoints& points);
+
+/// Mean length of the normals.
+template <exec::Space Exec>
+double mean_length(Exec& ex, ArrayView<const Vec3f> normals);
+
+/// Throws before any work where an operation is not as described in edit.hpp.
+/// @throws Error usage
+void validate(const Operation& operation);
+
+}  // namespace pointskin::detail

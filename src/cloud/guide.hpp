@@ -16,6 +16,7 @@
 #include "exec/space.hpp"
 #include "field/field_view.hpp"
 #include "octree/frame.hpp"
+#include "octree/search.hpp"
 
 namespace pointskin::cloud {
 
@@ -55,17 +56,17 @@ GuidePoints guide_points(Exec& ex, const ViewFrame& view, const GuideShape& shap
 
 /// Samples with normals to interpolate from, in the order of the tree's keys.
 struct NormalSamples {
-  octree::OctreeView tree;
-  ArrayView<const Vec3f> positions;      ///< in the unit cube
+  octree::SearchView points;             ///< in the unit cube; ids are not used
   ArrayView<const Vec3f> normals;        ///< unit length or zero
   ArrayView<const std::uint8_t> counts;  ///< 0: the sample does not count; empty: all do
 };
 
-/// Normals at `points`: the mean of those of the samples in a box around, weight 1 / distance^2, of unit length; the
-/// box is two finest cells wide at first and doubles until it holds a sample that counts (step 5, first kind). Zero
-/// where all normals cancel, or nothing counts.
+/// Normals at `points`: the mean of those of the samples around, weight 1 / distance^2, of unit length. Around is what
+/// lies at most a finest cell farther away than the nearest sample that counts (step 5, first kind). Zero where all
+/// normals cancel, or nothing counts. Differs: a ball in place of a box that grows, so that far inside no more samples
+/// count than near the surface, whatever way it faces.
 /// @param points  relative to the cloud's origin, world units
-/// O(log(width of the box) + samples around it) each. Deterministic.
+/// O(log samples + samples around) each. Deterministic.
 template <exec::Space Exec>
 exec::Buffer<Vec3f> interpolate_normals(Exec& ex, const NormalSamples& samples, const octree::Frame& cube,
                                         ArrayView<const Vec3f> points);

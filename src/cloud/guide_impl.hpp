@@ -10,6 +10,7 @@
 #include "cloud/guide.hpp"
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
+#include "octree/walk.hpp"
 
 namespace pointskin::cloud {
 namespace guide {
@@ -191,68 +192,65 @@ GuidePoints in_area(Exec& ex, const ViewFrame& view, const GuideShape& shape, co
   return keep_points(ex, area, begin.back(), keep, false);
 }
 
-/// Sums the normals of the samples in a box around a point.
+/// Sums the normals of the samples in a ball around a point.
 struct InterpolateNormal {
   NormalSamples samples;
   octree::Frame cube;
   ArrayView<const Vec3f> points;
   ArrayView<Vec3f> normals;
 
-  struct Sum {
-    double x = 0, y = 0, z = 0;
-    bool found = false;
-  };
-
   PSK_HD void operator()(std::int64_t i) const {
-    const Vec3f p = clamped(cube.to_unit(points[i]));
-    octree::Leaf leaf = octree::locate(samples.tree, octree::point_key(p.x, p.y, p.z), samples.tree.depth);
+    const Vec3f p = cube.to_unit(points[i]);
+    const float nearest = nearest_squared(p);
+    const float cell = 1.0F / static_cast<float>(1 << samples.points.tree.depth);
+    const float radius = std::sqrt(nearest) + cell;
     Sum sum;
-    while (true) {
-      add_box(p, leaf, sum);
-      if (sum.found || leaf.depth == 0) break;
-      leaf.cell = samples.tree.levels[leaf.depth].parent[leaf.cell >> 3];
-      --leaf.depth;
-    }
+    if (nearest < kNothing) add_ball(p, radius * radius, sum);
     const double length = std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
     const double inverse = length > 0 ? 1 / length : 0;
     normals[i] = {static_cast<float>(sum.x * inverse), static_cast<float>(sum.y * inverse),
                   static_cast<float>(sum.z * inverse)};
   }
 
-  [[nodiscard]] PSK_HD static Vec3f clamped(const Vec3f& p) {
-    const auto clamp = [](float v) { return v < 0 ? 0.0F : v > 1 ? 1.0F : v; };
-    return {clamp(p.x), clamp(p.y), clamp(p.z)};
+ private:
+  static constexpr float kNothing = 1e30F;
+  struct Sum {
+    double x = 0, y = 0, z = 0;
+  };
+
+  [[nodiscard]] PSK_HD bool does_count(std::int32_t s) const {
+    return samples.counts.empty() || samples.counts[s] != 0;
   }
 
-  /// Samples less than a cell away along every axis: they are in the 27 cells around. At the root, all samples.
-  PSK_HD void add_box(const Vec3f& p, const octree::Leaf& leaf, Sum& sum) const {
-    const octree::LevelView& level = samples.tree.levels[leaf.depth];
-    if (leaf.depth == 0) return add_cell(p, level.point_begin[0], level.point_begin[1], 2, sum);
-    const float width = 1.0F / static_cast<float>(1 << leaf.depth);
-    for (int j = 0; j < octree::kNeighbours; ++j) {
-      const std::int32_t cell = level.neighbour(leaf.cell, j / 9 - 1, j / 3 % 3 - 1, j % 3 - 1);
-      if (level.is_cell(cell)) add_cell(p, level.point_begin[cell], level.point_begin[cell + 1], width, sum);
-    }
+  [[nodiscard]] PSK_HD float nearest_squared(const Vec3f& p) const {
+    float nearest = kNothing;
+    octree::search::walk(
+        samples.points, p, [&](float squared) { return squared >= nearest; },
+        [&](std::int32_t first, std::int32_t last) {
+          for (std::int32_t s = first; s < last; ++s) {
+            const float squared = octree::search::squared_distance(p, samples.points.positions[s]);
+            if (squared < nearest && does_count(s)) nearest = squared;
+          }
+        });
+    return nearest;
   }
 
-  PSK_HD void add_cell(const Vec3f& p, std::int32_t first, std::int32_t last, float half_width, Sum& sum) const {
-    for (std::int32_t s = first; s < last; ++s) {
-      if (!samples.counts.empty() && samples.counts[s] == 0) continue;
-      const Vec3f q = samples.positions[s];
-      const double x = static_cast<double>(q.x) - p.x;
-      const double y = static_cast<double>(q.y) - p.y;
-      const double z = static_cast<double>(q.z) - p.z;
-      if (!(x * x < half(half_width) && y * y < half(half_width) && z * z < half(half_width))) continue;
-      // At the sample itself the weight would be infinite: it is that of a distance far below a float's resolution.
-      const double weight = 1 / (x * x + y * y + z * z + 1e-18);
-      const Vec3f n = samples.normals[s];
-      sum.x += weight * n.x;
-      sum.y += weight * n.y;
-      sum.z += weight * n.z;
-      sum.found = true;
-    }
+  PSK_HD void add_ball(const Vec3f& p, float most, Sum& sum) const {
+    octree::search::walk(
+        samples.points, p, [&](float squared) { return squared > most; },
+        [&](std::int32_t first, std::int32_t last) {
+          for (std::int32_t s = first; s < last; ++s) {
+            const float squared = octree::search::squared_distance(p, samples.points.positions[s]);
+            if (squared > most || !does_count(s)) continue;
+            // At the sample itself the weight would be infinite: it is that of a distance below a float's resolution.
+            const double weight = 1 / (double{squared} + 1e-16);
+            const Vec3f n = samples.normals[s];
+            sum.x += weight * n.x;
+            sum.y += weight * n.y;
+            sum.z += weight * n.z;
+          }
+        });
   }
-  [[nodiscard]] PSK_HD static double half(float half_width) { return static_cast<double>(half_width) * half_width; }
 };
 
 struct IsNotInArea {

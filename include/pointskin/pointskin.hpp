@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/deform.hpp>
 #include <pointskin/device.hpp>
 #include <pointskin/error.hpp>
 #include <pointskin/field.hpp>

@@ -2,6 +2,7 @@
 
 #include "deform_impl.hpp"
 #include "exec/cpu_primitives.hpp"
+#include "octree/search_impl.hpp"
 
 namespace pointskin::detail {
 

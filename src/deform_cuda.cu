@@ -1,5 +1,6 @@
 #include "deform_impl.hpp"
 #include "exec/cuda_primitives.cuh"
+#include "octree/search_impl.hpp"
 
 namespace pointskin::detail {
 

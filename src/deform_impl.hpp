@@ -116,10 +116,8 @@ class DeformOn final : public DeformEngine {
 
   [[nodiscard]] SpacingRatios spacing() const override {
     ex_->activate();
-    if (rest_distances_.empty())
-      rest_distances_ =
-          mean_neighbour_distances(*ex_, {rest_.field.tree.view(), rest_.unit.cview(), {}}, rest_.field.frame.size);
-    if (samples_.positions.size() < 2) return {};
+    if (rest_.size() < 2 || samples_.positions.size() < 2) return {};
+    if (rest_distances_.empty()) rest_distances_ = neighbour_distances(*ex_, rest_.positions.cview());
     const std::vector<float> now = neighbour_distances(*ex_, samples_.positions.cview());
     std::vector<std::int32_t> parents;
     copy_out(samples_.parents, parents);

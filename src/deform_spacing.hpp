@@ -44,48 +44,48 @@ struct ByIndex {
 
 }  // namespace spacing
 
-/// Mean distance of each point to its 6 nearest neighbours, in the order of `points.ids`.
-/// @param points  with ids, or without: then in their own order
+/// Smallest depth at which a surface's cells hold about as many points as a search looks at in one go.
+inline int search_depth(std::int64_t points) {
+  constexpr int kDeepest = 12;
+  int depth = 1;
+  while (depth < kDeepest && (std::int64_t{8} << 2 * depth) < points) ++depth;
+  return depth;
+}
+
+/// Mean distance of each point to its 6 nearest neighbours, in the order of the points; 0 where there are no others.
+/// Independent of their order. A tree and a search of its own; 56 bytes of scratch for each of up to 2^20 points.
 template <exec::Space Exec>
-std::vector<float> mean_neighbour_distances(Exec& ex, octree::SearchView points, double size_world) {
-  const std::int64_t n = points.positions.size;
-  constexpr std::int64_t kBlock = std::int64_t{1} << 20;  // of queries: 56 bytes each
-  const exec::Buffer<std::int32_t> own = exec::iota(ex, n);
-  points.ids = own.cview();
+std::vector<float> neighbour_distances(Exec& ex, ArrayView<const Vec3f> positions) {
+  const std::int64_t n = positions.size;
+  const octree::Frame frame = octree::fit_frame(ex, positions, 1);
+  auto unit = exec::make_buffer<Vec3f>(ex, n);
+  for_each(ex, "deform.spacing", n, octree::ToUnit{frame, positions, unit.view()});
+  auto ties = exec::make_buffer<std::uint64_t>(ex, n);
+  for_each(ex, "deform.spacing", n, spacing::ByIndex{ties.view()});
+  const octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), ties.cview());
+  const octree::OctreeData tree = octree::build_octree(ex, sorted.keys.cview(), search_depth(n));
+  auto by_key = exec::make_buffer<Vec3f>(ex, n);
+  exec::gather(ex, unit.cview(), sorted.order.cview(), by_key.view());
+
+  const octree::SearchView points{tree.view(), by_key.cview(), sorted.order.cview()};
+  constexpr std::int64_t kAtOnce = std::int64_t{1} << 20;
   std::vector<float> means(static_cast<std::size_t>(n));
-  for (std::int64_t first = 0; first < n; first += kBlock) {
-    const std::int64_t count = std::min(kBlock, n - first);
+  for (std::int64_t first = 0; first < n; first += kAtOnce) {  // in key order: neighbours look at the same cells
+    const std::int64_t count = std::min(kAtOnce, n - first);
     auto ids = exec::make_buffer<std::int32_t>(ex, count * (spacing::kNeighbours + 1));
     auto squared = exec::make_buffer<float>(ex, count * (spacing::kNeighbours + 1));
-    octree::find_nearest(ex, points, points.positions.part(first, count), spacing::kNeighbours + 1, ids.view(),
+    octree::find_nearest(ex, points, by_key.cview().part(first, count), spacing::kNeighbours + 1, ids.view(),
                          squared.view());
     auto mean = exec::make_buffer<float>(ex, count);
     for_each(ex, "deform.spacing", count,
-             spacing::MeanDistance{ids.cview(), squared.cview(), static_cast<float>(size_world), mean.view()});
+             spacing::MeanDistance{ids.cview(), squared.cview(), static_cast<float>(frame.size), mean.view()});
     copy_to_host(ex, mean.cview(), means.data() + first);
   }
-  return means;
-}
-
-/// The same for points in any order, which need not have a tree yet; in their order.
-template <exec::Space Exec>
-std::vector<float> neighbour_distances(Exec& ex, ArrayView<const Vec3f> positions) {
-  constexpr int kDepth = 10;
-  const octree::Frame frame = octree::fit_frame(ex, positions, 1);
-  auto unit = exec::make_buffer<Vec3f>(ex, positions.size);
-  for_each(ex, "deform.spacing", positions.size, octree::ToUnit{frame, positions, unit.view()});
-  auto ties = exec::make_buffer<std::uint64_t>(ex, positions.size);
-  for_each(ex, "deform.spacing", positions.size, spacing::ByIndex{ties.view()});
-  const octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), ties.cview());
-  const octree::OctreeData tree = octree::build_octree(ex, sorted.keys.cview(), kDepth);
-  auto sorted_unit = exec::make_buffer<Vec3f>(ex, positions.size);
-  exec::gather(ex, unit.cview(), sorted.order.cview(), sorted_unit.view());
-  const std::vector<float> by_key = mean_neighbour_distances(ex, {tree.view(), sorted_unit.cview(), {}}, frame.size);
-  std::vector<std::int32_t> order(static_cast<std::size_t>(positions.size));
+  std::vector<std::int32_t> order(means.size());
   copy_to_host(ex, sorted.order.cview(), order.data());
-  std::vector<float> means(by_key.size());
-  for (std::size_t i = 0; i < order.size(); ++i) means[static_cast<std::size_t>(order[i])] = by_key[i];
-  return means;
+  std::vector<float> out(means.size());
+  for (std::size_t i = 0; i < order.size(); ++i) out[static_cast<std::size_t>(order[i])] = means[i];
+  return out;
 }
 
 /// Percentiles of the distances now over those of the parents at rest; coinciding points are left out.

@@ -100,7 +100,7 @@ struct Lattice {
 /// pivot, weighted also by how much a handle turns and stretches. So one handle alone, or many with one transform,
 /// moves everything rigidly; to hold something, give it a handle with the identity.
 struct Deformation {
-  std::vector<Handle> handles;    ///< at most 32
+  std::vector<Handle> handles;    ///< at most 16
   std::vector<Lattice> lattices;  ///< at most 8
 };
 

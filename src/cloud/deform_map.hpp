@@ -14,7 +14,7 @@
 
 namespace pointskin::cloud {
 
-inline constexpr int kMostHandles = 32;
+inline constexpr int kMostHandles = 16;
 inline constexpr int kMostLattices = 8;
 inline constexpr int kMostSpans = 15;
 

@@ -162,9 +162,9 @@ void Lattice::reset() {
 
 void validate(const Deformation& deformation, std::int64_t points) {
   if (deformation.handles.size() > static_cast<std::size_t>(cloud::kMostHandles))
-    throw Error(ErrorCode::usage, "a deformation has at most 32 handles");
+    throw Error(ErrorCode::usage, fmt::format("a deformation has at most {} handles", cloud::kMostHandles));
   if (deformation.lattices.size() > static_cast<std::size_t>(cloud::kMostLattices))
-    throw Error(ErrorCode::usage, "a deformation has at most 8 lattices");
+    throw Error(ErrorCode::usage, fmt::format("a deformation has at most {} lattices", cloud::kMostLattices));
   for (std::size_t i = 0; i < deformation.handles.size(); ++i) {
     const Checker check(fmt::format("handles[{}]", i));
     std::visit(CheckRegion{check, points}, deformation.handles[i].region);

@@ -295,7 +295,7 @@ TEST(Validation, NamesWhatIsWrong) {
   flat.axes[2] = {1, 1, 0};
   flat.reset();
   EXPECT_NE(story({{}, {flat}}), "");
-  EXPECT_NE(story({std::vector<Handle>(33, Handle{Ball{}, {}}), {}}), "");
+  EXPECT_NE(story({std::vector<Handle>(17, Handle{Ball{}, {}}), {}}), "");
 }
 
 }  // namespace

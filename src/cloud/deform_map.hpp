@@ -102,7 +102,8 @@ PSK_HD inline double blend_slope(double t) { return 6 * t * (1 - t); }
 
 /// Fills the weights from distances d_k and gradients g_k: t_k = (1/d_k) / sum (1/d_j), w_k = b(t_k) / sum b(t_j).
 /// grad t_k = t_k (sum_j t_j g_j / d_j - g_k / d_k). In a region all slopes are 0.
-PSK_HD inline void weigh_handles(int count, const RegionDistance* distances, HandleWeights& out) {
+/// @returns false if the point is in a region: the weights do not change there
+PSK_HD inline bool weigh_handles(int count, const RegionDistance* distances, HandleWeights& out) {
   double nearest = distances[0].distance;
   for (int k = 1; k < count; ++k) nearest = distances[k].distance < nearest ? distances[k].distance : nearest;
   if (nearest == 0) {
@@ -112,7 +113,7 @@ PSK_HD inline void weigh_handles(int count, const RegionDistance* distances, Han
       out.weight[k] = distances[k].distance == 0 ? 1.0 / inside : 0.0;
       out.gradient[k] = {};
     }
-    return;
+    return false;
   }
   double shares = 0;
   for (int k = 0; k < count; ++k) shares += nearest / distances[k].distance;
@@ -134,6 +135,7 @@ PSK_HD inline void weigh_handles(int count, const RegionDistance* distances, Han
     out.weight[k] = blend(out.weight[k]) / blends;
     out.gradient[k] = (out.gradient[k] - slopes * out.weight[k]) * (1 / blends);
   }
+  return true;
 }
 
 /// The mean transform of weighted handles: x = c + v goes to x + (R (I + E) - I) v + d.
@@ -211,7 +213,7 @@ struct MapView {
       distances[k] = distance_to(handles[k], x, row < 0 ? Double3{} : to_double(nearest[row * nearest_stride + point]));
     }
     HandleWeights weights;
-    weigh_handles(count, distances, weights);
+    const bool weights_change = weigh_handles(count, distances, weights);
 
     const MeanTransform mean = mean_transform(handles, weights);
     const Rotation rotation(mean.rotation);
@@ -224,6 +226,7 @@ struct MapView {
     const auto image_of = [&](const Double3& axis) { return rotation * (axis + mean.stretch * axis); };
     Matrix3& jacobian = mapped.jacobian;
     jacobian = {image_of({1, 0, 0}), image_of({0, 1, 0}), image_of({0, 0, 1})};
+    if (!weights_change) return;
     const Double3 rotated = stretched + turning;
     const Matrix3 linear = jacobian;
     for (int k = 0; k < count; ++k) {  // the weights change from place to place

@@ -3,6 +3,7 @@
 
 #include <pointskin/camera.hpp>
 #include <pointskin/cloud.hpp>
+#include <pointskin/deform.hpp>
 #include <pointskin/device.hpp>
 #include <pointskin/edit.hpp>
 #include <pointskin/error.hpp>

@@ -2,7 +2,6 @@
 
 #include "deform_impl.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "octree/search_impl.hpp"
 
 namespace pointskin::detail {
 

@@ -1,6 +1,5 @@
 #include "deform_impl.hpp"
 #include "exec/cuda_primitives.cuh"
-#include "octree/search_impl.hpp"
 
 namespace pointskin::detail {
 

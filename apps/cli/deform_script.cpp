@@ -1,85 +1,15 @@
 #include "deform_script.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <initializer_list>
-#include <iostream>
-#include <iterator>
 #include <numbers>
-#include <string_view>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <pointskin/error.hpp>
-
-#include "console.hpp"
+#include "json_reader.hpp"
 
 namespace pointskin::cli {
 namespace {
 
-using Json = nlohmann::json;
-
-/// A value and where it is.
-class Value {
- public:
-  Value(const Json& json, std::string place) : json_(json), place_(std::move(place)) {}
-
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw Error(ErrorCode::invalid_input, one_line(fmt::format("{}: {}", place_, what)));
-  }
-
-  [[nodiscard]] bool has(const char* key) const { return json_.contains(key); }
-  [[nodiscard]] Value at(const char* key) const {
-    if (!json_.contains(key)) refuse(fmt::format("needs the key '{}'", key));
-    return {json_.at(key), fmt::format("{}.{}", place_, key)};
-  }
-  [[nodiscard]] std::size_t size() const { return json_.size(); }
-  [[nodiscard]] Value at(std::size_t i) const { return {json_.at(i), fmt::format("{}[{}]", place_, i)}; }
-
-  /// Complains unless this is an object with some of these keys alone.
-  void object(std::initializer_list<std::string_view> keys) const {
-    if (!json_.is_object()) refuse("must be an object { }");
-    for (const auto& [key, unused] : json_.items())
-      if (std::find(keys.begin(), keys.end(), key) == keys.end())
-        refuse(fmt::format("does not know the key '{}'", key));
-  }
-  void array() const {
-    if (!json_.is_array()) refuse("must be a list [ ]");
-  }
-  void array(std::size_t count) const {
-    if (!json_.is_array() || json_.size() != count) refuse(fmt::format("must be a list of {}", count));
-  }
-
-  [[nodiscard]] double number() const {
-    if (!json_.is_number() || !std::isfinite(json_.get<double>())) refuse("must be a number");
-    return json_.get<double>();
-  }
-  [[nodiscard]] std::int64_t whole_number(std::int64_t lowest, std::int64_t highest) const {
-    const bool whole =
-        json_.is_number_integer() && (!json_.is_number_unsigned() || json_.get<std::uint64_t>() >> 63 == 0);
-    if (!whole || json_.get<std::int64_t>() < lowest || json_.get<std::int64_t>() > highest)
-      refuse(fmt::format("must be a whole number in {}..{}", lowest, highest));
-    return json_.get<std::int64_t>();
-  }
-  [[nodiscard]] Vec3d vector() const {
-    array(3);
-    return {at(0).number(), at(1).number(), at(2).number()};
-  }
-  [[nodiscard]] std::string one_of(std::initializer_list<std::string_view> words) const {
-    if (json_.is_string())
-      for (const std::string_view word : words)
-        if (json_.get<std::string>() == word) return std::string(word);
-    refuse(fmt::format("must be one of {}", fmt::join(words, ", ")));
-  }
-
- private:
-  const Json& json_;
-  std::string place_;
-};
+using Value = JsonReader;
 
 HandleRegion parse_region(const Value& region) {
   region.object({"half_space", "ball", "box", "capsule", "points"});
@@ -200,24 +130,10 @@ Lattice parse_lattice(const Value& value) {
   return lattice;
 }
 
-std::string read_all(const std::string& path) {
-  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file.is_open() || file.bad())
-    throw Error(ErrorCode::invalid_input, fmt::format("{}: cannot be read; is the name right?", path));
-  return text;
-}
-
 }  // namespace
 
 Deformation parse_deformation(const std::string& text, const std::string& name) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw Error(ErrorCode::invalid_input, fmt::format("{}: is not JSON: byte {}", name, error.byte));
-  }
+  const nlohmann::json json = parse_json(text, name);
   const Value script(json, name);
   script.object({"handles", "lattices"});
   Deformation deformation;
@@ -234,6 +150,6 @@ Deformation parse_deformation(const std::string& text, const std::string& name) 
   return deformation;
 }
 
-Deformation read_deformation(const std::string& path) { return parse_deformation(read_all(path), path); }
+Deformation read_deformation(const std::string& path) { return parse_deformation(read_text(path), path); }
 
 }  // namespace pointskin::cli

@@ -27,34 +27,27 @@ Matrix4 matrix_at(const JsonReader& json) {
   return matrix;
 }
 
-int pixels_at(const JsonReader& json, const std::string& key, int otherwise) {
-  if (!json.has(key)) return otherwise;
-  const double pixels = json.at(key).number();
-  if (!(pixels >= 1 && pixels <= 16384 && pixels == std::floor(pixels)))
-    json.at(key).fail("must be a whole number of pixels in [1, 16384]");
-  return static_cast<int>(pixels);
+int pixels_at(const JsonReader& json, const char* key, int otherwise) {
+  constexpr int kMost = 16384;
+  return json.has(key) ? static_cast<int>(json.at(key).whole_number(1, kMost)) : otherwise;
 }
 
 /// As the options of `pointskin render`.
 RenderOptions picture_at(const JsonReader& json) {
-  json.allow({"azimuth", "elevation", "up", "orthographic", "width", "height"});
+  json.object({"azimuth", "elevation", "up", "orthographic", "width", "height"});
   RenderOptions options;
   options.width = pixels_at(json, "width", options.width);
   options.height = pixels_at(json, "height", options.height);
   if (json.has("azimuth")) options.azimuth_degrees = json.at("azimuth").number();
   if (json.has("elevation")) options.elevation_degrees = json.at("elevation").number();
   if (json.has("orthographic") && json.at("orthographic").boolean()) options.projection = Projection::orthographic;
-  if (json.has("up")) {
-    const std::string up = json.at("up").text();
-    if (up != "y" && up != "z") json.at("up").fail("must be \"y\" or \"z\"");
-    options.up = up == "z" ? UpAxis::z : UpAxis::y;
-  }
+  if (json.has("up")) options.up = json.at("up").one_of({"y", "z"}) == "z" ? UpAxis::z : UpAxis::y;
   return options;
 }
 
 Camera camera_at(const JsonReader& json, const CameraOfPicture& camera_of_picture) {
   if (!json.has("view")) return camera_of_picture(picture_at(json));
-  json.allow({"view", "projection", "width", "height"});
+  json.object({"view", "projection", "width", "height"});
   Camera camera;
   camera.view = matrix_at(json.at("view"));
   camera.projection = matrix_at(json.at("projection"));
@@ -65,8 +58,9 @@ Camera camera_at(const JsonReader& json, const CameraOfPicture& camera_of_pictur
 
 std::vector<Pixel> pixels_at(const JsonReader& json) {
   std::vector<Pixel> pixels;
-  for (const JsonReader& element : json.elements()) {
-    const std::vector<double> xy = element.numbers(2);
+  json.array();
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const std::vector<double> xy = json.at(i).numbers(2);
     pixels.push_back({xy[0], xy[1]});
   }
   return pixels;
@@ -79,29 +73,28 @@ Area area_at(const JsonReader& json) {
     const std::vector<double> r = json.at("rectangle").numbers(4);
     area.push_back({{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}});
   } else if (json.has("area")) {
-    for (const JsonReader& polygon : json.at("area").elements()) area.push_back(pixels_at(polygon));
+    const JsonReader polygons = json.at("area");
+    polygons.array();
+    for (std::size_t i = 0; i < polygons.size(); ++i) area.push_back(pixels_at(polygons.at(i)));
   }
   return area;
 }
 
 Guide guide_at(const JsonReader& json, const CameraOfPicture& camera_of_picture) {
-  json.allow({"op", "camera", "stroke", "area", "rectangle", "interval", "normals", "inside_only"});
+  json.object({"op", "camera", "stroke", "area", "rectangle", "interval", "normals", "inside_only"});
   Guide guide;
   guide.camera = camera_at(json.at("camera"), camera_of_picture);
   if (json.has("stroke")) guide.stroke = pixels_at(json.at("stroke"));
   guide.area = area_at(json);
   if (json.has("interval")) guide.interval = json.at("interval").number();
   if (json.has("inside_only")) guide.inside_only = json.at("inside_only").boolean();
-  if (json.has("normals")) {
-    const std::string normals = json.at("normals").text();
-    if (normals != "cloud" && normals != "stroke") json.at("normals").fail("must be \"cloud\" or \"stroke\"");
-    guide.normals = normals == "stroke" ? GuideNormals::stroke : GuideNormals::cloud;
-  }
+  if (json.has("normals") && json.at("normals").one_of({"cloud", "stroke"}) == "stroke")
+    guide.normals = GuideNormals::stroke;
   return guide;
 }
 
 Remove remove_at(const JsonReader& json, const CameraOfPicture& camera_of_picture) {
-  json.allow({"op", "camera", "area", "rectangle", "originals"});
+  json.object({"op", "camera", "area", "rectangle", "originals"});
   Remove remove;
   remove.camera = camera_at(json.at("camera"), camera_of_picture);
   remove.area = area_at(json);
@@ -112,15 +105,15 @@ Remove remove_at(const JsonReader& json, const CameraOfPicture& camera_of_pictur
 /// "rotation": nine numbers, or {"axis": [x, y, z], "degrees": a}.
 std::array<double, 9> rotation_at(const JsonReader& json) {
   std::array<double, 9> matrix{};
-  if (json.value().is_array()) {
+  if (json.is_array()) {
     const std::vector<double> numbers = json.numbers(9);
     std::copy(numbers.begin(), numbers.end(), matrix.begin());
     return matrix;
   }
-  json.allow({"axis", "degrees"});
-  std::vector<double> axis = json.at("axis").numbers(3);
+  json.object({"axis", "degrees"});
+  Vec3d axis = json.at("axis").vector();
   const double length = std::hypot(axis[0], axis[1], axis[2]);
-  if (!(length > 0)) json.at("axis").fail("must not be zero");
+  if (!(length > 0)) json.at("axis").refuse("must not be zero");
   for (double& a : axis) a /= length;
   const double angle = json.at("degrees").number() * std::numbers::pi / 180;
   const double s = std::sin(angle);
@@ -135,28 +128,23 @@ std::array<double, 9> rotation_at(const JsonReader& json) {
 
 /// {"lower": [x, y, z], "upper": [x, y, z]}, either may be left out.
 void read_box(const JsonReader& json, Insert& insert) {
-  json.allow({"lower", "upper"});
+  json.object({"lower", "upper"});
   const auto read = [&json](const char* key, Vec3d& corner) {
-    if (!json.has(key)) return;
-    const std::vector<double> xyz = json.at(key).numbers(3);
-    std::copy(xyz.begin(), xyz.end(), corner.begin());
+    if (json.has(key)) corner = json.at(key).vector();
   };
   read("lower", insert.lower);
   read("upper", insert.upper);
 }
 
 Insert insert_at(const JsonReader& json, const std::filesystem::path& folder) {
-  json.allow({"op", "file", "box", "scale", "rotation", "translation", "snap"});
+  json.object({"op", "file", "box", "scale", "rotation", "translation", "snap"});
   Insert insert;
   insert.source = std::filesystem::absolute(folder / json.at("file").text()).lexically_normal().string();
   insert.part = std::make_shared<const Cloud>(read_cloud(insert.source));
   if (json.has("box")) read_box(json.at("box"), insert);
   if (json.has("scale")) insert.placement.scale = json.at("scale").number();
   if (json.has("rotation")) insert.placement.rotation = rotation_at(json.at("rotation"));
-  if (json.has("translation")) {
-    const std::vector<double> t = json.at("translation").numbers(3);
-    insert.placement.translation = {t[0], t[1], t[2]};
-  }
+  if (json.has("translation")) insert.placement.translation = json.at("translation").vector();
   if (json.has("snap")) insert.snap = json.at("snap").boolean();
   return insert;
 }
@@ -200,37 +188,39 @@ Json to_json(const Insert& insert, const std::filesystem::path& folder) {
   return json;
 }
 
+std::string op_of(const JsonReader& entry) {
+  return entry.at("op").one_of({"guide", "remove", "insert", "undo", "redo"});
+}
+
 JsonReader operations_of(const nlohmann::json& json, const std::string& path) {
-  const JsonReader script(json, path + ": ");
-  script.allow({"version", "operations"});
-  if (script.at("version").number() != kVersion) script.at("version").fail(fmt::format("must be {}", kVersion));
-  return script.at("operations");
+  const JsonReader script(json, path);
+  script.object({"version", "operations"});
+  (void)script.at("version").whole_number(kVersion, kVersion);
+  const JsonReader operations = script.at("operations");
+  operations.array();
+  return operations;
 }
 
 }  // namespace
 
-EditScript::EditScript(const std::string& path) : path_(path), json_(read_json(path)) {
+EditScript::EditScript(const std::string& path) : path_(path), json_(parse_json(read_text(path), path)) {
   // Everything but pictures' cameras and parts is checked before any work.
   const CameraOfPicture any = [](const RenderOptions&) { return Camera(); };
-  for (const JsonReader& entry : operations_of(json_, path_).elements()) {
-    const std::string op = entry.at("op").text();
-    if (op == "guide") {
-      guide_at(entry, any);
-    } else if (op == "remove") {
-      remove_at(entry, any);
-    } else if (op == "undo" || op == "redo") {
-      entry.allow({"op"});
-    } else if (op != "insert") {
-      entry.at("op").fail("must be \"guide\", \"remove\", \"insert\", \"undo\" or \"redo\"");
-    }
+  const JsonReader operations = operations_of(json_, path_);
+  for (std::size_t i = 0; i < operations.size(); ++i) {
+    const JsonReader entry = operations.at(i);
+    const std::string op = op_of(entry);
+    if (op == "guide") guide_at(entry, any);
+    if (op == "remove") remove_at(entry, any);
+    if (op == "undo" || op == "redo") entry.object({"op"});
   }
 }
 
 std::size_t EditScript::size() const { return json_["operations"].size(); }
 
 ScriptStep EditScript::step(std::size_t i, const CameraOfPicture& camera_of_picture) const {
-  const JsonReader entry = operations_of(json_, path_).elements()[i];
-  const std::string op = entry.at("op").text();
+  const JsonReader entry = operations_of(json_, path_).at(i);
+  const std::string op = op_of(entry);
   if (op == "undo") return {ScriptStep::Kind::undo, {}};
   if (op == "redo") return {ScriptStep::Kind::redo, {}};
   if (op == "guide") return {ScriptStep::Kind::apply, guide_at(entry, camera_of_picture)};

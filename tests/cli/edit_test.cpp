@@ -120,13 +120,13 @@ TEST_F(EditCommand, SavesPartsByTheFolderOfTheScript) {
 }
 
 TEST_F(EditCommand, RefusesScriptsThatAreWrong) {
-  expect_failure("{", 3, "no valid JSON");
-  expect_failure(R"({"operations": []})", 3, "lacks \"version\"");
-  expect_failure(R"({"version": 2, "operations": []})", 3, "must be 1");
+  expect_failure("{", 3, "is not JSON");
+  expect_failure(R"({"operations": []})", 3, "needs the key 'version'");
+  expect_failure(R"({"version": 2, "operations": []})", 3, "must be a whole number in 1..1");
   expect_failure(script_with(R"({"op": "bend"})"), 3, "operations[0].op");
-  expect_failure(script_with(R"({"op": "guide", "stroke": [[1, 2]]})"), 3, "lacks \"camera\"");
+  expect_failure(script_with(R"({"op": "guide", "stroke": [[1, 2]]})"), 3, "needs the key 'camera'");
   expect_failure(script_with(stroke() + R"(, {"op": "guide", "camera": {}, "stroke": [[1]]})"), 3,
-                 "operations[1].stroke[0]: must have 2 elements");
+                 "operations[1].stroke[0]: must be a list of 2");
   expect_failure(script_with(R"({"op": "guide", "camera": {"azimut": 3}, "stroke": [[1, 2]]})"), 3, "azimut");
   expect_failure(script_with(R"({"op": "guide", "camera": {}})"), 2, "stroke or an area");
   expect_failure(script_with(R"({"op": "undo"})"), 2, "nothing to undo");

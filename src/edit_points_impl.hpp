@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "cloud/guide.hpp"
+#include "cloud/normals_around.hpp"
 #include "cloud/placement.hpp"
 #include "cloud/point_kind.hpp"
 #include "cloud/view_frame.hpp"
@@ -137,7 +138,7 @@ EditedPoints apply(Exec& ex, const EditInput& input, const Guide& guide) {
     auto counts = exec::make_buffer<std::uint8_t>(ex, samples.added.size());
     for_each(ex, "guide.count", counts.size(), IsKindOtherThan{samples.added.cview(), cloud::kGuide, counts.view()});
     points.normals = cloud::interpolate_normals(
-        ex, {{field.tree.view(), samples.positions.cview(), {}}, samples.normals.cview(), counts.cview()}, field.frame,
+        ex, {field.tree.view(), samples.positions.cview(), samples.normals.cview(), counts.cview()}, field.frame,
         points.positions.cview());
   }
   if (input.normal_length != 1)

@@ -27,12 +27,21 @@ class SessionOn final : public EditSession::Impl {
     if constexpr (std::is_same_v<Exec, exec::Cpu>) threads_ = ex_->threads();
     envelope_ = make_envelope(*ex_, options_.reconstruction, origin_);
     states_.push_back(make_base(base));
+    show(*states_.front());
+    if (options_.topology) base_topology_ = topology_of(mesh_, threads_);
   }
 
   const StepReport& apply(const Operation& operation) override {
     ex_->activate();
     StepReport report;
     std::shared_ptr<const State> next = make_next(states_[done_], operation, report);  // may throw: nothing has changed
+    Watch watch(*ex_);
+    if (next != states_[done_]) show(*next);
+    report.reconstruct_ms += watch.lap();
+    report.total_ms = report.edit_ms + report.reconstruct_ms;
+    report.triangles = static_cast<std::int64_t>(mesh_.triangles.size());
+    report.before = done_ == 0 ? base_topology_ : steps_[done_ - 1].report.after;
+    report.after = next == states_[done_] || !options_.topology ? report.before : topology_of(mesh_, threads_);
     steps_.resize(done_);
     states_.resize(done_ + 1);
     steps_.push_back({operation, std::move(report)});
@@ -44,12 +53,14 @@ class SessionOn final : public EditSession::Impl {
   bool undo() override {
     if (done_ == 0) return false;
     go_to(done_ - 1);
+    show(*states_[done_]);
     return true;
   }
 
   bool redo() override {
     if (done_ == steps_.size()) return false;
     go_to(done_ + 1);
+    show(*states_[done_]);
     return true;
   }
 
@@ -65,7 +76,7 @@ class SessionOn final : public EditSession::Impl {
     return reports;
   }
 
-  [[nodiscard]] const Mesh& mesh() const override { return states_[done_]->mesh; }
+  [[nodiscard]] const Mesh& mesh() const override { return mesh_; }
 
   [[nodiscard]] Cloud cloud() const override {
     ex_->activate();
@@ -85,12 +96,11 @@ class SessionOn final : public EditSession::Impl {
   }
 
  private:
-  /// A cloud with its field and its surface. Steps that change nothing share it.
+  /// A cloud with its field and its surface, all on the device. Steps that change nothing share it.
   struct State {
     DevicePoints points;
     FieldData field;
-    Mesh mesh;
-    Topology topology;
+    surface::Surface surface;
   };
   struct Step {
     Operation operation;
@@ -133,7 +143,6 @@ class SessionOn final : public EditSession::Impl {
     base_box_ = octree::box_around(*ex_, state->points.positions.cview());
     if (options_.reconstruction.confidence) normal_length_ = mean_length(*ex_, state->points.normals.cview());
     extract(*state);
-    if (options_.topology) state->topology = topology_of(state->mesh, threads_);
     return state;
   }
 
@@ -145,10 +154,23 @@ class SessionOn final : public EditSession::Impl {
 
   void extract(State& state) const {
     RunReport unused;
-    extract_mesh(*ex_, state.field, options_.reconstruction, origin_, state.mesh, unused);
+    state.surface = extract_some(*ex_, state.field, options_.reconstruction, unused);
   }
 
-  /// The state after an operation.
+  /// Copies the surface of a state to the host.
+  void show(const State& state) {
+    const surface::Surface& from = state.surface;
+    surface::Surface copy{copy_of(from.positions), copy_of(from.normals), copy_of(from.triangles)};
+    download_mesh(*ex_, state.field, std::move(copy), options_.reconstruction, origin_, mesh_);
+  }
+  template <class T>
+  exec::Buffer<T> copy_of(const exec::Buffer<T>& from) const {
+    auto to = exec::make_buffer<T>(*ex_, from.size());
+    exec::copy(*ex_, from.cview(), to.view());
+    return to;
+  }
+
+  /// The state after an operation: that before, if it changes nothing.
   std::shared_ptr<const State> make_next(const std::shared_ptr<const State>& before, const Operation& operation,
                                          StepReport& report) const {
     validate(operation);
@@ -162,19 +184,14 @@ class SessionOn final : public EditSession::Impl {
       state->points = std::move(edited.points);
       report.warm = fit(*before, std::holds_alternative<Insert>(operation), *state);
       extract(*state);
-      report.reconstruct_ms = watch.lap();
-      if (options_.topology) state->topology = topology_of(state->mesh, threads_);
       next = std::move(state);
     }
+    report.reconstruct_ms = watch.lap();
     report.operation = name_of(operation);
     report.added = edited.added;
     report.removed = edited.removed;
     report.snapped = edited.snapped;
     report.points = next->points.positions.size();
-    report.triangles = static_cast<std::int64_t>(next->mesh.triangles.size());
-    report.before = before->topology;
-    report.after = next->topology;
-    report.total_ms = report.edit_ms + report.reconstruct_ms;
     return next;
   }
 
@@ -227,9 +244,11 @@ class SessionOn final : public EditSession::Impl {
   std::shared_ptr<const envelope::Envelope> envelope_;
   Bounds base_box_;
   double normal_length_ = 1;
+  Topology base_topology_;
   std::vector<Step> steps_;                           ///< done and undone
   std::vector<std::shared_ptr<const State>> states_;  ///< steps_ + 1; null: to be made again
   std::size_t done_ = 0;
+  Mesh mesh_;  ///< of the present state
 };
 
 }  // namespace pointskin::detail

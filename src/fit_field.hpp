@@ -70,12 +70,16 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
 template <exec::Space Exec>
 surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, RunReport& report);
 
-/// The same with what a user gets: in world units relative to `origin`, on the host, with attributes and density.
-/// @param mesh  receives it; its memory is used again
+/// The same, with triangles.
 /// @throws Error empty_result if nothing crosses the isovalue, or nothing is left after Options::trim
 template <exec::Space Exec>
-void extract_mesh(Exec& ex, const FieldData& field, const Options& options, const Vec3d& origin, Mesh& mesh,
-                  RunReport& report);
+surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& options, RunReport& report);
+
+/// Copies a surface of `field` to the host, in world units relative to `origin`, with attributes and density.
+/// @param mesh  receives it; its memory is used again
+template <exec::Space Exec>
+void download_mesh(Exec& ex, const FieldData& field, surface::Surface surface, const Options& options,
+                   const Vec3d& origin, Mesh& mesh);
 
 /// `data` as what a Field delegates to.
 /// @param origin  of the cloud: what places in `data` are relative to

@@ -209,9 +209,6 @@ surface::Surface extract(Exec& ex, const FieldData& field, const Options& option
   return surface;
 }
 
-namespace fit {
-
-/// The surface, with triangles.
 template <exec::Space Exec>
 surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& options, RunReport& report) {
   ex.activate();
@@ -223,6 +220,8 @@ surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& o
     throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
   return surface;
 }
+
+namespace fit {
 
 /// Samples per unit of area at the vertices.
 template <exec::Space Exec>
@@ -253,9 +252,8 @@ std::vector<Attribute> attributes_at(Exec& ex, const FieldData& field, const Opt
 }  // namespace fit
 
 template <exec::Space Exec>
-void extract_mesh(Exec& ex, const FieldData& field, const Options& options, const Vec3d& origin, Mesh& mesh,
-                  RunReport& report) {
-  surface::Surface surface = fit::extract_some(ex, field, options, report);
+void download_mesh(Exec& ex, const FieldData& field, surface::Surface surface, const Options& options,
+                   const Vec3d& origin, Mesh& mesh) {
   std::vector<Attribute> attributes = fit::attributes_at(ex, field, options, surface);
   download(ex, std::move(surface), field.frame, origin, mesh);
   mesh.attributes = std::move(attributes);
@@ -297,12 +295,12 @@ class FieldOn final : public FieldImpl {
 
   void extract(Mesh& mesh) const override {
     RunReport unused;
-    extract_mesh(*ex_, data_, options_, origin_, mesh, unused);
+    download_mesh(*ex_, data_, extract_some(*ex_, data_, options_, unused), options_, origin_, mesh);
   }
 
   void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
-    surface::Surface surface = fit::extract_some(*ex_, data_, options_, report);
+    surface::Surface surface = extract_some(*ex_, data_, options_, report);
     data_.values.reset();
     std::vector<Attribute> attributes = fit::attributes_at(*ex_, data_, options_, surface);
     clock.lap(report.extract_ms);

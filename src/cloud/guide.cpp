@@ -17,8 +17,6 @@ DepthRange depth_range(const ViewFrame& view, const Bounds& box, double nearest)
 }
 
 template GuidePoints guide_points(exec::Cpu&, const ViewFrame&, const GuideShape&, const KeepInside&, bool);
-template exec::Buffer<Vec3f> interpolate_normals(exec::Cpu&, const NormalSamples&, const octree::Frame&,
-                                                 ArrayView<const Vec3f>);
 template exec::Buffer<std::int32_t> points_not_in(exec::Cpu&, const ViewFrame&, const Polygons&, ArrayView<const Vec3f>,
                                                   ArrayView<const std::uint8_t>);
 

@@ -4,8 +4,6 @@
 namespace pointskin::cloud {
 
 template GuidePoints guide_points(exec::Cuda&, const ViewFrame&, const GuideShape&, const KeepInside&, bool);
-template exec::Buffer<Vec3f> interpolate_normals(exec::Cuda&, const NormalSamples&, const octree::Frame&,
-                                                 ArrayView<const Vec3f>);
 template exec::Buffer<std::int32_t> points_not_in(exec::Cuda&, const ViewFrame&, const Polygons&,
                                                   ArrayView<const Vec3f>, ArrayView<const std::uint8_t>);
 

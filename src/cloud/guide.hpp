@@ -1,6 +1,6 @@
 // Points that guide the surface: a stroke extruded along the view, or an area filled in volume.
-// Source: Zhou et al. 2010, section 5.1, steps 1 to 5. Differs: the points of all layers are candidates of one launch,
-// and only those that are kept are written.
+// Source: Zhou et al. 2010, section 5.1, steps 1 to 5 (but cloud/normals_around.hpp). Differs: the points of all layers
+// are candidates of one launch, and only those that are kept are written.
 #pragma once
 
 #include <pointskin/cloud.hpp>
@@ -16,7 +16,6 @@
 #include "exec/space.hpp"
 #include "field/field_view.hpp"
 #include "octree/frame.hpp"
-#include "octree/search.hpp"
 
 namespace pointskin::cloud {
 
@@ -53,23 +52,6 @@ struct GuidePoints {
 template <exec::Space Exec>
 GuidePoints guide_points(Exec& ex, const ViewFrame& view, const GuideShape& shape, const KeepInside& keep,
                          bool stroke_normals);
-
-/// Samples with normals to interpolate from, in the order of the tree's keys.
-struct NormalSamples {
-  octree::SearchView points;             ///< in the unit cube; ids are not used
-  ArrayView<const Vec3f> normals;        ///< unit length or zero
-  ArrayView<const std::uint8_t> counts;  ///< 0: the sample does not count; empty: all do
-};
-
-/// Normals at `points`: the mean of those of the samples around, weight 1 / distance^2, of unit length. Around is what
-/// lies at most a finest cell farther away than the nearest sample that counts (step 5, first kind). Zero where all
-/// normals cancel, or nothing counts. Differs: a ball in place of a box that grows, so that far inside no more samples
-/// count than near the surface, whatever way it faces.
-/// @param points  relative to the cloud's origin, world units
-/// O(log samples + samples around) each. Deterministic.
-template <exec::Space Exec>
-exec::Buffer<Vec3f> interpolate_normals(Exec& ex, const NormalSamples& samples, const octree::Frame& cube,
-                                        ArrayView<const Vec3f> points);
 
 /// Indices of the points that stay when those inside of the polygons are removed, ascending.
 /// @param candidates  shape (n); 0: the point stays wherever it is

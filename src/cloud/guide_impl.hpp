@@ -10,7 +10,6 @@
 #include "cloud/guide.hpp"
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
-#include "octree/walk.hpp"
 
 namespace pointskin::cloud {
 namespace guide {
@@ -192,67 +191,6 @@ GuidePoints in_area(Exec& ex, const ViewFrame& view, const GuideShape& shape, co
   return keep_points(ex, area, begin.back(), keep, false);
 }
 
-/// Sums the normals of the samples in a ball around a point.
-struct InterpolateNormal {
-  NormalSamples samples;
-  octree::Frame cube;
-  ArrayView<const Vec3f> points;
-  ArrayView<Vec3f> normals;
-
-  PSK_HD void operator()(std::int64_t i) const {
-    const Vec3f p = cube.to_unit(points[i]);
-    const float nearest = nearest_squared(p);
-    const float cell = 1.0F / static_cast<float>(1 << samples.points.tree.depth);
-    const float radius = std::sqrt(nearest) + cell;
-    Sum sum;
-    if (nearest < kNothing) add_ball(p, radius * radius, sum);
-    const double length = std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
-    const double inverse = length > 0 ? 1 / length : 0;
-    normals[i] = {static_cast<float>(sum.x * inverse), static_cast<float>(sum.y * inverse),
-                  static_cast<float>(sum.z * inverse)};
-  }
-
- private:
-  static constexpr float kNothing = 1e30F;
-  struct Sum {
-    double x = 0, y = 0, z = 0;
-  };
-
-  [[nodiscard]] PSK_HD bool does_count(std::int32_t s) const {
-    return samples.counts.empty() || samples.counts[s] != 0;
-  }
-
-  [[nodiscard]] PSK_HD float nearest_squared(const Vec3f& p) const {
-    float nearest = kNothing;
-    octree::search::walk(
-        samples.points, p, [&](float squared) { return squared >= nearest; },
-        [&](std::int32_t first, std::int32_t last) {
-          for (std::int32_t s = first; s < last; ++s) {
-            const float squared = octree::search::squared_distance(p, samples.points.positions[s]);
-            if (squared < nearest && does_count(s)) nearest = squared;
-          }
-        });
-    return nearest;
-  }
-
-  PSK_HD void add_ball(const Vec3f& p, float most, Sum& sum) const {
-    octree::search::walk(
-        samples.points, p, [&](float squared) { return squared > most; },
-        [&](std::int32_t first, std::int32_t last) {
-          for (std::int32_t s = first; s < last; ++s) {
-            const float squared = octree::search::squared_distance(p, samples.points.positions[s]);
-            if (squared > most || !does_count(s)) continue;
-            // At the sample itself the weight would be infinite: it is that of a distance below a float's resolution.
-            const double weight = 1 / (double{squared} + 1e-16);
-            const Vec3f n = samples.normals[s];
-            sum.x += weight * n.x;
-            sum.y += weight * n.y;
-            sum.z += weight * n.z;
-          }
-        });
-  }
-};
-
 struct IsNotInArea {
   ViewFrame view;
   Polygons area;
@@ -271,14 +209,6 @@ GuidePoints guide_points(Exec& ex, const ViewFrame& view, const GuideShape& shap
                          bool stroke_normals) {
   if (!shape.stroke.empty()) return guide::along_stroke(ex, view, shape, keep, stroke_normals);
   return guide::in_area(ex, view, shape, keep);
-}
-
-template <exec::Space Exec>
-exec::Buffer<Vec3f> interpolate_normals(Exec& ex, const NormalSamples& samples, const octree::Frame& cube,
-                                        ArrayView<const Vec3f> points) {
-  auto normals = exec::make_buffer<Vec3f>(ex, points.size);
-  for_each_apart(ex, "guide.normals", points.size, guide::InterpolateNormal{samples, cube, points, normals.view()});
-  return normals;
 }
 
 template <exec::Space Exec>

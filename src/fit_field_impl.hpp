@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "exec/algorithms.hpp"
+#include "field/distance.hpp"
 #include "field/evaluate.hpp"
 #include "fit_field.hpp"
+#include "offset_surface.hpp"
 #include "phase_clock.hpp"
 #include "points.hpp"
 #include "poisson/boundary.hpp"
@@ -105,10 +107,46 @@ double find_isovalue(Exec& ex, const FieldData& field, ArrayView<const float> u,
   return isovalue;
 }
 
-}  // namespace fit
+/// The report of a field that nothing was solved for.
+inline void report_octree(const octree::OctreeData& tree, RunReport& report) {
+  std::vector<poisson::LevelSolve> levels(static_cast<std::size_t>(tree.depth) + 1);
+  for (int d = 0; d <= tree.depth; ++d) levels[static_cast<std::size_t>(d)].depth = d;
+  report_levels(tree, levels, report);
+}
 
+/// Samples to signed distance (P10), once frame, tree and channels of `field` are there.
 template <exec::Space Exec>
-FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const Options& options, RunReport& report) {
+void fit_distance(Exec& ex, SortedSamples& sorted, const Options& options, PhaseClock<Exec>& clock, FieldData& field,
+                  RunReport& report) {
+  poisson::Samples& samples = sorted.samples;
+  const bool has_attributes = !field.attributes.channels.empty();
+  announce(options, "splat", 0.25);
+  exec::Buffer<float> weights;
+  if (options.confidence) weights = poisson::confidence_weights(ex, samples.normals.cview());
+  field::normalise(ex, samples.normals.view());
+  if (options.density || options.trim > 0)
+    field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
+  if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
+  clock.lap(report.splat_ms);
+
+  announce(options, "solve", 0.45);
+  field.values =
+      field::distance_to_planes(ex, field.tree, {samples.positions.cview(), samples.normals.cview(), weights.cview()});
+  field.isovalue = 0;
+  if (has_attributes) {
+    field.attributes.weights = std::move(weights);
+    field.attributes.positions = std::move(samples.positions);
+  }
+  clock.lap(report.solve_ms);
+  clock.read();
+  report.isovalue = 0;
+  report_octree(field.tree, report);
+}
+
+/// The field of the options, without an offset.
+template <exec::Space Exec>
+FieldData fit_to_points(Exec& ex, DevicePoints& points, const FitSetup& setup, const Options& options,
+                        RunReport& report) {
   PhaseClock clock(ex);
   FieldData field;
   field.envelope = setup.envelope;
@@ -124,6 +162,11 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
   field.tree = octree::build_octree(ex, sorted.keys.cview(), options.depth);
   sorted.keys.reset();
   clock.lap(report.octree_ms);
+  if (options.field == FieldKind::distance) {
+    sorted.samples = std::move(samples);
+    fit_distance(ex, sorted, options, clock, field, report);
+    return field;
+  }
 
   fit::announce(options, "splat", 0.25);
   if (has_attributes && options.confidence)
@@ -161,6 +204,16 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
   report.isovalue = field.isovalue;
   fit::report_levels(field.tree, solution.levels, report);
   return field;
+}
+
+}  // namespace fit
+
+template <exec::Space Exec>
+FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const Options& options, RunReport& report) {
+  FieldData field = fit::fit_to_points(ex, points, setup, options, report);
+  if (options.offset == 0) return field;
+  fit::announce(options, "solve", 0.8);
+  return offset_surface(ex, field, options, report);
 }
 
 /// Share of curvature that a crossing takes (surface/edge_vertex.hpp). The screening pulls the trilinear function to

@@ -21,6 +21,7 @@ struct ReconstructArgs {
   std::string max_memory;        ///< empty: no limit
   std::string confidence = "0";  ///< PoissonRecon's exponent of the normals' length: 0 or 1 here
   std::string boundary = "free";
+  std::string field = "poisson";
   int boundary_type = 0;  ///< PoissonRecon's number of the boundary; 0: none
   Options options;
   double width_world = 0;  ///< > 0: chooses the depth

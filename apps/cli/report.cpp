@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 Json options_json(const Record& record) {
   const Options& options = record.options;
   Json json = {{"depth", options.depth},
+               {"field", options.field == FieldKind::distance ? "distance" : "poisson"},
                {"screening", options.screening},
                {"iterations", options.iterations},
                {"scale", options.scale},
@@ -29,6 +30,7 @@ Json options_json(const Record& record) {
                {"normals", options.normals},
                {"open", options.domain_faces == DomainFaces::open},
                {"boundary", options.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
+               {"offset", options.offset},
                {"trim", options.trim},
                {"island_ratio", options.island_ratio},
                {"keep_strays", options.keep_strays},
@@ -52,9 +54,10 @@ Json octree_json(const RunReport& run) {
   return {{"depth", run.depth}, {"nodes", run.nodes}, {"levels", levels}};
 }
 
-Json solve_json(const RunReport& run) {
+Json solve_json(const Record& record) {
   Json levels = Json::array();
-  for (const LevelReport& level : run.levels) {
+  if (record.options.field == FieldKind::distance) return {{"levels", levels}};  // nothing is solved for
+  for (const LevelReport& level : record.run.levels) {
     levels.push_back({{"depth", level.depth},
                       {"unknowns", level.unknowns},
                       {"iterations", level.iterations},
@@ -83,6 +86,17 @@ Json envelope_json(const Record& record) {
           {"farthest_move", envelope.farthest_move}};
 }
 
+Json offset_json(const Record& record) {
+  const OffsetReport& offset = record.run.offset;
+  return {{"distance", record.options.offset},
+          {"cells", offset.cells},
+          {"cube_growth", offset.cube_growth},
+          {"triangles", offset.triangles},
+          {"samples", offset.samples},
+          {"band_cells", offset.band_cells},
+          {"ms", offset.ms}};
+}
+
 Json mesh_json(const MeshReport& mesh) {
   return {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
           {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler}};
@@ -108,9 +122,10 @@ Json to_json(const Record& record) {
   json["input"] = input_json(record);
   json["options"] = options_json(record);
   json["octree"] = octree_json(record.run);
-  json["solve"] = solve_json(record.run);
+  json["solve"] = solve_json(record);
   json["isovalue"] = record.run.isovalue;
   if (record.options.envelope != nullptr) json["envelope"] = envelope_json(record);
+  if (record.options.offset != 0) json["offset"] = offset_json(record);
   if (record.options.trim > 0) json["trim"] = trim_json(record.run.trim);
   json["mesh"] = mesh_json(record.mesh);
   json["ms"] = ms_json(record);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
@@ -175,7 +176,7 @@ FieldData fit_to_points(Exec& ex, DevicePoints& points, const FitSetup& setup, c
   poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
   field.resolution = poisson::find_resolution(ex, field.tree, samples);
   if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
-  if (!options.density && options.trim == 0) field.density.counts.reset();
+  if (!options.density && !options.weakness && options.trim == 0) field.density.counts.reset();
   if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
   samples.normals.reset();
@@ -197,6 +198,8 @@ FieldData fit_to_points(Exec& ex, DevicePoints& points, const FitSetup& setup, c
   screening = {};
   field.isovalue = fit::find_isovalue(ex, field, solution.u.cview(), samples, sorted.added.cview(), report);
   field.values = std::move(solution.u);
+  if (options.weakness)
+    field.weakness = weakness_scale(ex, field.tree, field.density, field.values.data(), samples.positions.cview());
   if (has_attributes) field.attributes.positions = std::move(samples.positions);
   clock.lap(report.solve_ms);
   clock.read();
@@ -277,6 +280,8 @@ class FieldOn final : public FieldImpl {
     RunReport unused;
     surface::Surface surface = extract_surface(unused);
     std::vector<Attribute> attributes = attributes_at(surface);
+    std::vector<Attribute> weakness = weakness_at(surface);
+    std::move(weakness.begin(), weakness.end(), std::back_inserter(attributes));
     download(*ex_, std::move(surface), data_.frame, origin_, mesh);
     mesh.attributes = std::move(attributes);
   }
@@ -284,8 +289,10 @@ class FieldOn final : public FieldImpl {
   void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
     surface::Surface surface = extract_surface(report);
+    std::vector<Attribute> weakness = weakness_at(surface);
     data_.values.reset();
     std::vector<Attribute> attributes = attributes_at(surface);
+    std::move(weakness.begin(), weakness.end(), std::back_inserter(attributes));
     clock.lap(report.extract_ms);
     const octree::Frame frame = data_.frame;
     data_ = {};
@@ -329,6 +336,18 @@ class FieldOn final : public FieldImpl {
     const double cell = data_.frame.size / static_cast<double>(std::int64_t{1} << data_.tree.depth);
     for (float& value : density.values) value = static_cast<float>(value / (cell * cell));
     return density;
+  }
+
+  /// The attribute "weakness", if it is asked for. Needs the field.
+  [[nodiscard]] std::vector<Attribute> weakness_at(const surface::Surface& surface) const {
+    if (!options_.weakness) return {};
+    const std::int64_t n = surface.positions.size();
+    auto out = exec::make_buffer<float>(*ex_, n);
+    evaluate_weakness(*ex_, data_.tree, data_.density, data_.values.data(), data_.weakness, surface.positions.cview(),
+                      out.view());
+    Attribute weakness{"weakness", AttributeType::float32, std::vector<float>(static_cast<std::size_t>(n))};
+    copy_to_host(*ex_, out.cview(), weakness.values.data());
+    return {std::move(weakness)};
   }
 
   std::shared_ptr<Exec> ex_;

@@ -91,7 +91,7 @@ struct Model {
   [[nodiscard]] bool has_envelope() const { return options.envelope != nullptr; }
   [[nodiscard]] bool trims() const { return options.trim > 0; }
   [[nodiscard]] std::int64_t kept_counts() const {
-    return options.density || trims() ? kNodeValue * counted_bricks : 0;
+    return options.density || options.weakness || trims() ? kNodeValue * counted_bricks : 0;
   }
   [[nodiscard]] std::int64_t vertices() const {
     if (is_distance()) return 8 * bricks / kNodesPerVertex;

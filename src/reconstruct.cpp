@@ -22,7 +22,9 @@ void check_combinations(const Options& options) {
   const bool distance = options.field == FieldKind::distance;
   exclude(distance && options.envelope != nullptr, "option envelope needs the field poisson");
   exclude(distance && options.boundary == Boundary::dirichlet, "option boundary must be free with the field distance");
+  exclude(distance && options.weakness, "option weakness needs the field poisson");
   if (options.offset == 0) return;
+  exclude(options.weakness, "options offset and weakness exclude each other: there are no samples on the surface");
   exclude(options.trim > 0, "options offset and trim exclude each other");
   exclude(options.density, "options offset and density exclude each other: there are no samples on the surface");
   exclude(options.attributes, "options offset and attributes exclude each other: there are no samples on the surface");

@@ -17,6 +17,7 @@ void add_info(CLI::App& program, Job& job);
 void add_check(CLI::App& program, Job& job);
 void add_compare(CLI::App& program, Job& job);
 void add_convert(CLI::App& program, Job& job);
+void add_problems(CLI::App& program, Job& job);
 void add_render(CLI::App& program, Job& job);
 void add_bench(CLI::App& program, Job& job);
 

@@ -37,6 +37,7 @@ void define_program(CLI::App& program, Job& job) {
   add_check(program, job);
   add_compare(program, job);
   add_convert(program, job);
+  add_problems(program, job);
   add_render(program, job);
   add_bench(program, job);
 }

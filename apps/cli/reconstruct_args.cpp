@@ -71,6 +71,8 @@ void define_surface(CLI::App& command, ReconstructArgs& args) {
   add_value(command, "--island-ratio", options.island_ratio, "trim: smallest piece, share of the area, 0 to below 1")
       ->type_name("R");
   command.add_flag("--density", options.density, "add the property density, points per world unit^2")->group("Surface");
+  command.add_flag("--weakness", options.weakness, "add the property weakness, 0 to 1: how doubtful the topology is")
+      ->group("Surface");
   command.add_flag("--keep-strays", options.keep_strays, "use stray points, too, and make the cube for all points")
       ->group("Surface");
   command
@@ -173,6 +175,7 @@ Options library_options(const ReconstructArgs& args) {
   options.domain_faces = args.open ? DomainFaces::open : DomainFaces::closed;
   options.boundary = boundary_of(args);
   options.field = field_of(args.field);
+  options.weakness = options.weakness || args.problems;
   options.residuals = args.verbose || !args.report.empty();
   if (!args.max_memory.empty()) options.max_memory_bytes = parse_bytes(args.max_memory);
   validate(options);

@@ -28,6 +28,7 @@ struct ReconstructArgs {
   int threads = 0;
   int repeat = 0;
   bool depth_given = false, width_given = false, repeat_given = false;
+  bool problems = false;  ///< list regions whose topology is doubtful; a mesh is not needed then
   bool no_normals = false, open = false, colors = false, dry_run = false, quiet = false, verbose = false;
 };
 

@@ -26,6 +26,7 @@ Json options_json(const Record& record) {
                {"fixed_screening", options.fixed_screening},
                {"linear_fit", options.linear_fit},
                {"density", options.density},
+               {"weakness", options.weakness},
                {"attributes", options.attributes},
                {"normals", options.normals},
                {"open", options.domain_faces == DomainFaces::open},
@@ -97,6 +98,28 @@ Json offset_json(const Record& record) {
           {"ms", offset.ms}};
 }
 
+Json problems_json(const std::vector<ProblemRegion>& problems) {
+  Json list = Json::array();
+  for (const ProblemRegion& region : problems) {
+    Json views = Json::array();
+    for (const ProblemView& view : region.views)
+      views.push_back({{"azimuth", view.azimuth_degrees},
+                       {"elevation", view.elevation_degrees},
+                       {"target", view.target_world},
+                       {"matrix", view.matrix}});
+    list.push_back({{"score", region.score},
+                    {"peak", region.peak},
+                    {"area", region.area},
+                    {"triangles", region.triangles},
+                    {"centroid", region.centroid_world},
+                    {"lower", region.lower_world},
+                    {"upper", region.upper_world},
+                    {"mean_normal", region.mean_normal},
+                    {"views", views}});
+  }
+  return list;
+}
+
 Json mesh_json(const MeshReport& mesh) {
   return {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
           {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler}};
@@ -117,7 +140,7 @@ Json repeat_json(const std::vector<double>& values) {
 }  // namespace
 
 Json to_json(const Record& record) {
-  Json json = {{"version", 1}, {"command", "reconstruct"}};
+  Json json = {{"version", 1}, {"command", record.command}};
   json["device"] = {{"kind", record.device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", record.device.name()}};
   json["input"] = input_json(record);
   json["options"] = options_json(record);
@@ -127,6 +150,7 @@ Json to_json(const Record& record) {
   if (record.options.envelope != nullptr) json["envelope"] = envelope_json(record);
   if (record.options.offset != 0) json["offset"] = offset_json(record);
   if (record.options.trim > 0) json["trim"] = trim_json(record.run.trim);
+  if (record.options.weakness) json["problems"] = problems_json(record.problems);
   json["mesh"] = mesh_json(record.mesh);
   json["ms"] = ms_json(record);
   if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
@@ -154,6 +178,19 @@ std::string summary(const Record& record) {
         fmt::format("; {} runs: median {:.2f} ms, {:.1f} frames per second", record.repeat_ms.size(), ms, 1000 / ms);
   }
   return line;
+}
+
+std::string problem_table(const std::vector<ProblemRegion>& problems) {
+  if (problems.empty()) return "no region whose topology is doubtful";
+  std::string table = "rank       score    peak        area  azimuth  elevation  target";
+  int rank = 0;
+  for (const ProblemRegion& region : problems) {
+    const ProblemView& view = region.views.front();
+    const Vec3d& at = view.target_world;
+    table += fmt::format("\n{:4}{:12.4g}{:8.3f}{:12.4g}{:9.1f}{:11.1f}  {:.6g},{:.6g},{:.6g}", ++rank, region.score,
+                         region.peak, region.area, view.azimuth_degrees, view.elevation_degrees, at[0], at[1], at[2]);
+  }
+  return table;
 }
 
 std::string level_table(const Record& record) {

@@ -58,10 +58,15 @@ struct Options {
   bool confidence = false;        ///< true: a normal's length, relative to the mean length, is the weight of its point
   bool linear_fit = false;        ///< true: edge crossings by linear instead of rescaled quadratic interpolation
   bool density = false;           ///< true: the mesh carries "density", samples per unit of area (world units^-2)
+  /// true: the mesh carries "weakness", in [0, 1]: where samples are sparser and the field flatter than at half of the
+  /// samples, so that the topology is a guess (docs/algorithm.md, section 13); for find_problems(). Needs the field
+  /// poisson; excludes `offset`.
+  bool weakness = false;
   /// true: the mesh carries every attribute of the cloud, interpolated at its vertices and smoothly extended over holes
   /// (docs/algorithm.md, section 8). Types stay: uint8 values are rounded. A point whose value is not finite does not
   /// count for that attribute; with `confidence` the others count by their weight. An attribute whose name the mesh has
-  /// itself (x, y, z, nx, ny, nz, with `density` also density), or that came before, gets `input_` in front of it.
+  /// itself (x, y, z, nx, ny, nz, with `density` also density, with `weakness` that), or that came before, gets
+  /// `input_` in front of it.
   bool attributes = false;
   bool normals = true;  ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;

@@ -205,7 +205,8 @@ class SessionOn final : public EditSession::Impl {
   bool fit(const State& before, bool may_leave_cube, State& state) const {
     FitSetup setup{.keep_points = true, .cube = before.field.frame, .envelope = envelope_, .keep_samples = true};
     if (may_leave_cube) setup.cube = cube_for(before.field.frame, state.points);
-    const bool warm = options_.warm_start && *setup.cube == before.field.frame;
+    const bool solves = options_.reconstruction.field == FieldKind::poisson;
+    const bool warm = solves && options_.warm_start && *setup.cube == before.field.frame;
     if (warm) setup.before = &before.field;
     RunReport unused;
     state.field = fit_field(*ex_, state.points, setup, options_.reconstruction, unused);

@@ -19,6 +19,7 @@
 #include "poisson/resolution.hpp"
 #include "reconstruct_engine.hpp"
 #include "surface/extract.hpp"
+#include "weakness.hpp"
 
 namespace pointskin::detail {
 
@@ -39,8 +40,9 @@ struct FieldData {
   field::AttributeSamples attributes;                  ///< without positions unless there are channels
   std::shared_ptr<const envelope::Envelope> envelope;  ///< with Options::envelope
   double isovalue = 0;
-  FieldSamples samples;  ///< with FitSetup::keep_samples
-  float trim_limit = 0;  ///< spacing in finest cells, with Options::trim
+  FieldSamples samples;    ///< with FitSetup::keep_samples
+  float trim_limit = 0;    ///< spacing in finest cells, with Options::trim
+  WeaknessScale weakness;  ///< with Options::weakness
 
   [[nodiscard]] field::FieldView view(DomainFaces faces) const {
     return {resolution.view(tree), values.data(), static_cast<float>(isovalue), faces == DomainFaces::closed,

@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "exec/algorithms.hpp"
+#include "field/distance.hpp"
 #include "field/evaluate.hpp"
 #include "fit_field.hpp"
+#include "offset_surface.hpp"
 #include "phase_clock.hpp"
 #include "points.hpp"
 #include "poisson/boundary.hpp"
@@ -117,34 +120,62 @@ double find_isovalue(Exec& ex, const FieldData& field, ArrayView<const float> u,
   return isovalue;
 }
 
-}  // namespace fit
+/// The report of a field that nothing was solved for.
+inline void report_octree(const octree::OctreeData& tree, RunReport& report) {
+  std::vector<poisson::LevelSolve> levels(static_cast<std::size_t>(tree.depth) + 1);
+  for (int d = 0; d <= tree.depth; ++d) levels[static_cast<std::size_t>(d)].depth = d;
+  report_levels(tree, levels, report);
+}
 
+/// Samples to signed distance (P10), once frame, tree and channels of `field` are there.
 template <exec::Space Exec>
-FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const Options& options, RunReport& report) {
+void fit_distance(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const Options& options, FieldData& field,
+                  RunReport& report) {
   PhaseClock clock(ex);
-  FieldData field;
-  field.envelope = setup.envelope;
-
-  fit::announce(options, "octree", 0.05);
-  field.frame = setup.cube ? *setup.cube : fit::fit_cube(ex, points, options, report);
-  report.points = points.used_count();
-  SortedSamples sorted = sort_into_cube(ex, points, field.frame);
-  poisson::Samples samples = std::move(sorted.samples);
-  field.attributes.channels = std::move(sorted.channels);
+  poisson::Samples& samples = sorted.samples;
   const bool has_attributes = !field.attributes.channels.empty();
-  if (!setup.keep_points) points = {};
-  field.tree = octree::build_octree(ex, sorted.keys.cview(), options.depth);
-  sorted.keys.reset();
-  clock.lap(report.octree_ms);
+  announce(options, "splat", 0.25);
+  exec::Buffer<float> weights;
+  if (options.confidence) weights = poisson::confidence_weights(ex, samples.normals.cview());
+  field::normalise(ex, samples.normals.view());
+  if (options.density || options.trim > 0)
+    field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
+  if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
+  clock.lap(report.splat_ms);
 
-  fit::announce(options, "splat", 0.25);
+  announce(options, "solve", 0.45);
+  field.values =
+      field::distance_to_planes(ex, field.tree, {samples.positions.cview(), samples.normals.cview(), weights.cview()});
+  field.isovalue = 0;
+  if (setup.keep_samples) {
+    field.samples.normals = std::move(samples.normals);
+    keep_samples(ex, samples, std::move(sorted.added), field.samples);
+  }
+  if (has_attributes) {
+    field.attributes.weights = std::move(weights);
+    field.attributes.positions = std::move(samples.positions);
+  }
+  clock.lap(report.solve_ms);
+  clock.read();
+  report.isovalue = 0;
+  report_octree(field.tree, report);
+}
+
+/// Samples to the screened Poisson field (P4 to P8), once frame, tree and channels of `field` are there.
+template <exec::Space Exec>
+void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const Options& options, FieldData& field,
+                 RunReport& report) {
+  PhaseClock clock(ex);
+  poisson::Samples& samples = sorted.samples;
+  const bool has_attributes = !field.attributes.channels.empty();
+  announce(options, "splat", 0.25);
   if (has_attributes && options.confidence)
     field.attributes.weights = poisson::confidence_weights(ex, samples.normals.cview());
   field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
   poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
   field.resolution = poisson::find_resolution(ex, field.tree, samples);
   if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
-  if (!options.density && options.trim == 0) field.density.counts.reset();
+  if (!options.density && !options.weakness && options.trim == 0) field.density.counts.reset();
   if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
   if (setup.keep_samples) field.samples.normals = std::move(samples.normals);
@@ -156,13 +187,13 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
 
   poisson::SolveOptions solving{options.screening, options.iterations, options.residuals};
   solving.before_level = [&](int depth) {  // every level costs about four times the one before
-    fit::announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
+    announce(options, "solve", 0.45 + 0.35 * std::pow(4.0, depth - options.depth - 1));
   };
   const octree::OctreeView tree = field.resolution.view(field.tree);
-  exec::Buffer<std::uint8_t> free_unknowns = fit::find_free_unknowns(ex, tree, field, options);
+  exec::Buffer<std::uint8_t> free_unknowns = find_free_unknowns(ex, tree, field, options);
   solving.free_unknowns = free_unknowns.cview();
   exec::Buffer<std::int32_t> matches;
-  if (setup.before != nullptr && fit::may_start_from(*setup.before, field)) {
+  if (setup.before != nullptr && may_start_from(*setup.before, field)) {
     solving.previous.tree = setup.before->resolution.view(setup.before->tree);
     solving.previous.u = setup.before->values.data();
     matches = poisson::match_bricks(ex, tree, solving.previous.tree);
@@ -174,16 +205,51 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
   free_unknowns.reset();
   divergence.reset();
   screening = {};
-  field.isovalue = fit::find_isovalue(ex, field, solution.u.cview(), samples, sorted.added.cview(), report);
+  field.isovalue = find_isovalue(ex, field, solution.u.cview(), samples, sorted.added.cview(), report);
   field.values = std::move(solution.u);
-  if (setup.keep_samples) fit::keep_samples(ex, samples, std::move(sorted.added), field.samples);
+  if (setup.keep_samples) keep_samples(ex, samples, std::move(sorted.added), field.samples);
+  if (options.weakness)
+    field.weakness = weakness_scale(ex, field.tree, field.density, field.values.data(), samples.positions.cview());
   if (has_attributes) field.attributes.positions = std::move(samples.positions);
   clock.lap(report.solve_ms);
   clock.read();
 
   report.isovalue = field.isovalue;
-  fit::report_levels(field.tree, solution.levels, report);
+  report_levels(field.tree, solution.levels, report);
+}
+
+/// The field of the options, without an offset.
+template <exec::Space Exec>
+FieldData fit_to_points(Exec& ex, DevicePoints& points, const FitSetup& setup, const Options& options,
+                        RunReport& report) {
+  PhaseClock clock(ex);
+  FieldData field;
+  field.envelope = setup.envelope;
+  announce(options, "octree", 0.05);
+  field.frame = setup.cube ? *setup.cube : fit_cube(ex, points, options, report);
+  report.points = points.used_count();
+  SortedSamples sorted = sort_into_cube(ex, points, field.frame);
+  field.attributes.channels = std::move(sorted.channels);
+  if (!setup.keep_points) points = {};
+  field.tree = octree::build_octree(ex, sorted.keys.cview(), options.depth);
+  sorted.keys.reset();
+  clock.lap(report.octree_ms);
+  if (options.field == FieldKind::distance)
+    fit_distance(ex, sorted, setup, options, field, report);
+  else
+    fit_poisson(ex, sorted, setup, options, field, report);
+  clock.read();
   return field;
+}
+
+}  // namespace fit
+
+template <exec::Space Exec>
+FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const Options& options, RunReport& report) {
+  FieldData field = fit::fit_to_points(ex, points, setup, options, report);
+  if (options.offset == 0) return field;
+  fit::announce(options, "solve", 0.8);
+  return offset_surface(ex, field, options, report);
 }
 
 /// Share of curvature that a crossing takes (surface/edge_vertex.hpp). The screening pulls the trilinear function to
@@ -236,9 +302,24 @@ Attribute density_at(Exec& ex, const FieldData& field, const surface::Surface& s
   return density;
 }
 
+/// The attribute "weakness", if it is asked for. Needs the field's values.
+template <exec::Space Exec>
+std::vector<Attribute> weakness_at(Exec& ex, const FieldData& field, const Options& options,
+                                   const surface::Surface& surface) {
+  if (!options.weakness) return {};
+  const std::int64_t n = surface.positions.size();
+  auto out = exec::make_buffer<float>(ex, n);
+  evaluate_weakness(ex, field.tree, field.density, field.values.data(), field.weakness, surface.positions.cview(),
+                    out.view());
+  Attribute weakness{"weakness", AttributeType::float32, std::vector<float>(static_cast<std::size_t>(n))};
+  copy_to_host(ex, out.cview(), weakness.values.data());
+  return {std::move(weakness)};
+}
+
+/// Attributes of the samples, density, and last `others`.
 template <exec::Space Exec>
 std::vector<Attribute> attributes_at(Exec& ex, const FieldData& field, const Options& options,
-                                     const surface::Surface& surface) {
+                                     const surface::Surface& surface, std::vector<Attribute> others) {
   std::vector<Attribute> attributes;
   const auto keep = [&](const field::Channel& channel, exec::Buffer<float> values) {
     attributes.push_back({channel.name, channel.type, {}});
@@ -246,6 +327,7 @@ std::vector<Attribute> attributes_at(Exec& ex, const FieldData& field, const Opt
   };
   field::interpolate(ex, field.tree, field.attributes, surface.positions.cview(), keep);
   if (options.density) attributes.push_back(density_at(ex, field, surface));
+  std::move(others.begin(), others.end(), std::back_inserter(attributes));
   return attributes;
 }
 
@@ -254,7 +336,8 @@ std::vector<Attribute> attributes_at(Exec& ex, const FieldData& field, const Opt
 template <exec::Space Exec>
 void download_mesh(Exec& ex, const FieldData& field, surface::Surface surface, const Options& options,
                    const Vec3d& origin, Mesh& mesh) {
-  std::vector<Attribute> attributes = fit::attributes_at(ex, field, options, surface);
+  std::vector<Attribute> attributes =
+      fit::attributes_at(ex, field, options, surface, fit::weakness_at(ex, field, options, surface));
   download(ex, std::move(surface), field.frame, origin, mesh);
   mesh.attributes = std::move(attributes);
 }
@@ -301,8 +384,9 @@ class FieldOn final : public FieldImpl {
   void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
     surface::Surface surface = extract_some(*ex_, data_, options_, report);
+    std::vector<Attribute> weakness = fit::weakness_at(*ex_, data_, options_, surface);
     data_.values.reset();
-    std::vector<Attribute> attributes = fit::attributes_at(*ex_, data_, options_, surface);
+    std::vector<Attribute> attributes = fit::attributes_at(*ex_, data_, options_, surface, std::move(weakness));
     clock.lap(report.extract_ms);
     const octree::Frame frame = data_.frame;
     data_ = {};

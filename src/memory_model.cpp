@@ -87,12 +87,14 @@ struct Model {
   [[nodiscard]] std::int64_t tree() const {
     return kBrick * bricks + kChildren * (bricks - level(depth()).bricks) + kPointRanges * cell_bricks;
   }
+  [[nodiscard]] bool is_distance() const { return options.field == FieldKind::distance; }
   [[nodiscard]] bool has_envelope() const { return options.envelope != nullptr; }
   [[nodiscard]] bool trims() const { return options.trim > 0; }
   [[nodiscard]] std::int64_t kept_counts() const {
-    return options.density || trims() ? kNodeValue * counted_bricks : 0;
+    return options.density || options.weakness || trims() ? kNodeValue * counted_bricks : 0;
   }
   [[nodiscard]] std::int64_t vertices() const {
+    if (is_distance()) return 8 * bricks / kNodesPerVertex;
     return std::min(8 * bricks / kNodesPerVertex, kVerticesPerPoint * points + kCompleteVertices);
   }
   [[nodiscard]] std::int64_t vertex() const { return options.normals || trims() ? 2 * kPosition : kPosition; }
@@ -105,7 +107,9 @@ struct Model {
   }
 
   /// What is there from the tree to the mesh.
-  [[nodiscard]] std::int64_t kept() const { return tree() + kResolution * bricks + kept_attributes(); }
+  [[nodiscard]] std::int64_t kept() const {
+    return tree() + (is_distance() ? 0 : kResolution * bricks) + kept_attributes();
+  }
   /// Positions of the samples, for their attributes.
   [[nodiscard]] std::int64_t kept_positions() const { return attributes > 0 ? kUnit * points : 0; }
   /// The solved field.
@@ -133,7 +137,15 @@ struct Model {
   [[nodiscard]] std::int64_t build_tree() const { return (kSorted + kKey) * points + kept_attributes() + tree(); }
 
   [[nodiscard]] std::int64_t density() const {
+    if (is_distance() && !options.density && !trims()) return 0;
     return kSorted * points + kept() + kNodeValue * counted_bricks + kHats * level(counted_depth()).cell_bricks;
+  }
+
+  /// Signed distance: the samples, whose weights, with attributes, are counted there, and a value a node.
+  [[nodiscard]] std::int64_t distance() const {
+    if (!is_distance()) return 0;
+    const std::int64_t weight = options.confidence && attributes == 0 ? kAttribute : 0;
+    return (kSorted + weight) * points + kept() + kept_counts() + kNodeValue * bricks;
   }
 
   /// The vector field, as if there were samples for the coarsest levels too, and its divergence.
@@ -191,6 +203,16 @@ struct Model {
 
 std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options) {
   const Model model(size, options);
+  if (model.is_distance())
+    return {{"sort", model.sort()},
+            {"find bricks", model.find_bricks()},
+            {"build tree", model.build_tree()},
+            {"density", model.density()},
+            {"trim limit", model.trim_limit()},
+            {"distance", model.distance()},
+            {"extract", model.extract()},
+            {"trim", model.trim()},
+            {"interpolate", model.interpolate()}};
   return {{"sort", model.sort()},       {"find bricks", model.find_bricks()}, {"build tree", model.build_tree()},
           {"density", model.density()}, {"trim limit", model.trim_limit()},   {"splat", model.splat()},
           {"solve", model.solve()},     {"isovalue", model.isovalue()},       {"extract", model.extract()},

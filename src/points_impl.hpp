@@ -125,7 +125,7 @@ template <exec::Space Exec>
 std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options) {
   std::vector<DeviceAttribute> attributes;
   if (!options.attributes) return attributes;
-  const std::vector<std::string> names = kept_names(cloud.attributes, options.density);
+  const std::vector<std::string> names = kept_names(cloud.attributes, options.density, options.weakness);
   for (std::size_t a = 0; a < names.size(); ++a) {
     const Attribute& from = cloud.attributes[a];
     const auto n = static_cast<std::int64_t>(from.values.size());

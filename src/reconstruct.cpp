@@ -1,6 +1,8 @@
 #include <pointskin/error.hpp>
 #include <pointskin/reconstruct.hpp>
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "reconstruct_engine.hpp"
@@ -10,6 +12,24 @@ namespace {
 
 void require(bool holds, const char* name, const char* range) {
   if (!holds) throw Error(ErrorCode::usage, fmt::format("option {} must be {}", name, range));
+}
+
+/// Options that contradict each other.
+void check_combinations(const Options& options) {
+  const auto exclude = [](bool both, const char* story) {
+    if (both) throw Error(ErrorCode::usage, story);
+  };
+  const bool distance = options.field == FieldKind::distance;
+  exclude(distance && options.envelope != nullptr, "option envelope needs the field poisson");
+  exclude(distance && options.boundary == Boundary::dirichlet, "option boundary must be free with the field distance");
+  exclude(distance && options.weakness, "option weakness needs the field poisson");
+  if (options.offset == 0) return;
+  exclude(options.weakness, "options offset and weakness exclude each other: there are no samples on the surface");
+  exclude(options.trim > 0, "options offset and trim exclude each other");
+  exclude(options.density, "options offset and density exclude each other: there are no samples on the surface");
+  exclude(options.attributes, "options offset and attributes exclude each other: there are no samples on the surface");
+  exclude(options.envelope != nullptr, "options offset and envelope exclude each other");
+  exclude(options.domain_faces == DomainFaces::open, "an offset surface is closed: domain_faces must be closed");
 }
 
 std::unique_ptr<detail::Engine> make_engine(const Device& device) {
@@ -95,7 +115,9 @@ void validate(const Options& options) {
   require(options.samples_per_node >= 0 && options.samples_per_node <= 100, "samples-per-node", "in 0..100");
   require(options.trim >= 0 && options.trim < 1, "trim", "in [0, 1)");
   require(options.island_ratio >= 0 && options.island_ratio < 1, "island-ratio", "in [0, 1)");
+  require(std::isfinite(options.offset), "offset", "finite");
   require(options.max_memory_bytes >= 0, "max-memory", "at least 0");
+  check_combinations(options);
 }
 
 }  // namespace pointskin

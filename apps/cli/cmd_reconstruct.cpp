@@ -1,4 +1,4 @@
-// pointskin reconstruct: oriented clouds in, mesh out.
+// pointskin reconstruct: oriented clouds in, mesh out. pointskin problems: the same, and where to look.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -39,7 +39,8 @@ class Stopwatch {
 /// Everything that can be found wrong before the input is opened.
 void check_files(const ReconstructArgs& args) {
   if (args.inputs.empty()) throw_usage("no input; name one or more clouds, or - for stdin");
-  if (args.output.empty() && !args.dry_run && !args.repeat_given) throw_usage("no output; name it with -o");
+  if (args.output.empty() && !args.dry_run && !args.repeat_given && !args.problems)
+    throw_usage("no output; name it with -o");
   if (args.report == "-") throw_usage("--report: stdout carries the mesh only; name a file");
   std::vector<std::string> inputs = args.inputs;
   if (!args.envelope.empty()) inputs.push_back(args.envelope);
@@ -205,6 +206,7 @@ int run(const ReconstructArgs& given) {
   ReconstructArgs args = given;
   args.inputs.insert(args.inputs.end(), args.named_inputs.begin(), args.named_inputs.end());
   Record record;
+  if (args.problems) record.command = "problems";
   record.options = library_options(args);
   parse_shift(args.shift);
   check_files(args);
@@ -229,17 +231,29 @@ int run(const ReconstructArgs& given) {
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
 
+  if (record.options.weakness) record.problems = find_problems(mesh);
   record.mesh.triangles = static_cast<std::int64_t>(mesh.triangles.size());
   if (!args.report.empty()) {
     record.mesh = measure(mesh, args.threads);
     write_file_atomically(args.report, json_text(to_json(record)));
   }
+  if (args.problems && args.output == "-") print_note(problem_table(record.problems));
+  if (args.problems && args.output != "-") write_stdout(problem_table(record.problems) + "\n");
   if (args.verbose) print_note(level_table(record));
   if (!args.quiet) print_note(summary(record));
   return 0;
 }
 
 }  // namespace
+
+void add_problems(CLI::App& program, Job& job) {
+  CLI::App* command =
+      add_command(program, "problems", "Reconstruct, and list where the topology of the result is doubtful.");
+  auto args = std::make_shared<ReconstructArgs>();
+  args->problems = true;
+  define_reconstruct_options(*command, *args);
+  finish_command(*command, job, args, run);
+}
 
 void add_reconstruct(CLI::App& program, Job& job) {
   CLI::App* command = add_command(program, "reconstruct", "Fit a watertight mesh to oriented points.");

@@ -1,5 +1,7 @@
 // pointskin render: a picture of a mesh.
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -21,6 +23,7 @@ struct RenderArgs {
   std::string mesh, picture;
   std::string size = "1200x900";
   std::string up = "y";
+  std::string target;  ///< empty: the middle of the mesh
   RenderOptions options;
   bool orthographic = false, flat = false, cull = false, no_colours = false, quiet = false;
 };
@@ -39,11 +42,27 @@ void parse_size(const std::string& text, RenderOptions& options) {
   options.height = static_cast<int>(height);
 }
 
+/// Reads "x,y,z".
+Vec3d parse_target(const std::string& text) {
+  Vec3d target{};
+  std::size_t from = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t comma = text.find(',', from);
+    const std::optional<double> value = parse_number(text.substr(from, comma - from));
+    if (!value || !std::isfinite(*value) || (comma == std::string::npos) != (a == 2))
+      throw Error(ErrorCode::usage, fmt::format("--target: '{}' is not like x,y,z", text));
+    target[a] = *value;
+    from = comma + 1;
+  }
+  return target;
+}
+
 RenderOptions library_options(const RenderArgs& args) {
   RenderOptions options = args.options;
   check_threads(options.threads);
   parse_size(args.size, options);
   if (args.up != "y" && args.up != "z") throw Error(ErrorCode::usage, "--up: must be y or z");
+  if (!args.target.empty()) options.target_world = parse_target(args.target);
   options.up = args.up == "z" ? UpAxis::z : UpAxis::y;
   options.projection = args.orthographic ? Projection::orthographic : Projection::perspective;
   options.smooth = !args.flat;
@@ -76,6 +95,9 @@ void define_view(CLI::App& command, RenderArgs& args) {
   value("--size", args.size, "WxH", "width and height in pixels, each 1 to 16384");
   value("--azimuth", args.options.azimuth_degrees, "DEG", "camera about the up axis, degrees; 0 sees the front");
   value("--elevation", args.options.elevation_degrees, "DEG", "camera above the horizon, degrees, -90 to 90");
+  command.add_option("--target", args.target, "point in the middle of the picture [default the middle of the mesh]")
+      ->type_name("X,Y,Z")
+      ->group(group);
   value("--up", args.up, "AXIS", "axis that points up: y (front is +z) or z (front is -y)");
   command.add_flag("--orthographic", args.orthographic, "parallel instead of perspective projection")->group(group);
   command.add_flag("--flat", args.flat, "shade by faces even if the mesh has vertex normals")->group(group);

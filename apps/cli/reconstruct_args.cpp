@@ -93,6 +93,12 @@ Boundary boundary_of(const ReconstructArgs& args) {
   throw Error(ErrorCode::usage, fmt::format("--boundary: '{}' is not free, dirichlet or neumann", args.boundary));
 }
 
+FieldKind field_of(const std::string& name) {
+  if (name == "poisson") return FieldKind::poisson;
+  if (name == "distance") return FieldKind::distance;
+  throw Error(ErrorCode::usage, fmt::format("--field: '{}' is not poisson or distance", name));
+}
+
 }  // namespace
 
 void define_surface_options(CLI::App& command, ReconstructArgs& args) {
@@ -102,6 +108,9 @@ void define_surface_options(CLI::App& command, ReconstructArgs& args) {
       ->group("Surface")
       ->capture_default_str()
       ->each([&args](const std::string&) { args.depth_given = true; });
+  add_value(command, "--field", args.field,
+            "implicit function: poisson (solved for), or distance: to the points' tangent planes")
+      ->type_name("F");
   add_value(command, "--screening", options.screening, "weight of the points, no unit, >= 0; 0: unscreened")
       ->type_name("W");
   add_value(command, "--iterations", options.iterations, "relaxations per level, 1 to 1000")->type_name("N");
@@ -123,11 +132,15 @@ void define_surface_options(CLI::App& command, ReconstructArgs& args) {
       ->type_name("MESH")
       ->group("Surface")
       ->check([](const std::string& file) { return std::string(file.empty() ? "needs the name of a file" : ""); });
+  add_value(command, "--offset", options.offset, "distance of the mesh from the surface, world units, > 0 outwards")
+      ->type_name("D");
   add_value(command, "--trim", options.trim, "cut where samples end: share that counts as sparse, 0 (off) to below 1")
       ->type_name("Q");
   add_value(command, "--island-ratio", options.island_ratio, "trim: smallest piece, share of the area, 0 to below 1")
       ->type_name("R");
   command.add_flag("--density", options.density, "add the property density, points per world unit^2")->group("Surface");
+  command.add_flag("--weakness", options.weakness, "add the property weakness, 0 to 1: how doubtful the topology is")
+      ->group("Surface");
   command.add_flag("--keep-strays", options.keep_strays, "use stray points, too, and make the cube for all points")
       ->group("Surface");
   command
@@ -167,6 +180,8 @@ Options library_options(const ReconstructArgs& args) {
   options.normals = !args.no_normals;
   options.domain_faces = args.open ? DomainFaces::open : DomainFaces::closed;
   options.boundary = boundary_of(args);
+  options.field = field_of(args.field);
+  options.weakness = options.weakness || args.problems;
   options.residuals = args.verbose || !args.report.empty();
   if (!args.max_memory.empty()) options.max_memory_bytes = parse_bytes(args.max_memory);
   validate(options);

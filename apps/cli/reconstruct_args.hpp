@@ -21,12 +21,14 @@ struct ReconstructArgs {
   std::string max_memory;        ///< empty: no limit
   std::string confidence = "0";  ///< PoissonRecon's exponent of the normals' length: 0 or 1 here
   std::string boundary = "free";
+  std::string field = "poisson";
   int boundary_type = 0;  ///< PoissonRecon's number of the boundary; 0: none
   Options options;
   double width_world = 0;  ///< > 0: chooses the depth
   int threads = 0;
   int repeat = 0;
   bool depth_given = false, width_given = false, repeat_given = false;
+  bool problems = false;  ///< list regions whose topology is doubtful; a mesh is not needed then
   bool no_normals = false, open = false, colors = false, dry_run = false, quiet = false, verbose = false;
 };
 

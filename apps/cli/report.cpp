@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 Json options_json(const Record& record) {
   const Options& options = record.options;
   Json json = {{"depth", options.depth},
+               {"field", options.field == FieldKind::distance ? "distance" : "poisson"},
                {"screening", options.screening},
                {"iterations", options.iterations},
                {"scale", options.scale},
@@ -25,10 +26,12 @@ Json options_json(const Record& record) {
                {"fixed_screening", options.fixed_screening},
                {"linear_fit", options.linear_fit},
                {"density", options.density},
+               {"weakness", options.weakness},
                {"attributes", options.attributes},
                {"normals", options.normals},
                {"open", options.domain_faces == DomainFaces::open},
                {"boundary", options.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
+               {"offset", options.offset},
                {"trim", options.trim},
                {"island_ratio", options.island_ratio},
                {"keep_strays", options.keep_strays},
@@ -52,9 +55,10 @@ Json octree_json(const RunReport& run) {
   return {{"depth", run.depth}, {"nodes", run.nodes}, {"levels", levels}};
 }
 
-Json solve_json(const RunReport& run) {
+Json solve_json(const Record& record) {
   Json levels = Json::array();
-  for (const LevelReport& level : run.levels) {
+  if (record.options.field == FieldKind::distance) return {{"levels", levels}};  // nothing is solved for
+  for (const LevelReport& level : record.run.levels) {
     levels.push_back({{"depth", level.depth},
                       {"unknowns", level.unknowns},
                       {"iterations", level.iterations},
@@ -83,6 +87,39 @@ Json envelope_json(const Record& record) {
           {"farthest_move", envelope.farthest_move}};
 }
 
+Json offset_json(const Record& record) {
+  const OffsetReport& offset = record.run.offset;
+  return {{"distance", record.options.offset},
+          {"cells", offset.cells},
+          {"cube_growth", offset.cube_growth},
+          {"triangles", offset.triangles},
+          {"samples", offset.samples},
+          {"band_cells", offset.band_cells},
+          {"ms", offset.ms}};
+}
+
+Json problems_json(const std::vector<ProblemRegion>& problems) {
+  Json list = Json::array();
+  for (const ProblemRegion& region : problems) {
+    Json views = Json::array();
+    for (const ProblemView& view : region.views)
+      views.push_back({{"azimuth", view.azimuth_degrees},
+                       {"elevation", view.elevation_degrees},
+                       {"target", view.target_world},
+                       {"matrix", view.matrix}});
+    list.push_back({{"score", region.score},
+                    {"peak", region.peak},
+                    {"area", region.area},
+                    {"triangles", region.triangles},
+                    {"centroid", region.centroid_world},
+                    {"lower", region.lower_world},
+                    {"upper", region.upper_world},
+                    {"mean_normal", region.mean_normal},
+                    {"views", views}});
+  }
+  return list;
+}
+
 Json mesh_json(const MeshReport& mesh) {
   return {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
           {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler}};
@@ -103,15 +140,17 @@ Json repeat_json(const std::vector<double>& values) {
 }  // namespace
 
 Json to_json(const Record& record) {
-  Json json = {{"version", 1}, {"command", "reconstruct"}};
+  Json json = {{"version", 1}, {"command", record.command}};
   json["device"] = {{"kind", record.device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", record.device.name()}};
   json["input"] = input_json(record);
   json["options"] = options_json(record);
   json["octree"] = octree_json(record.run);
-  json["solve"] = solve_json(record.run);
+  json["solve"] = solve_json(record);
   json["isovalue"] = record.run.isovalue;
   if (record.options.envelope != nullptr) json["envelope"] = envelope_json(record);
+  if (record.options.offset != 0) json["offset"] = offset_json(record);
   if (record.options.trim > 0) json["trim"] = trim_json(record.run.trim);
+  if (record.options.weakness) json["problems"] = problems_json(record.problems);
   json["mesh"] = mesh_json(record.mesh);
   json["ms"] = ms_json(record);
   if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
@@ -139,6 +178,19 @@ std::string summary(const Record& record) {
         fmt::format("; {} runs: median {:.2f} ms, {:.1f} frames per second", record.repeat_ms.size(), ms, 1000 / ms);
   }
   return line;
+}
+
+std::string problem_table(const std::vector<ProblemRegion>& problems) {
+  if (problems.empty()) return "no region whose topology is doubtful";
+  std::string table = "rank       score    peak        area  azimuth  elevation  target";
+  int rank = 0;
+  for (const ProblemRegion& region : problems) {
+    const ProblemView& view = region.views.front();
+    const Vec3d& at = view.target_world;
+    table += fmt::format("\n{:4}{:12.4g}{:8.3f}{:12.4g}{:9.1f}{:11.1f}  {:.6g},{:.6g},{:.6g}", ++rank, region.score,
+                         region.peak, region.area, view.azimuth_degrees, view.elevation_degrees, at[0], at[1], at[2]);
+  }
+  return table;
 }
 
 std::string level_table(const Record& record) {

@@ -10,6 +10,7 @@
 
 #include <pointskin/device.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/problems.hpp>
 #include <pointskin/reconstruct.hpp>
 
 namespace pointskin::cli {
@@ -23,6 +24,8 @@ struct Record {
   nlohmann::ordered_json other_options;  ///< what Options does not hold
   RunReport run;
   MeshReport mesh;
+  std::string command = "reconstruct";
+  std::vector<ProblemRegion> problems;  ///< with Options::weakness
   double read_ms = 0, write_ms = 0, total_ms = 0;
   std::vector<double> repeat_ms;
   std::int64_t host_peak_bytes = 0;
@@ -33,6 +36,9 @@ nlohmann::ordered_json to_json(const Record& record);
 /// One line: points, depth, triangles, the times of the paper's table (octree, function, surface, total) and memory;
 /// with repeated runs also their median and frames per second.
 std::string summary(const Record& record);
+
+/// A table of the regions whose topology is doubtful, the worst first.
+std::string problem_table(const std::vector<ProblemRegion>& problems);
 
 /// A table of the solve's levels, with residuals.
 std::string level_table(const Record& record);

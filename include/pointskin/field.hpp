@@ -14,15 +14,16 @@ namespace detail {
 class FieldImpl;
 }
 
-/// The function u of docs/algorithm.md: about 1 inside, 0 outside, continuous, trilinear in every leaf.
-/// The surface is where u equals isovalue(). A cheap handle; copies share the same data.
-/// Fields use their Reconstructor's stream and memory pool: a Reconstructor and its fields belong to one thread at a
-/// time.
+/// The function u of docs/algorithm.md: about 1 inside, 0 outside, continuous, trilinear in every leaf; with
+/// FieldKind::distance or Options::offset minus a signed distance, in finest cells, positive inside. The surface is
+/// where u equals isovalue(). A cheap handle; copies share the same data. Fields use their Reconstructor's stream and
+/// memory pool: a Reconstructor and its fields belong to one thread at a time.
 class Field {
  public:
   explicit Field(std::shared_ptr<detail::FieldImpl> impl);
 
-  /// Weighted mean of u over the samples.
+  /// Weighted mean of u over the samples; 0 for FieldKind::distance, minus the offset in finest cells with
+  /// Options::offset.
   [[nodiscard]] double isovalue() const;
 
   /// Side of the working cube in world units, and its lower corner in world coordinates.

@@ -11,6 +11,7 @@
 #include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/octree.hpp>
+#include <pointskin/problems.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/render.hpp>
 #include <pointskin/vector.hpp>

@@ -27,6 +27,13 @@ enum class Boundary {
   dirichlet,       ///< the field is 0: the surface closes before it reaches them
 };
 
+/// The implicit function that a surface is a level set of.
+enum class FieldKind {
+  poisson,   ///< screened Poisson (Kazhdan & Hoppe 2013): about 1 inside, 0 outside
+  distance,  ///< signed distance to the tangent planes of the nearest samples, in finest cells, positive inside
+             ///< (Hoppe et al. 1992): nothing is solved; passes through the samples, their noise included
+};
+
 /// Where a run is; handed to Options::progress.
 struct Progress {
   const char* phase = "";  ///< one of "octree", "splat", "solve", "extract"
@@ -34,7 +41,11 @@ struct Progress {
 };
 
 struct Options {
-  int depth = 8;         ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
+  int depth = 8;  ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
+  /// With `distance`, `screening`, `fixed_screening`, `iterations`, `samples_per_node` and `residuals` have no meaning
+  /// and are not used; `boundary` must be free and `envelope` null. With `confidence` a sample's plane weighs by the
+  /// length of its normal.
+  FieldKind field = FieldKind::poisson;
   double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
   bool fixed_screening = false;   ///< true: all samples weigh alike; false: samples that scatter across the surface
                                   ///< weigh less, those that agree more (0.05 to 3.1 times `screening`)
@@ -47,10 +58,15 @@ struct Options {
   bool confidence = false;        ///< true: a normal's length, relative to the mean length, is the weight of its point
   bool linear_fit = false;        ///< true: edge crossings by linear instead of rescaled quadratic interpolation
   bool density = false;           ///< true: the mesh carries "density", samples per unit of area (world units^-2)
+  /// true: the mesh carries "weakness", in [0, 1]: where samples are sparser and the field flatter than at half of the
+  /// samples, so that the topology is a guess (docs/algorithm.md, section 13); for find_problems(). Needs the field
+  /// poisson; excludes `offset`.
+  bool weakness = false;
   /// true: the mesh carries every attribute of the cloud, interpolated at its vertices and smoothly extended over holes
   /// (docs/algorithm.md, section 8). Types stay: uint8 values are rounded. A point whose value is not finite does not
   /// count for that attribute; with `confidence` the others count by their weight. An attribute whose name the mesh has
-  /// itself (x, y, z, nx, ny, nz, with `density` also density), or that came before, gets `input_` in front of it.
+  /// itself (x, y, z, nx, ny, nz, with `density` also density, with `weakness` that), or that came before, gets
+  /// `input_` in front of it.
   bool attributes = false;
   bool normals = true;  ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;
@@ -64,8 +80,13 @@ struct Options {
                     ///< this share of all; in [0, 1); 0: off, the mesh is closed. 0.01 to 0.1 suit open scans
   double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,
                                 ///< islands are removed and pinholes stay closed; in [0, 1)
-  bool keep_strays = false;     ///< true: stray points count, too (see Strays); the cube is made for all points
-  bool residuals = false;       ///< true: measure the residual of every level before and after its solve
+  /// Not 0: the surface at this distance from that of the field, world units, outwards where positive, inwards where
+  /// negative; round around edges, and the working cube grows where it must (docs/algorithm.md, section 12). The Field
+  /// is then minus the signed distance to that surface, in finest cells. Finite; excludes `trim`, `density`,
+  /// `attributes`, `envelope` and open `domain_faces`.
+  double offset = 0;
+  bool keep_strays = false;           ///< true: stray points count, too (see Strays); the cube is made for all points
+  bool residuals = false;             ///< true: measure the residual of every level before and after its solve
   std::int64_t max_memory_bytes = 0;  ///< refuse to start when the estimate is larger; 0: no limit
 
   /// Called a few times per run from the calling thread; returning false cancels the run (Error interrupted).
@@ -99,6 +120,16 @@ struct EnvelopeReport {
   double farthest_move = 0;         ///< of such a vertex, world units
 };
 
+/// What Options::offset did. All zero without it.
+struct OffsetReport {
+  double cells = 0;             ///< the distance in finest cells of the cube that the offset surface was made in
+  double cube_growth = 0;       ///< that cube / the working cube of the points, at least 1
+  std::int64_t triangles = 0;   ///< of the surface that distances were measured to
+  std::int64_t samples = 0;     ///< on these triangles
+  std::int64_t band_cells = 0;  ///< finest cells that the offset surface may pass through
+  double ms = 0;                ///< the extraction of the surface included
+};
+
 /// What a run did and what it cost. Times are milliseconds on the device's clock.
 struct RunReport {
   std::int64_t points = 0;             ///< points used
@@ -107,9 +138,11 @@ struct RunReport {
   int depth = 0;
   std::int64_t nodes = 0;           ///< cells of all depths
   std::vector<LevelReport> levels;  ///< depth 0 first
-  double isovalue = 0;              ///< weighted mean of the field over the samples
+  double isovalue = 0;              ///< weighted mean of the field over the samples; 0 for FieldKind::distance, and
+                                    ///< minus OffsetReport::cells with Options::offset
   TrimReport trim;                  ///< with Options::trim
   EnvelopeReport envelope;          ///< with Options::envelope
+  OffsetReport offset;              ///< with Options::offset
   double upload_ms = 0, octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0, download_ms = 0;
   std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
 };
@@ -140,14 +173,15 @@ class Reconstructor {
   /// @throws Error as above; the mesh is then valid but unspecified
   void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh);
 
-  /// Fits the implicit function (screened Poisson, Kazhdan & Hoppe 2013, on the octree of Zhou et al. 2010).
+  /// Fits the implicit function (Options::field; by default screened Poisson, Kazhdan & Hoppe 2013) on the octree of
+  /// Zhou et al. 2010.
   /// Strays are left out and reported unless Options::keep_strays: they would take the cube's resolution from the rest.
   /// The Field shares this reconstructor's device resources and may outlive it.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.
   /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),
   ///         invalid_input (points that are not finite, an attribute of another length, an envelope that is not
-  ///         watertight), empty_result (no points, all at one place or outside of the envelope), over_limit (memory or
-  ///         32-bit indices), interrupted (Options::progress returned false)
+  ///         watertight), empty_result (no points, all at one place or outside of the envelope; an offset that leaves
+  ///         nothing), over_limit (memory or 32-bit indices), interrupted (Options::progress returned false)
   Field solve(const Cloud& cloud, const Options& options = {});
 
   /// Runs the in-memory job `times` times on points resident on the device, the mesh staying there too.

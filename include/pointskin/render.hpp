@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct RenderOptions {
   int width = 1200, height = 900;  ///< pixels, each in [1, 16384]
   double azimuth_degrees = 30;     ///< camera about the up axis, counter-clockwise seen from above; 0 sees the front
   double elevation_degrees = 20;   ///< camera above the horizon, in [-90, 90]
+  std::optional<Vec3d> target_world{};  ///< the point in the middle of the picture; none: the bounding box's centre
   UpAxis up = UpAxis::y;
   Projection projection = Projection::perspective;
   bool smooth = true;      ///< true: shade by vertex normals where the mesh has them; false: by face normals
@@ -35,7 +37,8 @@ struct RenderOptions {
   int threads = 0;         ///< CPU threads, 0: all
 };
 
-/// Draws `mesh` on a light background. The camera is fitted to the sphere about the centre of the mesh's bounding box
+/// Draws `mesh` on a light background. The camera is fitted to the sphere about the centre of the mesh's bounding box,
+/// or about RenderOptions::target_world,
 /// that just holds the mesh: its outline is a circle in the middle of the picture with kRenderFill of the shorter side
 /// as its diameter. uint8 colours, and float colours that exceed 1, count from 0 to 255; other float colours from 0
 /// to 1. Triangles with a vertex that is not finite are left out; a mesh without triangles gives the empty background.

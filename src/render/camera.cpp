@@ -44,7 +44,8 @@ Vec3d turned(const Vec3d& v, UpAxis up) { return up == UpAxis::y ? v : Vec3d{v[0
 }  // namespace
 
 Camera::Camera(exec::Cpu& ex, const Mesh& mesh, const RenderOptions& options)
-    : centre_(mesh_detail::corner_bounds(ex, mesh).centre()),
+    : centre_(options.target_world ? minus(*options.target_world, mesh.origin)
+                                   : mesh_detail::corner_bounds(ex, mesh).centre()),
       perspective_(options.projection == Projection::perspective) {
   orient(options);
   const double radius = radius_about(ex, mesh, centre_);

@@ -130,10 +130,17 @@ std::vector<Options> options_to_try() {
   all.push_back({.depth = 7, .boundary = Boundary::dirichlet});
   all.push_back({.depth = 7, .residuals = true});
   all.push_back({.depth = 7, .trim = 0.3});
+  all.push_back({.depth = 7, .weakness = true});
+  all.push_back({.depth = 7, .field = FieldKind::distance});
+  all.push_back({.depth = 7, .field = FieldKind::distance, .confidence = true, .density = true, .trim = 0.1});
+  for (const double offset : {0.1, -0.03}) {
+    all.push_back({.depth = 6, .offset = offset});
+    all.push_back({.depth = 6, .field = FieldKind::distance, .offset = offset});
+  }
   all.push_back({.depth = 7, .density = true, .normals = false, .trim = 0.9, .island_ratio = 0});
   return all;
 }
-constexpr int kOptions = 18;
+constexpr int kOptions = 25;
 
 class GpuWithOptions : public Gpu, public testing::WithParamInterface<int> {};
 

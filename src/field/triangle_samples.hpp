@@ -1,0 +1,202 @@
+// Samples on the triangles of a surface, in an octree, and the distance to the triangle of the nearest one.
+#pragma once
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "exec/algorithms.hpp"
+#include "field/offset.hpp"
+#include "octree/octree_data.hpp"
+#include "octree/search_impl.hpp"
+
+namespace pointskin::field::offset {
+
+struct Vector {
+  double x, y, z;
+  PSK_HD friend Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  PSK_HD friend Vector operator*(double f, const Vector& v) { return {f * v.x, f * v.y, f * v.z}; }
+};
+PSK_HD inline double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+PSK_HD inline Vector cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+PSK_HD inline Vector between(const Vec3f& from, const Vec3f& to) {
+  return {double{to.x} - double{from.x}, double{to.y} - double{from.y}, double{to.z} - double{from.z}};
+}
+
+/// Squared distance from a + p to the segment from a to a + edge.
+PSK_HD inline double squared_to_edge(const Vector& p, const Vector& edge) {
+  const double along = dot(p, edge);
+  const double squared = dot(edge, edge);
+  const double t = !(along > 0) ? 0.0 : along >= squared ? 1.0 : along / squared;
+  const Vector off = p - t * edge;
+  return dot(off, off);
+}
+
+/// Squared distance from q to a triangle, which may have no area. In double: the triangles are small.
+PSK_HD inline double squared_to_triangle(const Vec3f& q, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  const Vector ab = between(a, b);
+  const Vector ac = between(a, c);
+  const Vector bc = ac - ab;
+  const Vector ap = between(a, q);
+  const Vector bp = ap - ab;
+  const Vector n = cross(ab, ac);
+  const double area = dot(n, n);
+  const bool above = area > 0 && dot(cross(ab, ap), n) > 0 && dot(cross(bc, bp), n) > 0 && dot(cross(ap, ac), n) > 0;
+  if (above) {
+    const double height = dot(ap, n);
+    return height * height / area;
+  }
+  const double at_ab = squared_to_edge(ap, ab);
+  const double at_ac = squared_to_edge(ap, ac);
+  const double at_bc = squared_to_edge(bp, bc);
+  const double least = at_ab < at_ac ? at_ab : at_ac;
+  return least < at_bc ? least : at_bc;
+}
+
+/// Corners of triangle t.
+struct Corners {
+  ArrayView<const Vec3f> vertices;
+  ArrayView<const Triangle> triangles;
+  [[nodiscard]] PSK_HD const Vec3f& operator()(std::int64_t t, int k) const { return vertices[triangles[t].data()[k]]; }
+};
+
+/// Pieces along an edge of each triangle, squared: its pieces.
+struct CountPieces {
+  static constexpr std::int32_t kMost = 46340;  // whose square fits into 32 bits
+
+  Corners corners;
+  float pieces_per_unit;
+  ArrayView<std::int32_t> counts;
+  PSK_HD void operator()(std::int64_t t) const {
+    const std::int32_t along = pieces_along(t);
+    counts[t] = along * along;
+  }
+  [[nodiscard]] PSK_HD std::int32_t pieces_along(std::int64_t t) const {
+    float longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float squared = octree::search::squared_distance(corners(t, k), corners(t, k == 2 ? 0 : k + 1));
+      if (squared > longest) longest = squared;
+    }
+    const float wanted = std::sqrt(longest) * pieces_per_unit;
+    if (!(wanted < static_cast<float>(kMost))) return kMost;
+    const auto whole = static_cast<std::int32_t>(wanted);
+    return static_cast<float>(whole) < wanted || whole == 0 ? whole + 1 : whole;
+  }
+};
+
+/// Triangle that item i belongs to, by where the items of each begin.
+PSK_HD inline std::int32_t owner_of(ArrayView<const std::int32_t> first, std::int64_t i) {
+  std::int64_t low = 0;
+  std::int64_t high = first.size - 2;
+  while (low < high) {
+    const std::int64_t middle = (low + high + 1) / 2;
+    if (first[middle] <= i)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  return static_cast<std::int32_t>(low);
+}
+
+/// The largest whole r with r r <= n.
+PSK_HD inline std::int32_t whole_root(std::int32_t n) {
+  auto r = static_cast<std::int32_t>(std::sqrt(static_cast<double>(n)));
+  while (std::int64_t{r} * r > n) --r;
+  while (std::int64_t{r + 1} * (r + 1) <= n) ++r;
+  return r;
+}
+
+/// Centres of the pieces: n^2 equal triangles, row r from the first corner holds 2 r + 1 of them.
+struct LaySample {
+  Corners corners;
+  ArrayView<const std::int32_t> first;
+  ArrayView<Vec3f> positions;
+  ArrayView<std::int32_t> owners;
+  ArrayView<std::uint64_t> ties;
+  PSK_HD void operator()(std::int64_t i) const {
+    const std::int32_t t = owner_of(first, i);
+    const auto piece = static_cast<std::int32_t>(i - first[t]);
+    const auto along = static_cast<float>(whole_root(first[t + 1] - first[t]));
+    const std::int32_t row = whole_root(piece);
+    const std::int32_t place = piece - row * row;
+    const bool upright = (place & 1) == 0;
+    const float u = (static_cast<float>(row) + (upright ? 2.0F : 1.0F) / 3) / along;         // towards the far edge
+    const float v = (static_cast<float>(place >> 1) + (upright ? 1.0F : 2.0F) / 3) / along;  // along it
+    const Vec3f a = corners(t, 0);
+    const Vec3f b = corners(t, 1);
+    const Vec3f c = corners(t, 2);
+    positions[i] = {a.x + u * (b.x - a.x) + v * (c.x - b.x), a.y + u * (b.y - a.y) + v * (c.y - b.y),
+                    a.z + u * (b.z - a.z) + v * (c.z - b.z)};
+    owners[i] = t;
+    ties[i] = static_cast<std::uint64_t>(i);
+  }
+};
+
+/// Samples in the order of their octree.
+struct TriangleSamples {
+  octree::OctreeData tree;
+  exec::Buffer<Vec3f> positions;
+  exec::Buffer<std::int32_t> owners;  ///< triangle of each
+};
+
+/// Squared distance to a surface, as kernels ask for it.
+struct SurfaceDistance {
+  octree::OctreeView tree;
+  ArrayView<const Vec3f> positions;
+  ArrayView<const std::int32_t> owners;
+  Corners corners;
+
+  [[nodiscard]] PSK_HD double squared(const Vec3f& q) const {
+    float least = 0;
+    std::int32_t nearest = -1;
+    const auto prune = [&](float d) { return nearest >= 0 && d > least; };
+    octree::search::walk({tree, positions, {}}, q, prune, [&](std::int32_t begin, std::int32_t end) {
+      for (std::int32_t i = begin; i < end; ++i) {
+        const float d = octree::search::squared_distance(q, positions[i]);
+        if (nearest >= 0 && (d > least || (d == least && i > nearest))) continue;
+        least = d;
+        nearest = i;
+      }
+    });
+    const std::int32_t t = owners[nearest];
+    return squared_to_triangle(q, corners(t, 0), corners(t, 1), corners(t, 2));
+  }
+};
+
+/// @throws Error over_limit if there are 2^31 samples or more
+template <exec::Space Exec>
+TriangleSamples lay_samples(Exec& ex, const Corners& corners, int depth) {
+  const std::int64_t triangles = corners.triangles.size;
+  auto counts = exec::make_buffer<std::int32_t>(ex, triangles);
+  for_each(ex, "offset.pieces", triangles,
+           CountPieces{corners, static_cast<float>(1 << depth) / kPieceCells, counts.view()});
+  const std::int64_t samples = exec::sum_counts(ex, "offset.pieces", counts.cview());
+  if (samples > std::numeric_limits<std::int32_t>::max())
+    throw Error(ErrorCode::over_limit, "the surface is too large to be offset at this depth; choose a smaller depth");
+  auto first = exec::make_buffer<std::int32_t>(ex, triangles + 1);
+  exclusive_scan(ex, "offset.pieces", counts.cview(), first.view());
+  counts.reset();
+  auto positions = exec::make_buffer<Vec3f>(ex, samples);
+  auto owners = exec::make_buffer<std::int32_t>(ex, samples);
+  auto ties = exec::make_buffer<std::uint64_t>(ex, samples);
+  for_each(ex, "offset.samples", samples,
+           LaySample{corners, first.cview(), positions.view(), owners.view(), ties.view()});
+  first.reset();
+  const octree::SortedPoints sorted = octree::sort_points(ex, positions.cview(), ties.cview());
+  ties.reset();
+  TriangleSamples result;
+  result.positions = exec::make_buffer<Vec3f>(ex, samples);
+  result.owners = exec::make_buffer<std::int32_t>(ex, samples);
+  exec::gather<Vec3f>(ex, positions.cview(), sorted.order.cview(), result.positions.view());
+  exec::gather<std::int32_t>(ex, owners.cview(), sorted.order.cview(), result.owners.view());
+  result.tree =
+      octree::build_octree(ex, sorted.keys.cview(), std::max(1, depth - 1));  // about 30 samples a finest cell
+  return result;
+}
+
+}  // namespace pointskin::field::offset

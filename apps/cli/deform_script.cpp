@@ -217,6 +217,8 @@ Deformation parse_deformation(const std::string& text, const std::string& name) 
     json = Json::parse(text);
   } catch (const Json::parse_error& error) {
     throw Error(ErrorCode::invalid_input, fmt::format("{}: is not JSON: byte {}", name, error.byte));
+  } catch (const Json::out_of_range&) {
+    throw Error(ErrorCode::invalid_input, fmt::format("{}: holds a number that is too large", name));
   }
   const Value script(json, name);
   script.object({"handles", "lattices"});

@@ -135,7 +135,7 @@ TEST_F(DeformCommand, SaysWhereAScriptIsWrong) {
   expect_story(handle("{}"), "must have one of");
   expect_story(handle(R"({"ball": {"centre": [0, 0], "radius": 1}})"), "centre: must be a list of 3");
   expect_story(handle(R"({"ball": {"centre": [0, "a", 0], "radius": 1}})"), "centre[1]: must be a number");
-  expect_story(handle(R"({"ball": {"centre": [0, 1e999, 0], "radius": 1}})"), "");
+  expect_story(handle(R"({"ball": {"centre": [0, 1e999, 0], "radius": 1}})"), "too large");
   expect_story(handle(R"({"ball": {"centre": [0, 0, 0], "radius": -1}})"), "the radius must not be negative");
   expect_story(handle(R"({"half_space": {"point": [0, 0, 0], "normal": [0, 0, 0]}})"), "the normal must not be zero");
   expect_story(handle(R"({"points": [0, 4000]})"), "not in the cloud");

@@ -38,6 +38,7 @@ void define_program(CLI::App& program, Job& job) {
   add_compare(program, job);
   add_convert(program, job);
   add_render(program, job);
+  add_boolean(program, job);
   add_bench(program, job);
 }
 

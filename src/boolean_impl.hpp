@@ -11,8 +11,8 @@
 
 #include "boolean_engine.hpp"
 #include "cloud/crease.hpp"
+#include "cloud/keep_apart.hpp"
 #include "cloud/set_operation.hpp"
-#include "cloud/sharpen.hpp"
 #include "exec/algorithms.hpp"
 #include "field/surface_distance.hpp"
 #include "fit_field.hpp"
@@ -128,7 +128,8 @@ class BooleansOn final : public Booleans::Impl {
 
     const Options part = boolean::part_of_run(options.reconstruction, 0.6, 0.4);
     FieldData field = fit_field(*ex_, kept, {.cube = frame_}, part, report.result);
-    if (steepness > 0) sharpen(first.field, second.field, op, steepness, options, field, report);
+    if (steepness > 0)
+      keep_apart(first.field, second.field, steepness, options.reconstruction.domain_faces, field, report);
     first = {};
     second = {};
     if (part.progress && !part.progress({"extract", 0.8}))
@@ -226,8 +227,8 @@ class BooleansOn final : public Booleans::Impl {
     part.coincident = counts.coincident;
   }
 
-  /// Samples along the curve in which the surfaces cross. @returns the fields' steepness there if the result's field is
-  /// to be made of both, else 0
+  /// Samples along the curve in which the surfaces cross. @returns the fields' steepness there if the
+  /// halves of the result must be kept apart, else 0
   double find_samples(const Solid& first, const Solid& second, BooleanOp op, const BooleanOptions& options,
                       BooleanReport& report) {
     added_ = {};
@@ -240,7 +241,7 @@ class BooleansOn final : public Booleans::Impl {
     if (crease.size() == 0) return 0;
     added_ = cloud::sample_sheets(*ex_, a, b, crease, op);
     report.added = added_.positions.size();
-    return options.creases == Creases::sharp ? cloud::steepness_at(*ex_, crease) : 0;
+    return op == BooleanOp::symmetric_difference ? cloud::steepness_at(*ex_, crease) : 0;
   }
 
   /// What is kept of A, what is kept of B, and what was added; takes these over.
@@ -286,13 +287,12 @@ class BooleansOn final : public Booleans::Impl {
     if (!keep_field) solid.field = {};
   }
 
-  void sharpen(const FieldData& a, const FieldData& b, BooleanOp op, double steepness, const BooleanOptions& options,
-               FieldData& field, BooleanReport& report) {
+  void keep_apart(const FieldData& a, const FieldData& b, double steepness, DomainFaces faces, FieldData& field,
+                  BooleanReport& report) {
     PhaseClock clock(*ex_);
-    const DomainFaces faces = options.reconstruction.domain_faces;
-    cloud::sharpen(*ex_, a.view(faces), b.view(faces), op, steepness, field.resolution.view(field.tree),
-                   static_cast<float>(field.isovalue), field.values.view());
-    clock.lap(report.sharpen_ms);
+    cloud::keep_apart(*ex_, a.view(faces), b.view(faces), steepness, field.resolution.view(field.tree),
+                      field.values.view());
+    clock.lap(report.apart_ms);
     clock.read();
   }
 

@@ -47,7 +47,7 @@ void define_surface(CLI::App& command, BooleanArgs& args) {
   Options& options = args.options.reconstruction;
   add_value(command, "--depth", options.depth, "octree depth D in levels, 1 to 20; cells are cube / 2^D wide")
       ->type_name("D");
-  add_value(command, "--creases", args.creases, "where surfaces cross: none, sampled or sharp")->type_name("C");
+  add_value(command, "--creases", args.creases, "where surfaces cross: sampled, or none")->type_name("C");
   add_value(command, "--coincidence", args.options.coincidence_cells,
             "surfaces that run alike coincide up to this distance, cells, 0 to 100")
       ->type_name("N");
@@ -71,8 +71,7 @@ void define_surface(CLI::App& command, BooleanArgs& args) {
 Creases creases_of(const std::string& word) {
   if (word == "none") return Creases::none;
   if (word == "sampled") return Creases::sampled;
-  if (word == "sharp") return Creases::sharp;
-  throw Error(ErrorCode::usage, fmt::format("--creases: '{}' is not none, sampled or sharp", word));
+  throw Error(ErrorCode::usage, fmt::format("--creases: '{}' is not none or sampled", word));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct BooleanArgs {
   std::string output;
   std::string cloud;   ///< empty: none
   std::string report;  ///< empty: none
-  std::string creases = "sharp";
+  std::string creases = "sampled";
   std::string boundary = "free";
   std::string device = "auto";
   std::string shift = "auto";

@@ -9,17 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* word_of(Creases creases) {
-  switch (creases) {
-    case Creases::none:
-      return "none";
-    case Creases::sampled:
-      return "sampled";
-    case Creases::sharp:
-      break;
-  }
-  return "sharp";
-}
+const char* word_of(Creases creases) { return creases == Creases::none ? "none" : "sampled"; }
 
 Json options_json(const BooleanOptions& options) {
   const Options& fit = options.reconstruction;
@@ -58,7 +48,7 @@ Json ms_json(const BooleanRecord& record) {
           {"fit_a", fit_ms(run.a.fit)},
           {"fit_b", fit_ms(run.b.fit)},
           {"classify", run.classify_ms + run.gather_ms},
-          {"crease", run.crease_ms + run.sharpen_ms},
+          {"crease", run.crease_ms + run.apart_ms},
           {"fit_result", fit_ms(run.result)},
           {"extract", run.result.extract_ms},
           {"download", run.result.download_ms},

@@ -21,16 +21,16 @@ enum class BooleanOp {
 
 /// What happens where the two surfaces cross.
 enum class Creases {
-  none,     ///< nothing (the paper's way): the reconstruction rounds the crease over about two cells
-  sampled,  ///< samples of both surfaces are added along the curve in which they cross
-  sharp,    ///< the same, and near the curve the result's field is made of both solids' fields
+  none,     ///< nothing (the paper's way): the sparser the points, the more the reconstruction rounds the crease
+  sampled,  ///< samples of both surfaces are added along the curve in which they cross, and the two halves of a
+            ///< symmetric difference, which touch there, are kept apart by about a cell
 };
 
 struct BooleanOptions {
   /// Of all three reconstructions. They share one working cube, around the points of both A and B that are no strays.
   /// `trim` counts for the result alone; `attributes`, `envelope` and `max_memory_bytes` must be unset.
   Options reconstruction{};
-  Creases creases = Creases::sharp;
+  Creases creases = Creases::sampled;
   /// A point this much farther from the other surface than from its own, where both run alike, lies on both;
   /// in finest cells, in [0, 100]. Raise it for two scans of one surface that do not agree to half a cell.
   double coincidence_cells = 0.5;
@@ -67,7 +67,7 @@ struct BooleanReport {
   std::int64_t added = 0;   ///< samples along the creases
   double curve_length = 0;  ///< of the curve in which both surfaces cross, world units; 0 with Creases::none
   RunReport result;         ///< of the reconstruction of the kept and added points, extraction and download
-  double classify_ms = 0, crease_ms = 0, gather_ms = 0, sharpen_ms = 0;
+  double classify_ms = 0, crease_ms = 0, gather_ms = 0, apart_ms = 0;
   double total_ms = 0;  ///< with all reconstructions and copies, on the host's clock
   std::int64_t device_peak_bytes = 0;
 };

@@ -21,7 +21,7 @@ inline constexpr float kOnSurface = 0.02F;
 
 /// Rows of samples, distances from the curve in leaves.
 inline constexpr int kRows = 2;
-PSK_HD constexpr float row_offset(int row) { return row == 0 ? 0.2F : 0.7F; }
+PSK_HD constexpr float row_offset(int row) { return row == 0 ? 0.35F : 1.0F; }
 
 PSK_HD inline float dot(const Vec3f& a, const Vec3f& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 PSK_HD inline Vec3f plus(const Vec3f& a, float t, const Vec3f& b) {

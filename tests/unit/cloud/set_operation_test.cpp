@@ -1,4 +1,4 @@
-// Which points a set operation keeps, and its function near the crease, against what they mean for membership.
+// Which points a set operation keeps, against what membership on both sides of them says; parts of the crease.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cloud/crease_impl.hpp"
+#include "cloud/keep_apart.hpp"
 #include "cloud/set_operation.hpp"
-#include "cloud/sharpen.hpp"
 #include "support/shapes.hpp"
 #include "support/spaces.hpp"
 
@@ -79,42 +79,16 @@ TEST(PlaceOf, IsTheSideUnlessSurfacesRunAlikeWithinTheTolerance) {
   EXPECT_EQ(place_of(at(0, up), at(field::kFarCells, {}), 0.5F), Place::outside);
 }
 
-TEST(CombinedDepth, HasTheSignOfMembership) {
-  test::Random random(5);
-  for (int i = 0; i < 1000; ++i) {
-    const auto a = static_cast<float>(random.in(-3, 3));
-    const auto b = static_cast<float>(random.in(-3, 3));
-    for (const BooleanOp op : kOps) {
-      const float depth = combined_depth(op, a, b);
-      const bool apart = op == BooleanOp::symmetric_difference && std::max(std::abs(a), std::abs(b)) < kApartEnd;
-      if (!apart) EXPECT_EQ(depth > 0, belongs(op, a < 0, b < 0)) << a << ' ' << b;
-      if (apart && depth > 0) EXPECT_TRUE(belongs(op, a < 0, b < 0)) << a << ' ' << b;
-      EXPECT_LE(std::abs(depth), std::max(std::abs(a), std::abs(b)) + kApart);
-    }
-  }
-}
-
-/// At a right angle the halves' nearest points are on the diagonal of their quadrants.
-TEST(CombinedDepth, KeepsTheHalvesOfASymmetricDifferenceApartByMoreThanACellsDiagonal) {
-  float nearest = kApartEnd;
-  for (float g = kApartEnd; g > 0; g -= 0.001F)
-    if (combined_depth(BooleanOp::symmetric_difference, g, -g) > 0) nearest = g;
-  EXPECT_GT(2 * std::sqrt(2.0F) * nearest, std::sqrt(2.0F));
-  EXPECT_LT(nearest, 1);
-}
-
-TEST(BlendShare, IsFullAtTheCurveAndNoneFarFromItOrAlongEachOther) {
+TEST(LoweredBy, IsMostAtTheCurveAndNothingFarFromItOrAlongEachOther) {
   const Vec3f up{0, 0, 1};
   const Vec3f aside{1, 0, 0};
-  EXPECT_EQ(blend_share(at(0, up), at(0, aside)), 1);
-  EXPECT_EQ(blend_share(at(kBlendStart, up), at(-0.5F, aside)), 1);
-  EXPECT_EQ(blend_share(at(kBlendEnd, up), at(0, aside)), 0);
-  EXPECT_EQ(blend_share(at(0, up), at(-100, aside)), 0);
-  EXPECT_EQ(blend_share(at(0, up), at(0, up)), 0);
-  EXPECT_EQ(blend_share(at(0, up), at(0, {0, 0, -1})), 0);
-  const float between = blend_share(at(0, up), at(2.25F, aside));
-  EXPECT_GT(between, 0.4F);
-  EXPECT_LT(between, 0.6F);
+  EXPECT_EQ(lowered_by(at(0, up), at(0, aside)), kApart);
+  EXPECT_FLOAT_EQ(lowered_by(at(-kApartEnd / 2, up), at(0.1F, aside)), kApart / 2);
+  EXPECT_FLOAT_EQ(lowered_by(at(0.1F, up), at(kApartEnd / 2, aside)), kApart / 2);
+  EXPECT_EQ(lowered_by(at(kApartEnd, up), at(0, aside)), 0);
+  EXPECT_EQ(lowered_by(at(0, up), at(-100, aside)), 0);
+  EXPECT_EQ(lowered_by(at(0, up), at(0, up)), 0);
+  EXPECT_EQ(lowered_by(at(0, up), at(0, {0, 0, -1})), 0);
 }
 
 TEST(KeptSheets, AreTwoOfFourButForTheSymmetricDifferenceAll) {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "cloud/sharpen.hpp"
+#include "cloud/keep_apart.hpp"
 #include "exec/algorithms.hpp"
 
 namespace pointskin::cloud {
-namespace sharpen_detail {
+namespace apart {
 
 /// Where the corner of a node lies in the unit cube; beyond it for nodes that own nothing there.
 PSK_HD inline Vec3f corner_of(const octree::OctreeView& tree, std::int64_t index) {
@@ -43,19 +43,12 @@ struct PointIsNear {
   PSK_HD bool operator()(std::int64_t i) const { return is_near_samples(tree, points[i]); }
 };
 
-struct Blend {
+struct Lower {
   ArrayView<const std::int32_t> corners;
   ArrayView<const field::SurfaceDistance> to_a, to_b;
-  BooleanOp op;
-  float steepness, isovalue;
+  float steepness;
   ArrayView<float> values;
-  PSK_HD void operator()(std::int64_t i) const {
-    const float share = blend_share(to_a[i], to_b[i]);
-    if (share == 0) return;
-    const float combined = isovalue + steepness * combined_depth(op, to_a[i].cells, to_b[i].cells);
-    float& value = values[corners[i]];
-    value = (1 - share) * value + share * combined;
-  }
+  PSK_HD void operator()(std::int64_t i) const { values[corners[i]] -= steepness * lowered_by(to_a[i], to_b[i]); }
 };
 
 /// Corners that a level cannot choose, next to coarser leaves, hold what these interpolate: the field stays continuous.
@@ -69,12 +62,12 @@ struct Interpolate {
   }
 };
 
-}  // namespace sharpen_detail
+}  // namespace apart
 
 template <exec::Space Exec>
-void sharpen(Exec& ex, const field::FieldView& a, const field::FieldView& b, BooleanOp op, double steepness,
-             const octree::OctreeView& tree, float isovalue, ArrayView<float> values) {
-  using namespace sharpen_detail;
+void keep_apart(Exec& ex, const field::FieldView& a, const field::FieldView& b, double steepness,
+                const octree::OctreeView& tree, ArrayView<float> values) {
+  using namespace apart;
   const exec::Buffer<std::int32_t> near_b = select(ex, "boolean.near", tree.nodes, CornerIsNear{tree, b.tree});
   auto places = exec::make_buffer<Vec3f>(ex, near_b.size());
   for_each(ex, "boolean.near", near_b.size(), ListCorner{tree, near_b.cview(), places.view()});
@@ -89,8 +82,8 @@ void sharpen(Exec& ex, const field::FieldView& a, const field::FieldView& b, Boo
   auto to_b = exec::make_buffer<field::SurfaceDistance>(ex, n);
   field::measure_distances(ex, a, points.cview(), to_a.view());
   field::measure_distances(ex, b, points.cview(), to_b.view());
-  for_each(ex, "boolean.blend", n,
-           Blend{corners.cview(), to_a.cview(), to_b.cview(), op, static_cast<float>(steepness), isovalue, values});
+  for_each(ex, "boolean.apart", n,
+           Lower{corners.cview(), to_a.cview(), to_b.cview(), static_cast<float>(steepness), values});
   if (n == 0) return;
   for (int d = 1; d <= tree.depth; ++d) {
     const octree::LevelView& above = tree.levels[d - 1];

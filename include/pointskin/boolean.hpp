@@ -81,7 +81,8 @@ struct BooleanResult {
 
 /// Combines solids. Owns a device's stream and memory pool. Not safe for two threads at once.
 /// Source: Zhou et al. 2010, section 5 (P13): both are reconstructed, every point is classified by the other's implicit
-/// function, and what is kept is reconstructed again. Creases and coincident surfaces: docs/algorithm.md, section 12.
+/// function, and what is kept is reconstructed again. Creases and coincident surfaces: docs/algorithm.md, "Boolean
+/// operations".
 class Booleans {
  public:
   /// @throws Error device_unavailable if the device does not answer, usage for a negative number of threads

@@ -96,8 +96,10 @@ TEST_F(BooleanCommand, SaysWhatItDidOnOneLineUnlessQuiet) {
 TEST_F(BooleanCommand, WritesPlyToStdoutAndReadsStdin) {
   const Result file = boolean(a_, b_, "union");
   ASSERT_EQ(file.exit_code, 0) << file.err;
-  const Result piped = run_program({.args = {"boolean", "-", b_, "--op", "union", "-o", "-", "--depth", "6", "-q"},
-                                    .input = ply_bytes(sphere(4000))});
+  Start start;
+  start.args = {"boolean", "-", b_, "--op", "union", "-o", "-", "--depth", "6", "-q"};
+  start.input = ply_bytes(sphere(4000));
+  const Result piped = run_program(start);
   ASSERT_EQ(piped.exit_code, 0) << piped.err;
   EXPECT_EQ(piped.out, read_file(output_));
 }

@@ -20,6 +20,7 @@ void add_convert(CLI::App& program, Job& job);
 void add_deform(CLI::App& program, Job& job);
 void add_problems(CLI::App& program, Job& job);
 void add_render(CLI::App& program, Job& job);
+void add_boolean(CLI::App& program, Job& job);
 void add_bench(CLI::App& program, Job& job);
 void add_edit(CLI::App& program, Job& job);
 

@@ -95,7 +95,7 @@ nlohmann::json parse_json(const std::string& text, const std::string& name) {
   } catch (const nlohmann::json::parse_error& error) {
     throw Error(ErrorCode::invalid_input, fmt::format("{}: is not JSON: byte {}", name, error.byte));
   } catch (const nlohmann::json::out_of_range&) {
-    throw Error(ErrorCode::invalid_input, fmt::format("{}: has a number that is too large", name));
+    throw Error(ErrorCode::invalid_input, fmt::format("{}: holds a number that is too large", name));
   }
 }
 

@@ -41,6 +41,7 @@ void define_program(CLI::App& program, Job& job) {
   add_deform(program, job);
   add_problems(program, job);
   add_render(program, job);
+  add_boolean(program, job);
   add_bench(program, job);
 }
 

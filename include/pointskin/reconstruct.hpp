@@ -59,7 +59,7 @@ struct Options {
   bool linear_fit = false;        ///< true: edge crossings by linear instead of rescaled quadratic interpolation
   bool density = false;           ///< true: the mesh carries "density", samples per unit of area (world units^-2)
   /// true: the mesh carries "weakness", in [0, 1]: where samples are sparser and the field flatter than at half of the
-  /// samples, so that the topology is a guess (docs/algorithm.md, section 13); for find_problems(). Needs the field
+  /// samples, so that the topology is a guess (docs/algorithm.md, section 15); for find_problems(). Needs the field
   /// poisson; excludes `offset`.
   bool weakness = false;
   /// true: the mesh carries every attribute of the cloud, interpolated at its vertices and smoothly extended over holes
@@ -81,7 +81,7 @@ struct Options {
   double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,
                                 ///< islands are removed and pinholes stay closed; in [0, 1)
   /// Not 0: the surface at this distance from that of the field, world units, outwards where positive, inwards where
-  /// negative; round around edges, and the working cube grows where it must (docs/algorithm.md, section 12). The Field
+  /// negative; round around edges, and the working cube grows where it must (docs/algorithm.md, section 14). The Field
   /// is then minus the signed distance to that surface, in finest cells. Finite; excludes `trim`, `density`,
   /// `attributes`, `envelope` and open `domain_faces`.
   double offset = 0;

@@ -1,0 +1,96 @@
+#include "boolean_report.hpp"
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* word_of(Creases creases) { return creases == Creases::none ? "none" : "sampled"; }
+
+Json options_json(const BooleanOptions& options) {
+  const Options& fit = options.reconstruction;
+  return {{"depth", fit.depth},
+          {"creases", word_of(options.creases)},
+          {"coincidence", options.coincidence_cells},
+          {"screening", fit.screening},
+          {"iterations", fit.iterations},
+          {"scale", fit.scale},
+          {"samples_per_node", fit.samples_per_node},
+          {"fixed_screening", fit.fixed_screening},
+          {"linear_fit", fit.linear_fit},
+          {"boundary", fit.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
+          {"keep_strays", fit.keep_strays},
+          {"normals", fit.normals}};
+}
+
+double fit_ms(const RunReport& run) { return run.octree_ms + run.splat_ms + run.solve_ms; }
+
+Json part_json(const BooleanPart& part, bool is_mesh, std::int64_t dropped_on_reading) {
+  return {{"kind", is_mesh ? "mesh" : "cloud"},
+          {"points", part.points},
+          {"invalid", dropped_on_reading},
+          {"strays", part.strays},
+          {"kept", part.kept},
+          {"flipped", part.flipped},
+          {"dropped", part.dropped},
+          {"coincident", part.coincident},
+          {"isovalue", part.fit.isovalue},
+          {"nodes", part.fit.nodes}};
+}
+
+Json ms_json(const BooleanRecord& record) {
+  const BooleanReport& run = record.run;
+  return {{"read", record.read_ms},
+          {"fit_a", fit_ms(run.a.fit)},
+          {"fit_b", fit_ms(run.b.fit)},
+          {"classify", run.classify_ms + run.gather_ms},
+          {"crease", run.crease_ms + run.apart_ms},
+          {"fit_result", fit_ms(run.result)},
+          {"extract", run.result.extract_ms},
+          {"download", run.result.download_ms},
+          {"write", record.write_ms},
+          {"total", record.total_ms}};
+}
+
+}  // namespace
+
+Json to_json(const BooleanRecord& record) {
+  const BooleanReport& run = record.run;
+  Json json = {{"version", 1}, {"command", "boolean"}};
+  json["device"] = {{"kind", record.device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", record.device.name()}};
+  json["op"] = record.op;
+  json["files"] = record.files;
+  json["options"] = options_json(record.options);
+  json["a"] = part_json(run.a, record.a_is_mesh, record.a_dropped);
+  json["b"] = part_json(run.b, record.b_is_mesh, record.b_dropped);
+  json["added"] = run.added;
+  json["curve_length"] = run.curve_length;
+  json["result"] = {{"points", run.result.points}, {"isovalue", run.result.isovalue}, {"nodes", run.result.nodes}};
+  const MeshReport& mesh = record.mesh;
+  json["mesh"] = {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
+                  {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler},
+                  {"volume", mesh.volume}};
+  json["ms"] = ms_json(record);
+  json["memory"] = {{"host_peak_bytes", record.host_peak_bytes}, {"device_peak_bytes", run.device_peak_bytes}};
+  return json;
+}
+
+std::string summary(const BooleanRecord& record) {
+  const BooleanReport& run = record.run;
+  const auto part = [](const char* name, const BooleanPart& p) {
+    return fmt::format("{}: {} of {} points kept ({} flipped)", name, p.kept, p.points, p.flipped);
+  };
+  return fmt::format(
+      "{}; {}; {} added along {:.4g} units of crease; depth {}, triangles {}; ms: fits {:.1f}, classify {:.1f}, "
+      "crease {:.1f}, total {:.1f}; memory {} device, {} host",
+      part("A", run.a), part("B", run.b), run.added, run.curve_length, run.result.depth, record.mesh.triangles,
+      fit_ms(run.a.fit) + fit_ms(run.b.fit) + fit_ms(run.result), run.classify_ms, run.crease_ms, record.total_ms,
+      format_bytes(static_cast<double>(run.device_peak_bytes)),
+      format_bytes(static_cast<double>(record.host_peak_bytes)));
+}
+
+}  // namespace pointskin::cli

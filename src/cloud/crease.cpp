@@ -1,0 +1,11 @@
+#include "cloud/crease_impl.hpp"
+#include "exec/cpu_primitives.hpp"
+
+namespace pointskin::cloud {
+
+template Crease find_crease(exec::Cpu&, const field::FieldView&, const field::FieldView&);
+template SheetSamples sample_sheets(exec::Cpu&, const field::FieldView&, const field::FieldView&, const Crease&,
+                                    BooleanOp);
+template double steepness_at(exec::Cpu&, const Crease&);
+
+}  // namespace pointskin::cloud

@@ -1,0 +1,9 @@
+#include "cloud/keep_apart_impl.hpp"
+#include "exec/cuda_primitives.cuh"
+
+namespace pointskin::cloud {
+
+template void keep_apart(exec::Cuda&, const field::FieldView&, const field::FieldView&, double,
+                         const octree::OctreeView&, ArrayView<float>);
+
+}  // namespace pointskin::cloud

@@ -25,6 +25,7 @@ class SessionOn final : public EditSession::Impl {
   SessionOn(std::shared_ptr<Exec> ex, const Cloud& base, const EditOptions& options)
       : ex_(std::move(ex)), options_(options), origin_(base.origin) {
     if constexpr (std::is_same_v<Exec, exec::Cpu>) threads_ = ex_->threads();
+    options_.reconstruction.residuals = false;  // nobody sees them, and they cost more than the solve
     envelope_ = make_envelope(*ex_, options_.reconstruction, origin_);
     states_.push_back(make_base(base));
     show(*states_.front());

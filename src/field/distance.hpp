@@ -18,7 +18,7 @@
 namespace pointskin::field {
 
 /// Samples whose tangent planes are averaged.
-inline constexpr int kNearestSamples = 8;
+inline constexpr int kNearestSamples = 16;
 
 /// Samples in the order of the octree; shape (n) each.
 struct TangentPlanes {

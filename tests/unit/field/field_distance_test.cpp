@@ -59,7 +59,8 @@ void expect_planes(SmallTree& tree, const std::vector<float>& weights) {
       if (!test::in_cube(level, test::corner_at(level, i))) continue;
       const float value = values.data()[level.first_node + i];
       if (test::is_unknown(level, i)) {
-        ASSERT_NEAR(value, expected_at(tree, weights, at_corner(level, i)), 2e-6 * cells) << "level " << d;
+        // Far away all weights are near 0, and float has fewer digits of them.
+        ASSERT_NEAR(value, expected_at(tree, weights, at_corner(level, i)), 1e-5 * cells) << "level " << d;
       } else {
         const octree::LevelView& above = tree.view.levels[d - 1];
         ASSERT_EQ(value, octree::prolonged(above, values.data() + above.first_node, level.parent[i >> 3],

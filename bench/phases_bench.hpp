@@ -36,7 +36,7 @@
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
 #include "on_spaces.hpp"
-#include "points_impl.hpp"
+#include "pipeline/points_impl.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
 #include "poisson/resolution.hpp"

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "exec/cpu_primitives.hpp"
-#include "memory_model.hpp"
 #include "octree/frame.hpp"
 #include "octree/keys.hpp"
 #include "octree/strays.hpp"
+#include "pipeline/memory_model.hpp"
 
 namespace pointskin {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "reconstruct_engine.hpp"
+#include "pipeline/engine.hpp"
 
 namespace pointskin {
 namespace {

@@ -10,6 +10,7 @@ import sys
 import tempfile
 
 # What the files of src/<folder> may include with quotes. All may include <pointskin/...>; src/*.cpp may include all.
+PARTS = {"core", "exec", "octree", "poisson", "field", "surface", "cloud", "mesh", "envelope"}
 LAYERS = {
     "core": {"core"},
     "exec": {"core", "exec"},
@@ -21,6 +22,11 @@ LAYERS = {
     "mesh": {"core", "exec", "mesh"},
     "envelope": {"core", "exec", "octree", "mesh", "envelope"},
     "io": {"core", "exec", "io"},
+    # What joins the parts: one reconstruction, and what is built on it.
+    "pipeline": PARTS | {"pipeline"},
+    "edit": PARTS | {"pipeline", "edit"},
+    "deform": PARTS | {"pipeline", "deform"},
+    "boolean": PARTS | {"pipeline", "boolean"},
     "render": {"core", "exec", "mesh", "render"},
 }
 SOURCES = {".hpp", ".cpp", ".cuh", ".cu", ".h"}

@@ -9,7 +9,7 @@
 
 #include "field/evaluate.hpp"
 #include "field/surface_distance.hpp"
-#include "fit_field.hpp"
+#include "pipeline/fit_field.hpp"
 #include "support/shapes.hpp"
 #include "support/spaces.hpp"
 

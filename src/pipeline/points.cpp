@@ -1,5 +1,5 @@
 #include "exec/cpu_primitives.hpp"
-#include "points_impl.hpp"
+#include "pipeline/points_impl.hpp"
 
 namespace pointskin::detail {
 

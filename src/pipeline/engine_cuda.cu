@@ -1,5 +1,5 @@
 #include "exec/cuda_primitives.cuh"
-#include "reconstruct_impl.hpp"
+#include "pipeline/engine_impl.hpp"
 
 namespace pointskin::detail {
 

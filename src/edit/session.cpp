@@ -1,11 +1,11 @@
-#include "edit_session.hpp"
+#include "edit/session.hpp"
 
 #include <pointskin/error.hpp>
 
 #include <cmath>
 #include <utility>
 
-#include "edit_points.hpp"
+#include "edit/points.hpp"
 
 namespace pointskin {
 namespace {

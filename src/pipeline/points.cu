@@ -1,5 +1,5 @@
 #include "exec/cuda_primitives.cuh"
-#include "points_impl.hpp"
+#include "pipeline/points_impl.hpp"
 
 namespace pointskin::detail {
 

@@ -1,4 +1,4 @@
-#include "memory_model.hpp"
+#include "pipeline/memory_model.hpp"
 
 #include <algorithm>
 

@@ -13,7 +13,7 @@
 #include "cloud/placement.hpp"
 #include "cloud/point_kind.hpp"
 #include "cloud/view_frame.hpp"
-#include "edit_points.hpp"
+#include "edit/points.hpp"
 #include "exec/algorithms.hpp"
 
 namespace pointskin::detail {

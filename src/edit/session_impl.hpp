@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "cloud/point_kind.hpp"
-#include "edit_points.hpp"
-#include "edit_session.hpp"
+#include "edit/points.hpp"
+#include "edit/session.hpp"
 #include "exec/algorithms.hpp"
-#include "fit_field.hpp"
-#include "points.hpp"
-#include "within_envelope.hpp"
+#include "pipeline/fit_field.hpp"
+#include "pipeline/points.hpp"
+#include "pipeline/within_envelope.hpp"
 
 namespace pointskin::detail {
 

@@ -1,6 +1,6 @@
 #include <pointskin/error.hpp>
 
-#include "edit_session_impl.hpp"
+#include "edit/session_impl.hpp"
 #include "exec/cpu_primitives.hpp"
 
 namespace pointskin::detail {

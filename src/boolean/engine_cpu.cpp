@@ -1,14 +1,14 @@
+#include "boolean/engine_impl.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "reconstruct_impl.hpp"
 
 namespace pointskin::detail {
 
-std::unique_ptr<Engine> make_cpu_engine(int threads) {
-  return std::make_unique<EngineOn<exec::Cpu>>(std::make_shared<exec::Cpu>(threads));
+std::unique_ptr<Booleans::Impl> make_cpu_booleans(int threads) {
+  return std::make_unique<BooleansOn<exec::Cpu>>(std::make_shared<exec::Cpu>(threads));
 }
 
 #ifndef POINTSKIN_HAS_CUDA
-std::unique_ptr<Engine> make_cuda_engine(int /*index*/) {
+std::unique_ptr<Booleans::Impl> make_cuda_booleans(int /*index*/) {
   throw Error(ErrorCode::device_unavailable, "this build has no GPU support; configure with -DPOINTSKIN_CUDA=ON");
 }
 #endif

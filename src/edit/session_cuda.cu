@@ -1,6 +1,6 @@
 #include "exec/cuda_primitives.cuh"
 
-#include "edit_session_impl.hpp"
+#include "edit/session_impl.hpp"
 
 namespace pointskin::detail {
 

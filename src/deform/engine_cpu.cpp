@@ -1,6 +1,6 @@
 #include <pointskin/error.hpp>
 
-#include "deform_impl.hpp"
+#include "deform/engine_impl.hpp"
 #include "exec/cpu_primitives.hpp"
 
 namespace pointskin::detail {

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "fit_field.hpp"
-#include "phase_clock.hpp"
-#include "points.hpp"
-#include "reconstruct_engine.hpp"
-#include "within_envelope.hpp"
+#include "pipeline/engine.hpp"
+#include "pipeline/fit_field.hpp"
+#include "pipeline/phase_clock.hpp"
+#include "pipeline/points.hpp"
+#include "pipeline/within_envelope.hpp"
 
 namespace pointskin::detail {
 

@@ -1,4 +1,4 @@
-#include "deform_impl.hpp"
+#include "deform/engine_impl.hpp"
 #include "exec/cuda_primitives.cuh"
 
 namespace pointskin::detail {

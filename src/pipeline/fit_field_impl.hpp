@@ -13,17 +13,17 @@
 #include "exec/algorithms.hpp"
 #include "field/distance.hpp"
 #include "field/evaluate.hpp"
-#include "fit_field.hpp"
-#include "offset_surface.hpp"
-#include "phase_clock.hpp"
-#include "points.hpp"
+#include "pipeline/fit_field.hpp"
+#include "pipeline/offset_surface.hpp"
+#include "pipeline/phase_clock.hpp"
+#include "pipeline/points.hpp"
+#include "pipeline/trim_to_samples.hpp"
+#include "pipeline/within_envelope.hpp"
 #include "poisson/boundary.hpp"
 #include "poisson/divergence.hpp"
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
 #include "poisson/trust.hpp"
-#include "trim_to_samples.hpp"
-#include "within_envelope.hpp"
 
 namespace pointskin::detail {
 namespace fit {

@@ -1,4 +1,4 @@
-#include "edit_points_impl.hpp"
+#include "edit/points_impl.hpp"
 #include "exec/cpu_primitives.hpp"
 
 namespace pointskin::detail {

@@ -1,5 +1,5 @@
 #include "exec/cuda_primitives.cuh"
-#include "fit_field_impl.hpp"
+#include "pipeline/fit_field_impl.hpp"
 
 namespace pointskin::detail {
 

@@ -14,12 +14,12 @@
 #include "field/field_view.hpp"
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
-#include "points.hpp"
+#include "pipeline/engine.hpp"
+#include "pipeline/points.hpp"
+#include "pipeline/weakness.hpp"
 #include "poisson/density.hpp"
 #include "poisson/resolution.hpp"
-#include "reconstruct_engine.hpp"
 #include "surface/extract.hpp"
-#include "weakness.hpp"
 
 namespace pointskin::detail {
 

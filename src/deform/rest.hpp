@@ -12,8 +12,8 @@
 
 #include "cloud/resample.hpp"
 #include "exec/algorithms.hpp"
-#include "fit_field.hpp"
 #include "octree/search.hpp"
+#include "pipeline/fit_field.hpp"
 
 namespace pointskin::detail {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "exec/space.hpp"
-#include "fit_field.hpp"
-#include "points.hpp"
+#include "pipeline/fit_field.hpp"
+#include "pipeline/points.hpp"
 
 namespace pointskin::detail {
 

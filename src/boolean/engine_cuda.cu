@@ -1,4 +1,4 @@
-#include "boolean_impl.hpp"
+#include "boolean/engine_impl.hpp"
 #include "exec/cuda_primitives.cuh"
 
 namespace pointskin::detail {

@@ -10,9 +10,9 @@
 
 #include "exec/algorithms.hpp"
 #include "exec/host_array.hpp"
-#include "kept_names.hpp"
 #include "octree/octree_data.hpp"
-#include "points.hpp"
+#include "pipeline/kept_names.hpp"
+#include "pipeline/points.hpp"
 
 namespace pointskin::detail {
 namespace points {

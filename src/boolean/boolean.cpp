@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "boolean_engine.hpp"
+#include "boolean/engine.hpp"
 
 namespace pointskin {
 namespace {

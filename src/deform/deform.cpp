@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "deform_engine.hpp"
+#include "deform/engine.hpp"
 
 namespace pointskin {
 

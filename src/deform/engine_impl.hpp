@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "cloud/prepare_deformation.hpp"
-#include "deform_engine.hpp"
-#include "deform_rest.hpp"
-#include "deform_spacing.hpp"
-#include "kept_names.hpp"
-#include "phase_clock.hpp"
-#include "within_envelope.hpp"
+#include "deform/engine.hpp"
+#include "deform/rest.hpp"
+#include "deform/spacing.hpp"
+#include "pipeline/kept_names.hpp"
+#include "pipeline/phase_clock.hpp"
+#include "pipeline/within_envelope.hpp"
 
 namespace pointskin::detail {
 

@@ -9,10 +9,10 @@
 
 #include "exec/algorithms.hpp"
 #include "field/offset.hpp"
-#include "fit_field.hpp"
 #include "octree/frame.hpp"
 #include "octree/frame_impl.hpp"
-#include "phase_clock.hpp"
+#include "pipeline/fit_field.hpp"
+#include "pipeline/phase_clock.hpp"
 
 namespace pointskin::detail {
 

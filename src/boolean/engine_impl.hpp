@@ -10,18 +10,18 @@
 #include <type_traits>
 #include <utility>
 
-#include "boolean_engine.hpp"
+#include "boolean/engine.hpp"
 #include "cloud/crease.hpp"
 #include "cloud/keep_apart.hpp"
 #include "cloud/set_operation.hpp"
 #include "exec/algorithms.hpp"
 #include "field/surface_distance.hpp"
-#include "fit_field.hpp"
 #include "mesh/oriented_samples.hpp"
 #include "octree/frame.hpp"
 #include "octree/strays.hpp"
-#include "phase_clock.hpp"
-#include "points.hpp"
+#include "pipeline/fit_field.hpp"
+#include "pipeline/phase_clock.hpp"
+#include "pipeline/points.hpp"
 
 namespace pointskin::detail {
 namespace boolean {

@@ -1,4 +1,4 @@
-#include "edit_points_impl.hpp"
+#include "edit/points_impl.hpp"
 #include "exec/cuda_primitives.cuh"
 
 namespace pointskin::detail {

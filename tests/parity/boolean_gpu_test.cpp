@@ -5,29 +5,15 @@
 #include <pointskin/device.hpp>
 #include <pointskin/error.hpp>
 
-#include <cstdlib>
-#include <string>
-
+#include "parity/gpu_test.hpp"
 #include "property/reconstruction.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin {
 namespace {
 
-/// Tests with a GPU: skipped where none answers, failed where POINTSKIN_REQUIRE_GPU=1 says that one must.
-class BooleansOnGpu : public testing::TestWithParam<int> {
+class BooleansOnGpu : public test::GpuTest, public testing::WithParamInterface<int> {
  protected:
-  void SetUp() override {
-    try {
-      gpu_ = Device::cuda(0);
-    } catch (const Error& error) {
-      ASSERT_EQ(error.code(), ErrorCode::device_unavailable) << error.what();
-      const char* required = std::getenv("POINTSKIN_REQUIRE_GPU");
-      if (required != nullptr && std::string(required) == "1") FAIL() << error.what();
-      GTEST_SKIP() << error.what();
-    }
-  }
-
   void expect_parity(const BooleanOperand& a, const BooleanOperand& b, const BooleanOptions& options) {
     const auto op = static_cast<BooleanOp>(GetParam());
     const BooleanResult expected = Booleans(Device::cpu()).combine(a, b, op, options);
@@ -40,8 +26,6 @@ class BooleansOnGpu : public testing::TestWithParam<int> {
     EXPECT_EQ(result.report.a.coincident, expected.report.a.coincident);
     EXPECT_EQ(result.report.b.coincident, expected.report.b.coincident);
   }
-
-  Device gpu_;
 };
 
 TEST_P(BooleansOnGpu, OfCloudsGiveTheSameBytesAsOnTheCpu) {

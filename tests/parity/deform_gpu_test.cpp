@@ -5,10 +5,9 @@
 #include <pointskin/device.hpp>
 #include <pointskin/error.hpp>
 
-#include <cstdlib>
 #include <optional>
-#include <string>
 
+#include "parity/gpu_test.hpp"
 #include "property/reconstruction.hpp"
 #include "support/deformations.hpp"
 #include "support/shapes.hpp"
@@ -19,19 +18,8 @@ namespace {
 using test::expect_same_bytes;
 using test::same_bytes;
 
-/// Skipped without a GPU, failed where POINTSKIN_REQUIRE_GPU=1.
-class DeformOnGpu : public testing::Test {
+class DeformOnGpu : public test::GpuTest {
  protected:
-  void SetUp() override {
-    try {
-      gpu_ = Device::cuda(0);
-    } catch (const Error& error) {
-      const char* required = std::getenv("POINTSKIN_REQUIRE_GPU");
-      if (required != nullptr && std::string(required) == "1") FAIL() << error.what();
-      GTEST_SKIP() << error.what();
-    }
-  }
-
   void expect_parity(const Cloud& cloud, const Deformation& deformation, const Options& options) {
     Deformer on_cpu(cloud, options, Device::cpu());
     Deformer on_gpu(cloud, options, gpu_);
@@ -49,8 +37,6 @@ class DeformOnGpu : public testing::Test {
       expect_same_bytes(on_gpu.reconstruct(), on_cpu.reconstruct());
     }
   }
-
-  Device gpu_;
 };
 
 Options shallow(int depth) {

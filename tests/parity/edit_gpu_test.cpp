@@ -5,11 +5,10 @@
 #include <pointskin/edit.hpp>
 #include <pointskin/error.hpp>
 
-#include <cstdlib>
 #include <memory>
-#include <string>
 #include <vector>
 
+#include "parity/gpu_test.hpp"
 #include "property/reconstruction.hpp"
 #include "support/shapes.hpp"
 #include "support/two_fingers.hpp"
@@ -21,19 +20,8 @@ using test::expect_same_bytes;
 using test::front_camera;
 using test::pixel_at;
 
-/// Skipped where no GPU answers, failed where POINTSKIN_REQUIRE_GPU=1 says that one must.
-class GpuEdits : public testing::Test {
+class GpuEdits : public test::GpuTest {
  protected:
-  void SetUp() override {
-    try {
-      gpu_ = Device::cuda(0);
-    } catch (const Error& error) {
-      const char* required = std::getenv("POINTSKIN_REQUIRE_GPU");
-      if (required != nullptr && std::string(required) == "1") FAIL() << error.what();
-      GTEST_SKIP() << error.what();
-    }
-  }
-
   void expect_parity(const Cloud& cloud, const EditOptions& options, const std::vector<Operation>& operations) {
     EditSession on_cpu(cloud, options, Device::cpu());
     EditSession on_gpu(cloud, options, gpu_);
@@ -57,8 +45,6 @@ class GpuEdits : public testing::Test {
       expect_same_bytes(on_gpu.mesh(), on_cpu.mesh());
     }
   }
-
-  Device gpu_;
 };
 
 EditOptions options_at(int depth) {

@@ -7,7 +7,6 @@
 #include <pointskin/reconstruct.hpp>
 
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <string>
@@ -15,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "parity/gpu_test.hpp"
 #include "property/reconstruction.hpp"
 #include "support/shapes.hpp"
 #include "support/stray_clouds.hpp"
@@ -24,24 +24,8 @@ namespace {
 
 using test::expect_same_bytes;
 
-bool gpu_required() {
-  const char* value = std::getenv("POINTSKIN_REQUIRE_GPU");
-  return value != nullptr && std::string(value) == "1";
-}
-
-/// Tests with a GPU: skipped where none answers, failed where POINTSKIN_REQUIRE_GPU=1 says that one must.
-class Gpu : public testing::Test {
+class Gpu : public test::GpuTest {
  protected:
-  void SetUp() override {
-    try {
-      gpu_ = Device::cuda(0);
-    } catch (const Error& error) {
-      ASSERT_EQ(error.code(), ErrorCode::device_unavailable) << error.what();
-      if (gpu_required()) FAIL() << "POINTSKIN_REQUIRE_GPU=1, but " << error.what();
-      GTEST_SKIP() << error.what();
-    }
-  }
-
   /// Compares both devices' meshes, isovalues and levels.
   void expect_parity(const Cloud& cloud, const Options& options) {
     Reconstructor on_cpu(Device::cpu());
@@ -67,8 +51,6 @@ class Gpu : public testing::Test {
       EXPECT_EQ(on_gpu.report().levels[d].residual_after, on_cpu.report().levels[d].residual_after) << "level " << d;
     }
   }
-
-  Device gpu_;
 };
 
 struct NamedCloud {

@@ -108,8 +108,7 @@ void define_surface_options(CLI::App& command, ReconstructArgs& args) {
       ->group("Surface")
       ->capture_default_str()
       ->each([&args](const std::string&) { args.depth_given = true; });
-  add_value(command, "--field", args.field,
-            "implicit function: poisson (solved for), or distance: to the points' tangent planes")
+  add_value(command, "--field", args.field, "poisson (a field solved for), or distance (to the points' tangent planes)")
       ->type_name("F");
   add_value(command, "--screening", options.screening, "weight of the points, no unit, >= 0; 0: unscreened")
       ->type_name("W");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "exec/cpu_primitives.hpp"
 #include "octree/frame.hpp"
@@ -63,22 +64,38 @@ detail::RunSize measure_run(exec::Cpu& ex, const Cloud& cloud, const Options& op
           kept_attributes(cloud, options)};
 }
 
+constexpr double kBytesPerNode = 72;
+
+/// A level's nodes cover a band around the surface, about 25 per face of its grid for common shapes; where points lie
+/// apart, each has its own 27 bricks; and no level has more nodes than the whole grid.
+double nodes_of_common_shapes(double points, int depth) {
+  constexpr double kNodesPerFace = 25;
+  constexpr double kNodesPerPoint = 27 * 8;
+  double nodes = 0;
+  for (int d = 0; d <= depth; ++d)
+    nodes += std::max(std::min(std::pow(8.0, d), 1e4),
+                      std::min({kNodesPerPoint * points, kNodesPerFace * std::pow(4.0, d), std::pow(8.0, d)}));
+  return nodes;
+}
+
+/// A second octree, whose finest cells go all around the surface, is there beside the first one.
+/// @param plain  without an offset
+std::int64_t with_offset(std::int64_t plain, int depth) {
+  constexpr double kBoth = 2.4;  // 2.3 at most for scans with samples in every finest cell
+  const double sparse = kBytesPerNode * nodes_of_common_shapes(std::numeric_limits<double>::infinity(), depth);
+  const double bytes = static_cast<double>(plain);
+  return static_cast<std::int64_t>(std::max(kBoth * bytes, bytes + sparse));
+}
+
 }  // namespace
 
 std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) {
-  // A level's nodes cover a band around the surface, about 25 per face of its grid for common shapes; where points lie
-  // apart, each has its own 27 bricks; and no level has more nodes than the whole grid.
-  constexpr double kNodesPerFace = 25;
-  constexpr double kNodesPerPoint = 27 * 8;
-  constexpr double kBytesPerNode = 72;
   constexpr double kBytesPerPoint = 120;
   constexpr double kBytesPerColour = 40;  // three attributes
-  double nodes = 0;
-  for (int d = 0; d <= options.depth; ++d)
-    nodes += std::max(std::min(std::pow(8.0, d), 1e4), std::min({kNodesPerPoint * static_cast<double>(points),
-                                                                 kNodesPerFace * std::pow(4.0, d), std::pow(8.0, d)}));
+  const double nodes = nodes_of_common_shapes(static_cast<double>(points), options.depth);
   const double per_point = kBytesPerPoint + (options.attributes ? kBytesPerColour : 0);
-  return static_cast<std::int64_t>(kBytesPerNode * nodes + per_point * static_cast<double>(points));
+  const auto plain = static_cast<std::int64_t>(kBytesPerNode * nodes + per_point * static_cast<double>(points));
+  return options.offset == 0 ? plain : with_offset(plain, options.depth);
 }
 
 std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, int threads) {
@@ -92,8 +109,10 @@ std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, i
     return detail::uploaded_bytes(cloud.size(), kept_attributes(cloud, options));  // the run ends here, too
   }
   const std::vector<detail::PhaseBytes> phases = detail::model_memory(size, options);
-  return std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.bytes < b.bytes; })
-      ->bytes;
+  const std::int64_t plain = std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) {
+                               return a.bytes < b.bytes;
+                             })->bytes;
+  return options.offset == 0 ? plain : with_offset(plain, options.depth);
 }
 
 }  // namespace pointskin

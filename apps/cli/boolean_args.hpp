@@ -7,21 +7,21 @@
 
 #include <pointskin/boolean.hpp>
 
+#include "fit_args.hpp"
+
 namespace pointskin::cli {
 
-struct BooleanArgs {
+struct BooleanArgs : DeviceArgs {
   std::string a, b;
   std::string op;
   std::string output;
   std::string cloud;   ///< empty: none
   std::string report;  ///< empty: none
   std::string creases = "sampled";
-  std::string boundary = "free";
-  std::string device = "auto";
   std::string shift = "auto";
-  BooleanOptions options;
-  int threads = 0;
-  bool no_normals = false, quiet = false;
+  BooleanOptions booleans;  ///< but for the reconstruction
+  SolveArgs solve;
+  bool quiet = false;
 };
 
 /// Defines the options on `command`, bound to `args`.

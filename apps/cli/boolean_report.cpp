@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "report.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -12,19 +13,10 @@ using Json = nlohmann::ordered_json;
 const char* word_of(Creases creases) { return creases == Creases::none ? "none" : "sampled"; }
 
 Json options_json(const BooleanOptions& options) {
-  const Options& fit = options.reconstruction;
-  return {{"depth", fit.depth},
-          {"creases", word_of(options.creases)},
-          {"coincidence", options.coincidence_cells},
-          {"screening", fit.screening},
-          {"iterations", fit.iterations},
-          {"scale", fit.scale},
-          {"samples_per_node", fit.samples_per_node},
-          {"fixed_screening", fit.fixed_screening},
-          {"linear_fit", fit.linear_fit},
-          {"boundary", fit.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
-          {"keep_strays", fit.keep_strays},
-          {"normals", fit.normals}};
+  Json json = to_json(options.reconstruction);
+  json["creases"] = word_of(options.creases);
+  json["coincidence"] = options.coincidence_cells;
+  return json;
 }
 
 double fit_ms(const RunReport& run) { return run.octree_ms + run.splat_ms + run.solve_ms; }
@@ -61,7 +53,7 @@ Json ms_json(const BooleanRecord& record) {
 Json to_json(const BooleanRecord& record) {
   const BooleanReport& run = record.run;
   Json json = {{"version", 1}, {"command", "boolean"}};
-  json["device"] = {{"kind", record.device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", record.device.name()}};
+  json["device"] = to_json(record.device);
   json["op"] = record.op;
   json["files"] = record.files;
   json["options"] = options_json(record.options);
@@ -70,10 +62,8 @@ Json to_json(const BooleanRecord& record) {
   json["added"] = run.added;
   json["curve_length"] = run.curve_length;
   json["result"] = {{"points", run.result.points}, {"isovalue", run.result.isovalue}, {"nodes", run.result.nodes}};
-  const MeshReport& mesh = record.mesh;
-  json["mesh"] = {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
-                  {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler},
-                  {"volume", mesh.volume}};
+  json["mesh"] = to_json(record.mesh);
+  json["mesh"]["volume"] = record.mesh.volume;
   json["ms"] = ms_json(record);
   json["memory"] = {{"host_peak_bytes", record.host_peak_bytes}, {"device_peak_bytes", run.device_peak_bytes}};
   return json;

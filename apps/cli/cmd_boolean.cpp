@@ -1,6 +1,5 @@
 // pointskin boolean: the union, intersection or difference of two solids.
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <variant>
@@ -22,20 +21,10 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "signals.hpp"
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 namespace {
-
-class Stopwatch {
- public:
-  /// Milliseconds since construction.
-  [[nodiscard]] double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 using Solid = std::variant<Cloud, Mesh>;
 
@@ -43,22 +32,7 @@ using Solid = std::variant<Cloud, Mesh>;
 
 /// Everything that can be found wrong before the inputs are opened.
 void check_files(const BooleanArgs& args) {
-  if (args.a == "-" && args.b == "-") throw_usage("stdin (-) can be read only once");
-  std::vector<std::pair<std::string, std::string>> outputs = {{"-o", args.output}};
-  for (const auto& [name, file] : {std::pair{"--cloud", args.cloud}, std::pair{"--report", args.report}}) {
-    if (file == "-") throw_usage(fmt::format("{}: stdout carries the mesh only; name a file", name));
-    if (!file.empty()) outputs.emplace_back(name, file);
-  }
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const auto& [name, file] = outputs[i];
-    for (std::size_t j = 0; j < i; ++j)
-      if (file == outputs[j].second) throw_usage(fmt::format("{} and {} name the same file", outputs[j].first, name));
-    for (const std::string& input : {args.a, args.b}) {
-      std::error_code ignored;  // files that do not exist are not the same
-      if (i > 0 && std::filesystem::equivalent(input, file, ignored))
-        throw_usage(fmt::format("{} would overwrite the input {}", name, input));
-    }
-  }
+  check_distinct({args.a, args.b}, {{"-o", args.output}, {"--cloud", args.cloud}, {"--report", args.report}});
   check_mesh_output(args.output);
   if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
     throw_usage(fmt::format("--cloud: {} does not end in .ply", args.cloud));
@@ -77,12 +51,7 @@ Solid read_solid(const std::string& path, const BooleanArgs& args, std::int64_t&
                 fmt::format("{}: holds no points with finite coordinates", name));
   if (!cloud->has_normals())
     throw Error(ErrorCode::no_normals, fmt::format("{}: has no normals; it needs outward normals nx, ny, nz", name));
-  const std::int64_t not_finite = cloud->dropped;
-  const std::int64_t no_normal = drop_zero_normals(*cloud);
-  if (not_finite > 0)
-    print_warning(fmt::format("{}: {} points were dropped: a coordinate is not finite", name, not_finite));
-  if (no_normal > 0)
-    print_warning(fmt::format("{}: {} points were dropped: their normal has zero length", name, no_normal));
+  drop_unusable(*cloud, name + ": ");
   cloud->attributes.clear();
   dropped = cloud->dropped;
   return solid;
@@ -131,7 +100,7 @@ int run(const BooleanArgs& args) {
   const BooleanOp op = operation_of(args.op);
   parse_shift(args.shift);
   check_files(args);
-  record.device = parse_device(args.device, args.threads);
+  record.device = args.chosen();
 
   Solid a = read_solid(args.a, args, record.a_dropped);
   Solid b = read_solid(args.b, args, record.b_dropped);
@@ -146,10 +115,7 @@ int run(const BooleanArgs& args) {
   record.host_peak_bytes = host_peak_bytes();
   record.mesh.triangles = static_cast<std::int64_t>(result.mesh.triangles.size());
   if (!args.report.empty()) {
-    const auto named = [](const std::string& file) {
-      return file.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(file);
-    };
-    record.files = {{"a", args.a}, {"b", args.b}, {"output", args.output}, {"cloud", named(args.cloud)}};
+    record.files = {{"a", args.a}, {"b", args.b}, {"output", args.output}, {"cloud", or_null(args.cloud)}};
     record.mesh = measure(result.mesh, args.threads);
     write_file_atomically(args.report, json_text(to_json(record)));
   }

@@ -1,7 +1,5 @@
 // pointskin deform: a cloud bent by handles and lattices, frame after frame.
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,35 +15,26 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "deform_script.hpp"
+#include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
+#include "report.hpp"
 #include "signals.hpp"
 #include "statistics.hpp"
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct DeformArgs {
+struct DeformArgs : FitArgs, DeviceArgs {
   std::vector<std::string> inputs;
   std::string script, output, cloud, report;  ///< empty: none
-  std::string device = "auto", shift = "auto";
-  Options options;
-  int threads = 0, frames = 1;
-  bool frames_given = false, no_normals = false, quiet = false;
-};
-
-class Stopwatch {
- public:
-  /// Milliseconds since construction.
-  [[nodiscard]] double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::string shift = "auto";
+  int frames = 1;
+  bool frames_given = false, quiet = false;
 };
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
@@ -73,19 +62,12 @@ void check_files(const DeformArgs& args) {
     throw_usage(fmt::format("--frames: {} is not in [2, 100000]", args.frames));
   check_pattern(args, args.output, "-o");
   check_pattern(args, args.cloud, "--cloud");
-  if (args.report == "-") throw_usage("--report: stdout carries the mesh only; name a file");
-  if (args.output == "-" && args.cloud == "-") throw_usage("-o and --cloud both name stdout");
-  if (!args.output.empty() && args.output == args.cloud) throw_usage("-o and --cloud name the same file");
-  if (!args.report.empty() && (args.report == args.output || args.report == args.cloud))
-    throw_usage("--report names the same file as -o or --cloud");
-  std::vector<std::string> sources = args.inputs;
-  sources.push_back(args.script);
-  if (std::count(sources.begin(), sources.end(), "-") > 1) throw_usage("stdin (-) can be read only once");
-  for (const std::string& source : sources) {
-    std::error_code ignored;  // files that do not exist are not the same
-    if (!args.report.empty() && std::filesystem::equivalent(source, args.report, ignored))
-      throw_usage("--report would overwrite the input " + source);
-  }
+  std::vector<std::string> inputs = args.inputs;
+  inputs.push_back(args.script);
+  if (!args.envelope.empty()) inputs.push_back(args.envelope);
+  std::vector<OutputFile> outputs = {{"-o", args.output}, {"--cloud", args.cloud}, {"--report", args.report}};
+  if (args.output.empty()) outputs.erase(outputs.begin());  // stdout may carry the cloud then
+  check_distinct(inputs, outputs);
   if (!args.output.empty()) check_mesh_output(frame_file(args, args.output, 0));
   if (!args.cloud.empty()) {
     if (args.cloud != "-" && !has_extension(args.cloud, ".ply"))
@@ -93,14 +75,6 @@ void check_files(const DeformArgs& args) {
     check_mesh_output(frame_file(args, args.cloud, 0));
   }
   if (!args.report.empty()) check_replaceable(args.report);
-}
-
-Options library_options(const DeformArgs& args) {
-  Options options = args.options;
-  options.normals = !args.no_normals;
-  options.progress = [](const Progress&) { return !interrupted(); };
-  validate(options);
-  return options;
 }
 
 /// The script, checked against the cloud.
@@ -111,11 +85,6 @@ Deformation checked(const DeformArgs& args, Deformation deformation, std::int64_
     throw Error(ErrorCode::invalid_input, fmt::format("{}: {}", args.script, error.what()));
   }
   return deformation;
-}
-
-Json mesh_json(const MeshReport& mesh) {
-  return {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
-          {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler}};
 }
 
 /// Deforms, writes and measures one frame after another.
@@ -155,7 +124,7 @@ class Frames {
                  {"inserted", report.inserted},
                  {"thinned", report.thinned},
                  {"spacing", {{"p05", spacing.p05}, {"median", spacing.median}, {"p95", spacing.p95}}}};
-    if (!args_.output.empty()) json["mesh"] = mesh_json(measure(mesh_, args_.threads));
+    if (!args_.output.empty()) json["mesh"] = to_json(measure(mesh_, args_.threads));
     json["ms"] = {{"sample", report.sample_ms}, {"map", report.map_ms}};
     if (!args_.output.empty()) json["ms"]["mesh"] = report.mesh_ms;
     json["ms"]["total"] = total_ms;
@@ -171,57 +140,45 @@ class Frames {
   Json json_ = Json::array();
 };
 
-Json options_json(const DeformArgs& args) {
-  const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
-  return {{"depth", args.options.depth},
-          {"screening", args.options.screening},
-          {"iterations", args.options.iterations},
-          {"scale", args.options.scale},
-          {"samples_per_node", args.options.samples_per_node},
-          {"attributes", args.options.attributes},
-          {"normals", !args.no_normals},
-          {"keep_strays", args.options.keep_strays},
-          {"frames", args.frames},
-          {"device", args.device},
-          {"threads", args.threads},
-          {"shift", args.shift},
-          {"inputs", args.inputs},
-          {"script", args.script},
-          {"output", or_null(args.output)},
-          {"cloud", or_null(args.cloud)}};
-}
-
-Cloud read_input(const DeformArgs& args) {
-  Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
-  const std::int64_t not_finite = cloud.dropped;
-  const std::int64_t no_normal = drop_zero_normals(cloud);
-  if (not_finite > 0) print_warning(fmt::format("{} points were dropped: a coordinate is not finite", not_finite));
-  if (no_normal > 0) print_warning(fmt::format("{} points were dropped: their normal has zero length", no_normal));
-  return cloud;
+Json options_json(const DeformArgs& args, const Options& options) {
+  Json json = to_json(options);
+  json.update({{"device", args.device},
+               {"threads", args.threads},
+               {"shift", args.shift},
+               {"envelope", or_null(args.envelope)},
+               {"frames", args.frames},
+               {"inputs", args.inputs},
+               {"script", args.script},
+               {"output", or_null(args.output)},
+               {"cloud", or_null(args.cloud)}});
+  return json;
 }
 
 int run(const DeformArgs& args) {
-  const Options options = library_options(args);
+  Options options = fit_options(args);
   parse_shift(args.shift);
   check_files(args);
-  const Device device = parse_device(args.device, args.threads);
+  const Device device = args.chosen();
   Deformation deformation = read_deformation(args.script);
   const Stopwatch reading;
-  Cloud cloud = read_input(args);
+  options.envelope = read_envelope(args.envelope, args.threads);
+  Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
+  drop_unusable(cloud);
   const double read_ms = reading.ms();
   deformation = checked(args, std::move(deformation), cloud.size());
 
   on_interrupt(OnInterrupt::remember);
+  options.progress = [](const Progress&) { return !interrupted(); };
   Deformer deformer(cloud, options, device);
   const RunReport& at_rest = deformer.report().run;
   if (at_rest.strays > 0) print_warning(strays_text(at_rest.strays, at_rest.farthest_strays.front()));
   Json json = {{"version", 1}, {"command", "deform"}};
-  json["device"] = {{"kind", device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", device.name()}};
+  json["device"] = to_json(device);
   json["input"] = {{"points", cloud.size() + cloud.dropped},
                    {"used", deformer.report().rest_points},
                    {"dropped", cloud.dropped},
                    {"strays", at_rest.strays}};
-  json["options"] = options_json(args);
+  json["options"] = options_json(args, options);
   cloud = Cloud();
 
   Frames frames(args, deformer, deformation);
@@ -258,35 +215,14 @@ void define_files(CLI::App& command, DeformArgs& args) {
       ->each([&args](const std::string&) { args.frames_given = true; });
 }
 
-void define_surface(CLI::App& command, DeformArgs& args) {
-  const std::string group = "Surface";
-  Options& options = args.options;
-  const auto value = [&](const char* name, auto& target, const char* type, const char* description) {
-    command.add_option(name, target, description)->type_name(type)->group(group)->capture_default_str();
-  };
-  value("--depth", options.depth, "D", "octree depth D in levels, 1 to 20; cells are cube / 2^D wide");
-  value("--screening", options.screening, "W", "weight of the points, no unit, >= 0; 0: unscreened");
-  value("--iterations", options.iterations, "N", "relaxations per level, 1 to 1000");
-  value("--scale", options.scale, "F", "working cube / bounding cube of the points, 1 to 100");
-  value("--samples-per-node", options.samples_per_node, "N", "points a cell should hold, 0 to 100");
-  command.add_flag("--keep-strays", options.keep_strays, "use stray points, too")->group(group);
-  command.add_flag("--keep-attributes", options.attributes, "carry properties of the points to the vertices")
-      ->group(group);
-  command.add_flag("--no-normals", args.no_normals, "leave vertex normals out of the mesh")->group(group);
-}
-
 }  // namespace
 
 void add_deform(CLI::App& program, Job& job) {
   CLI::App* command = add_command(program, "deform", "Bend a cloud by handles and lattices, and fit meshes to it.");
   auto args = std::make_shared<DeformArgs>();
   define_files(*command, *args);
-  define_surface(*command, *args);
-  command->add_option("--device", args->device, "auto, cpu, cuda or cuda:N")
-      ->type_name("DEV")
-      ->group("Device and limits")
-      ->capture_default_str();
-  add_threads_option(*command, args->threads, "Device and limits");
+  define_fit_options(*command, *args);
+  define_device_options(*command, *args);
   command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
   finish_command(*command, job, args, run);
 }

@@ -12,46 +12,46 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "edit_script.hpp"
+#include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
-#include "reconstruct_args.hpp"
+#include "report.hpp"
 #include "signals.hpp"
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct EditArgs {
-  ReconstructArgs fit;  ///< inputs, output, report and the options of the surface and of the device
+struct EditArgs : FitArgs, DeviceArgs {
+  std::vector<std::string> inputs;
   std::string script;
-  std::string save;   ///< empty: none
-  std::string cloud;  ///< empty: none
-  bool cold = false;
+  std::string output, save, cloud, report;  ///< empty: none
+  std::string shift = "auto";
+  bool cold = false, quiet = false;
 };
 
 void check_files(const EditArgs& args) {
-  const auto usage = [](const std::string& story) { throw Error(ErrorCode::usage, story); };
-  if (std::count(args.fit.inputs.begin(), args.fit.inputs.end(), "-") > 1) usage("stdin (-) can be read only once");
-  if (!args.fit.output.empty()) check_mesh_output(args.fit.output);
-  for (const std::string& path : {args.save, args.cloud, args.fit.report})
+  std::vector<std::string> inputs = args.inputs;
+  inputs.push_back(args.script);
+  if (!args.envelope.empty()) inputs.push_back(args.envelope);
+  inputs.erase(std::remove(inputs.begin(), inputs.end(), args.save), inputs.end());  // a script may replace itself
+  check_distinct(inputs,
+                 {{"-o", args.output}, {"--save", args.save}, {"--cloud", args.cloud}, {"--report", args.report}});
+  if (!args.output.empty()) check_mesh_output(args.output);
+  if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
+    throw Error(ErrorCode::usage, fmt::format("--cloud: {}: clouds are written as .ply only", args.cloud));
+  for (const std::string& path : {args.save, args.cloud, args.report})
     if (!path.empty()) check_replaceable(path);
-  if (!args.cloud.empty() && !has_extension(args.cloud, ".ply")) usage("--cloud: points are written as .ply");
 }
 
-Cloud read_base(const EditArgs& args) {
-  Cloud cloud = read_clouds(args.fit.inputs, {.shift = parse_shift(args.fit.shift), .threads = args.fit.threads});
-  const std::int64_t no_normal = drop_zero_normals(cloud);
-  if (no_normal > 0) print_warning(fmt::format("{} points were dropped: their normal has zero length", no_normal));
-  return cloud;
-}
-
-Json to_json(const Topology& topology) {
+Json topology_json(const Topology& topology) {
   return {{"components", topology.components}, {"genus", topology.genus}, {"euler", topology.euler}};
 }
 
-Json to_json(const StepReport& step) {
+Json step_json(const StepReport& step) {
   return {{"operation", step.operation},
           {"added", step.added},
           {"removed", step.removed},
@@ -59,27 +59,32 @@ Json to_json(const StepReport& step) {
           {"triangles", step.triangles},
           {"snapped", step.snapped},
           {"warm", step.warm},
-          {"before", to_json(step.before)},
-          {"after", to_json(step.after)},
+          {"before", topology_json(step.before)},
+          {"after", topology_json(step.after)},
           {"ms", {{"edit", step.edit_ms}, {"reconstruct", step.reconstruct_ms}, {"total", step.total_ms}}}};
 }
 
-Json report_of(const EditSession& session, const EditArgs& args) {
+Json options_json(const EditArgs& args, const EditOptions& options) {
+  Json json = to_json(options.reconstruction);
+  json.update({{"warm_start", options.warm_start},
+               {"device", args.device},
+               {"threads", args.threads},
+               {"shift", args.shift},
+               {"envelope", or_null(args.envelope)},
+               {"inputs", args.inputs},
+               {"script", args.script},
+               {"output", or_null(args.output)},
+               {"cloud", or_null(args.cloud)},
+               {"save", or_null(args.save)}});
+  return json;
+}
+
+/// What every step did, and the mesh in the end.
+void describe(const EditSession& session, const EditArgs& args, Json& json) {
   Json steps = Json::array();
-  for (const StepReport& step : session.steps()) steps.push_back(to_json(step));
-  const MeshReport mesh = measure(session.mesh(), args.fit.threads);
-  return {{"version", 1},
-          {"command", "edit"},
-          {"device",
-           {{"kind", session.device().kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", session.device().name()}}},
-          {"steps", steps},
-          {"mesh",
-           {{"vertices", mesh.vertices},
-            {"triangles", mesh.triangles},
-            {"closed", mesh.closed()},
-            {"manifold", mesh.manifold()},
-            {"components", mesh.components},
-            {"euler", mesh.euler}}}};
+  for (const StepReport& step : session.steps()) steps.push_back(step_json(step));
+  json["steps"] = steps;
+  json["mesh"] = to_json(measure(session.mesh(), args.threads));
 }
 
 std::string line_of(const StepReport& step, std::size_t number) {
@@ -104,46 +109,57 @@ void run_script(const EditScript& script, const EditArgs& args, EditSession& ses
     } catch (const Error& error) {
       throw error.while_doing(fmt::format("running operations[{}] of {}", i, args.script));
     }
-    if (!args.fit.quiet && step.kind == ScriptStep::Kind::apply) print_note(line_of(session.steps().back(), i));
+    if (!args.quiet && step.kind == ScriptStep::Kind::apply) print_note(line_of(session.steps().back(), i));
   }
 }
 
 int run(const EditArgs& args) {
+  const Stopwatch watch;
   EditOptions options;
-  options.reconstruction = library_options(args.fit);
+  options.reconstruction = fit_options(args);
   options.warm_start = !args.cold;
-  parse_shift(args.fit.shift);
+  parse_shift(args.shift);
   check_files(args);
-  const Device device = parse_device(args.fit.device, args.fit.threads);
+  const Device device = args.chosen();
   const EditScript script(args.script);
-  const Cloud base = read_base(args);
+  options.reconstruction.envelope = read_envelope(args.envelope, args.threads);
+  Cloud base = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
+  drop_unusable(base);
+  Json json = {{"version", 1}, {"command", "edit"}, {"device", to_json(device)}};
+  json["input"] = {{"points", base.size() + base.dropped}, {"dropped", base.dropped}};
+  json["options"] = options_json(args, options);
+  json["ms"]["read"] = watch.ms();
+
   on_interrupt(OnInterrupt::remember);
   options.reconstruction.progress = [](const Progress&) { return !interrupted(); };
   EditSession session(base, options, device);
+  base = Cloud();
   run_script(script, args, session);
   throw_if_interrupted();
-  if (!args.cloud.empty()) write_cloud(args.cloud, session.cloud(), args.fit.threads);
+  if (!args.cloud.empty()) write_cloud(args.cloud, session.cloud(), args.threads);
   if (!args.save.empty()) write_file_atomically(args.save, json_text(script_of(session.operations(), args.save)));
-  if (!args.fit.report.empty()) write_file_atomically(args.fit.report, json_text(report_of(session, args)));
-  if (!args.fit.output.empty()) write_mesh(args.fit.output, session.mesh(), args.fit.threads);
+  if (!args.output.empty()) write_mesh(args.output, session.mesh(), args.threads);
+  json["ms"]["total"] = watch.ms();
+  if (!args.report.empty()) {
+    describe(session, args, json);
+    json["memory"]["host_peak_bytes"] = host_peak_bytes();
+    write_file_atomically(args.report, json_text(json));
+  }
   return 0;
 }
 
 void define_files(CLI::App& command, EditArgs& args) {
   const std::string group = "Files";
   const auto file = [&](const char* name, std::string& target, const char* type, const char* description) {
-    return command.add_option(name, target, description)
-        ->type_name(type)
-        ->group(group)
-        ->check([](const std::string& name) { return std::string(name.empty() ? "needs the name of a file" : ""); });
+    return command.add_option(name, target, description)->type_name(type)->group(group)->check(needs_a_name);
   };
-  command.add_option("IN", args.fit.inputs, "oriented clouds, merged; - reads stdin")->required();
+  command.add_option("IN", args.inputs, "oriented clouds, merged; - reads stdin")->required();
   file("--script", args.script, "FILE", "operations, as JSON")->required();
-  file("-o,--output", args.fit.output, "OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout");
+  file("-o,--output", args.output, "OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout");
   file("--cloud", args.cloud, "FILE", "write the edited points, with the property added, as PLY");
   file("--save", args.save, "FILE", "write the operations that are done, as a script");
-  file("--report", args.fit.report, "FILE", "write what every step did as JSON");
-  command.add_option("--shift", args.fit.shift, "offset subtracted while working: auto, none or x,y,z in world units")
+  file("--report", args.report, "FILE", "write what every step did as JSON");
+  command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group(group)
       ->capture_default_str();
@@ -155,10 +171,11 @@ void add_edit(CLI::App& program, Job& job) {
   CLI::App* command = add_command(program, "edit", "Guide, repair and extend a surface by a script of operations.");
   auto args = std::make_shared<EditArgs>();
   define_files(*command, *args);
-  define_surface_options(*command, args->fit);
-  define_device_options(*command, args->fit);
-  command->add_flag("--cold", args->cold, "solve every surface anew, instead of from the one before")->group("Surface");
-  command->add_flag("-q,--quiet", args->fit.quiet, "errors and warnings only")->group("Messages");
+  define_fit_options(*command, *args);
+  define_device_options(*command, *args);
+  command->add_flag("--cold", args->cold, "solve every surface anew, instead of from the one before")
+      ->group(kSurfaceGroup);
+  command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
   finish_command(*command, job, args, run);
 }
 

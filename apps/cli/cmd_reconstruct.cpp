@@ -1,7 +1,5 @@
 // pointskin reconstruct: oriented clouds in, mesh out. pointskin problems: the same, and where to look.
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -19,20 +17,10 @@
 #include "reconstruct_args.hpp"
 #include "report.hpp"
 #include "signals.hpp"
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 namespace {
-
-class Stopwatch {
- public:
-  /// Milliseconds since construction.
-  [[nodiscard]] double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
@@ -41,16 +29,9 @@ void check_files(const ReconstructArgs& args) {
   if (args.inputs.empty()) throw_usage("no input; name one or more clouds, or - for stdin");
   if (args.output.empty() && !args.dry_run && !args.repeat_given && !args.problems)
     throw_usage("no output; name it with -o");
-  if (args.report == "-") throw_usage("--report: stdout carries the mesh only; name a file");
   std::vector<std::string> inputs = args.inputs;
   if (!args.envelope.empty()) inputs.push_back(args.envelope);
-  if (std::count(inputs.begin(), inputs.end(), "-") > 1) throw_usage("stdin (-) can be read only once");
-  if (!args.report.empty() && args.report == args.output) throw_usage("--report and -o name the same file");
-  for (const std::string& input : inputs) {
-    std::error_code ignored;  // files that do not exist are not the same
-    if (!args.report.empty() && std::filesystem::equivalent(input, args.report, ignored))
-      throw_usage("--report would overwrite the input " + input);
-  }
+  check_distinct(inputs, {{"-o", args.output}, {"--report", args.report}});
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
 }
@@ -63,10 +44,7 @@ void warn_about_options(const ReconstructArgs& args) {
 Cloud read_input(const ReconstructArgs& args, Record& record) {
   const Stopwatch watch;
   Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
-  const std::int64_t not_finite = cloud.dropped;
-  const std::int64_t no_normal = drop_zero_normals(cloud);
-  if (not_finite > 0) print_warning(fmt::format("{} points were dropped: a coordinate is not finite", not_finite));
-  if (no_normal > 0) print_warning(fmt::format("{} points were dropped: their normal has zero length", no_normal));
+  drop_unusable(cloud);
   if (!args.options.attributes && !args.colors) cloud.attributes.clear();
   if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
     print_warning("--colors: the points have no red, green or blue");
@@ -74,15 +52,6 @@ Cloud read_input(const ReconstructArgs& args, Record& record) {
   record.points = cloud.size() + cloud.dropped;
   record.read_ms = watch.ms();
   return cloud;
-}
-
-/// The envelope, if one is named.
-std::shared_ptr<const Mesh> read_envelope(const ReconstructArgs& args) {
-  if (args.envelope.empty()) return nullptr;
-  Mesh mesh = read_mesh(args.envelope, {.shift = std::nullopt, .threads = args.threads});
-  if (mesh.triangles.empty())
-    throw Error(ErrorCode::invalid_input, args.envelope + ": has no triangles; the envelope must be a closed mesh");
-  return std::make_shared<const Mesh>(std::move(mesh));
 }
 
 /// Side of the working cube.
@@ -155,10 +124,10 @@ void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Recor
 /// The options of the report that the library does not know.
 nlohmann::ordered_json other_options(const ReconstructArgs& args) {
   nlohmann::ordered_json json = {{"device", args.device}, {"threads", args.threads}, {"shift", args.shift}};
-  json["envelope"] = args.envelope.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(args.envelope);
+  json["envelope"] = or_null(args.envelope);
   json["repeat"] = args.repeat;
   json["inputs"] = args.inputs;
-  json["output"] = args.output.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(args.output);
+  json["output"] = or_null(args.output);
   return json;
 }
 
@@ -210,10 +179,10 @@ int run(const ReconstructArgs& given) {
   record.options = library_options(args);
   parse_shift(args.shift);
   check_files(args);
-  record.device = parse_device(args.device, args.threads);
+  record.device = args.chosen();
   warn_about_options(args);
 
-  record.options.envelope = read_envelope(args);
+  record.options.envelope = read_envelope(args.envelope, args.threads);
   Cloud cloud = read_input(args, record);
   settle_options(args, cloud, record);
   if (args.dry_run || record.options.max_memory_bytes > 0) {

@@ -9,6 +9,7 @@
 
 #include <pointskin/error.hpp>
 
+#include "console.hpp"
 #include "probe.hpp"
 
 namespace pointskin::cli {
@@ -140,6 +141,23 @@ std::int64_t drop_zero_normals(Cloud& cloud) {
   for (Attribute& attribute : cloud.attributes) keep_where(attribute.values, keep);
   cloud.dropped += zero;
   return zero;
+}
+
+void drop_unusable(Cloud& cloud, const std::string& prefix) {
+  const std::int64_t not_finite = cloud.dropped;
+  const std::int64_t no_normal = drop_zero_normals(cloud);
+  if (not_finite > 0)
+    print_warning(fmt::format("{}{} points were dropped: a coordinate is not finite", prefix, not_finite));
+  if (no_normal > 0)
+    print_warning(fmt::format("{}{} points were dropped: their normal has zero length", prefix, no_normal));
+}
+
+std::shared_ptr<const Mesh> read_envelope(const std::string& path, int threads) {
+  if (path.empty()) return nullptr;
+  Mesh mesh = read_mesh(path, {.shift = std::nullopt, .threads = threads});
+  if (mesh.triangles.empty())
+    throw Error(ErrorCode::invalid_input, path + ": has no triangles; the envelope must be a closed mesh");
+  return std::make_shared<const Mesh>(std::move(mesh));
 }
 
 std::string strays_text(std::int64_t count, const Vec3d& farthest) {

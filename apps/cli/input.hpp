@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,10 +13,9 @@
 
 namespace pointskin::cli {
 
-/// Appends `from` to `to`. Both keep their world positions: of their two origins
-/// the one stays around which float loses less, counted in points. Points
-/// without an attribute that the others have get NaN; an attribute is uint8 if both have it so. Normals that only one
-/// has are left out; dropped points add up.
+/// Appends `from` to `to`. Both keep their world positions: of their two origins the one stays around which float loses
+/// less, counted in points. Points without an attribute that the others have get NaN; an attribute is uint8 if both
+/// have it so. Normals that only one has are left out; dropped points add up.
 void append(Cloud& to, Cloud&& from);
 
 /// Reads and merges `paths`. O(points).
@@ -26,6 +26,14 @@ Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& opti
 /// @returns how many
 /// @throws Error no_normals if the cloud has no normals, or none that is not zero
 std::int64_t drop_zero_normals(Cloud& cloud);
+
+/// drop_zero_normals, with a warning for what was left out on reading and one for what is now.
+/// @param prefix  of the warnings
+void drop_unusable(Cloud& cloud, const std::string& prefix = "");
+
+/// Reads the mesh that a surface is to stay inside of. @returns null for no name
+/// @throws Error as read_mesh; invalid_input if it has no triangles
+std::shared_ptr<const Mesh> read_envelope(const std::string& path, int threads);
 
 /// What to tell of strays that are left out: how many, where the farthest is in world units, and how to keep them.
 std::string strays_text(std::int64_t count, const Vec3d& farthest);

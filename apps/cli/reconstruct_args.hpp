@@ -8,33 +8,24 @@
 
 #include <pointskin/reconstruct.hpp>
 
+#include "fit_args.hpp"
+
 namespace pointskin::cli {
 
-struct ReconstructArgs {
+struct ReconstructArgs : FitArgs, DeviceArgs {
   std::vector<std::string> inputs;
   std::vector<std::string> named_inputs;  ///< of --in; come after inputs
   std::string output;                     ///< empty: none
   std::string report;                     ///< empty: none
-  std::string envelope;                   ///< empty: none
-  std::string device = "auto";
   std::string shift = "auto";
-  std::string max_memory;        ///< empty: no limit
-  std::string confidence = "0";  ///< PoissonRecon's exponent of the normals' length: 0 or 1 here
-  std::string boundary = "free";
-  std::string field = "poisson";
-  int boundary_type = 0;  ///< PoissonRecon's number of the boundary; 0: none
-  Options options;
+  std::string max_memory;  ///< empty: no limit
+  int boundary_type = 0;   ///< PoissonRecon's number of the boundary; 0: none
   double width_world = 0;  ///< > 0: chooses the depth
-  int threads = 0;
   int repeat = 0;
-  bool depth_given = false, width_given = false, repeat_given = false;
+  bool width_given = false, repeat_given = false;
   bool problems = false;  ///< list regions whose topology is doubtful; a mesh is not needed then
-  bool no_normals = false, open = false, colors = false, dry_run = false, quiet = false, verbose = false;
+  bool colors = false, dry_run = false, quiet = false, verbose = false;
 };
-
-/// Defines the options of the surface, or those of the device, for every command that reconstructs.
-void define_surface_options(CLI::App& command, ReconstructArgs& args);
-void define_device_options(CLI::App& command, ReconstructArgs& args);
 
 /// Defines the options of `pointskin reconstruct` on `command`, bound to `args`.
 void define_reconstruct_options(CLI::App& command, ReconstructArgs& args);

@@ -14,32 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json options_json(const Record& record) {
-  const Options& options = record.options;
-  Json json = {{"depth", options.depth},
-               {"field", options.field == FieldKind::distance ? "distance" : "poisson"},
-               {"screening", options.screening},
-               {"iterations", options.iterations},
-               {"scale", options.scale},
-               {"samples_per_node", options.samples_per_node},
-               {"confidence", options.confidence},
-               {"fixed_screening", options.fixed_screening},
-               {"linear_fit", options.linear_fit},
-               {"density", options.density},
-               {"weakness", options.weakness},
-               {"attributes", options.attributes},
-               {"normals", options.normals},
-               {"open", options.domain_faces == DomainFaces::open},
-               {"boundary", options.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
-               {"offset", options.offset},
-               {"trim", options.trim},
-               {"island_ratio", options.island_ratio},
-               {"keep_strays", options.keep_strays},
-               {"max_memory_bytes", options.max_memory_bytes}};
-  json.update(record.other_options);
-  return json;
-}
-
 /// Points that were used.
 std::int64_t used(const Record& record) { return record.points - record.dropped - record.run.strays; }
 
@@ -120,11 +94,6 @@ Json problems_json(const std::vector<ProblemRegion>& problems) {
   return list;
 }
 
-Json mesh_json(const MeshReport& mesh) {
-  return {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
-          {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler}};
-}
-
 Json ms_json(const Record& record) {
   const RunReport& run = record.run;
   return {{"read", record.read_ms},      {"upload", run.upload_ms},  {"octree", run.octree_ms},
@@ -137,11 +106,51 @@ Json repeat_json(const std::vector<double>& values) {
   return {{"min", ms.min}, {"median", ms.median}, {"max", ms.max}};
 }
 
+Json options_json(const Record& record) {
+  Json json = to_json(record.options);
+  json.update(record.other_options);
+  return json;
+}
+
 }  // namespace
+
+Json to_json(const Device& device) {
+  return {{"kind", device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", device.name()}};
+}
+
+Json to_json(const Options& options) {
+  return {{"depth", options.depth},
+          {"field", options.field == FieldKind::distance ? "distance" : "poisson"},
+          {"screening", options.screening},
+          {"iterations", options.iterations},
+          {"scale", options.scale},
+          {"samples_per_node", options.samples_per_node},
+          {"confidence", options.confidence},
+          {"fixed_screening", options.fixed_screening},
+          {"linear_fit", options.linear_fit},
+          {"density", options.density},
+          {"weakness", options.weakness},
+          {"attributes", options.attributes},
+          {"normals", options.normals},
+          {"open", options.domain_faces == DomainFaces::open},
+          {"boundary", options.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
+          {"offset", options.offset},
+          {"trim", options.trim},
+          {"island_ratio", options.island_ratio},
+          {"keep_strays", options.keep_strays},
+          {"max_memory_bytes", options.max_memory_bytes}};
+}
+
+Json to_json(const MeshReport& mesh) {
+  return {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
+          {"manifold", mesh.manifold()}, {"components", mesh.components}, {"euler", mesh.euler}};
+}
+
+Json or_null(const std::string& file) { return file.empty() ? Json(nullptr) : Json(file); }
 
 Json to_json(const Record& record) {
   Json json = {{"version", 1}, {"command", record.command}};
-  json["device"] = {{"kind", record.device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", record.device.name()}};
+  json["device"] = to_json(record.device);
   json["input"] = input_json(record);
   json["options"] = options_json(record);
   json["octree"] = octree_json(record.run);
@@ -151,7 +160,7 @@ Json to_json(const Record& record) {
   if (record.options.offset != 0) json["offset"] = offset_json(record);
   if (record.options.trim > 0) json["trim"] = trim_json(record.run.trim);
   if (record.options.weakness) json["problems"] = problems_json(record.problems);
-  json["mesh"] = mesh_json(record.mesh);
+  json["mesh"] = to_json(record.mesh);
   json["ms"] = ms_json(record);
   if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
   json["memory"] = {{"host_peak_bytes", record.host_peak_bytes}, {"device_peak_bytes", record.run.device_peak_bytes}};

@@ -33,6 +33,13 @@ struct Record {
 
 nlohmann::ordered_json to_json(const Record& record);
 
+/// What the reports of all commands have in common. The options are those after defaults, without the files.
+nlohmann::ordered_json to_json(const Device& device);
+nlohmann::ordered_json to_json(const Options& options);
+nlohmann::ordered_json to_json(const MeshReport& mesh);
+/// The name of a file that may be left out.
+nlohmann::ordered_json or_null(const std::string& file);
+
 /// One line: points, depth, triangles, the times of the paper's table (octree, function, surface, total) and memory;
 /// with repeated runs also their median and frames per second.
 std::string summary(const Record& record);

@@ -28,7 +28,8 @@ enum class Creases {
 
 struct BooleanOptions {
   /// Of all three reconstructions. They share one working cube, around the points of both A and B that are no strays.
-  /// `trim` counts for the result alone; `attributes`, `envelope` and `max_memory_bytes` must be unset.
+  /// `trim` counts for the result alone; the field must be poisson; `offset`, `attributes`, `envelope` and
+  /// `max_memory_bytes` must be unset.
   Options reconstruction{};
   Creases creases = Creases::sampled;
   /// A point this much farther from the other surface than from its own, where both run alike, lies on both;

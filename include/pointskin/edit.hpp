@@ -90,7 +90,7 @@ struct StepReport {
 struct EditOptions {
   Options reconstruction;  ///< offset must be 0, residuals do not count; progress is called for every step
   bool topology = true;    ///< measure components and genus of every surface, on the host
-  bool warm_start = true;  ///< solves start from the field before, with half of the iterations
+  bool warm_start = true;  ///< solves start from the field before, with 3/4 of the iterations
   int states_kept = 4;     ///< states held on the device for undo, besides the base; others are made again; >= 1
 };
 

@@ -201,7 +201,7 @@ class Reconstructor {
 
 /// Estimate of the memory that solve() and Field::extract() take on their device, in bytes:
 /// RunReport::device_peak_bytes within 15 %, from the bricks that the octree of these points would have on every level.
-/// What Options::offset takes is not in it: about as much again where that surface is as large and the cube stays.
+/// With Options::offset it is an upper bound for common shapes, 1.2 to 3 times what is taken.
 /// What repeat() keeps beyond that, 24 bytes a point and 4 per attribute, and the host's own copy of the cloud are not
 /// in it.
 /// @param threads  CPU threads that count, 0: all

@@ -18,6 +18,8 @@ void check(const BooleanOptions& options) {
   require(options.coincidence_cells >= 0 && options.coincidence_cells <= 100,
           "option coincidence must be in 0..100 cells");
   require(!options.reconstruction.attributes, "a Boolean does not carry attributes; leave the option unset");
+  require(options.reconstruction.field == FieldKind::poisson, "a Boolean needs the field poisson");
+  require(options.reconstruction.offset == 0, "a Boolean takes no offset; give its result one");
   require(options.reconstruction.envelope == nullptr, "a Boolean takes no envelope; intersect with the mesh instead");
   require(options.reconstruction.max_memory_bytes == 0, "a Boolean has no memory estimate; leave the option unset");
 }

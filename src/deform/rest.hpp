@@ -104,7 +104,9 @@ RestCloud make_rest(Exec& ex, DevicePoints points, const Vec3d& origin, const Op
   Options fit = options;
   fit.density = true;  // keeps the counts
   fit.attributes = false;
+  fit.offset = 0;
   fit.trim = 0;
+  fit.weakness = false;
   fit.residuals = false;
   out.field = fit_field(ex, points, {.keep_points = true}, fit, report);
   points.attributes = std::move(attributes);

@@ -56,8 +56,8 @@ struct FitSetup {
   std::optional<octree::Frame> cube{};  ///< the working cube, for all points; unset: fitted, and strays are left out
   std::shared_ptr<const envelope::Envelope> envelope{};  ///< made ready from Options::envelope, or null
   bool keep_samples = false;                             ///< fill FieldData::samples
-  /// Of nearly the same points, or null. It is started from if its cube and depth are the same, with half the
-  /// iterations (docs/decisions/0023-editing.md).
+  /// Of nearly the same points, or null. It is started from if its cube and depth are the same, with three
+  /// quarters of the iterations (docs/decisions/0023-editing.md).
   const FieldData* before = nullptr;
 };
 

@@ -198,7 +198,7 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
     solving.previous.u = setup.before->values.data();
     matches = poisson::match_bricks(ex, tree, solving.previous.tree);
     solving.previous.bricks = matches.data();
-    solving.iterations = (options.iterations + 1) / 2;
+    solving.iterations = (3 * options.iterations + 3) / 4;
   }
   poisson::Solution solution = poisson::solve_poisson(ex, tree, divergence.cview(), screening, solving);
   matches.reset();

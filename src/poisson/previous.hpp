@@ -21,7 +21,7 @@ struct PreviousField {
                                          ///< place, local to the level, or -1
 };
 
-/// PreviousField::bricks, from the root down: O(bricks), one launch a level. Deterministic.
+/// PreviousField::bricks, each by its way from the root: O(bricks D), one launch. Deterministic.
 template <exec::Space Exec>
 exec::Buffer<std::int32_t> match_bricks(Exec& ex, const octree::OctreeView& tree, const octree::OctreeView& old_tree);
 

@@ -19,10 +19,24 @@ struct Prolong {
   octree::LevelView level, above;
   const float* above_u;
   ArrayView<float> u, other;
+  [[nodiscard]] PSK_HD float value_at(std::int64_t n) const {
+    return octree::prolonged(above, above_u, level.parent[n >> 3], static_cast<int>(n & 7));
+  }
   PSK_HD void operator()(std::int64_t n) const {
-    const float value = octree::prolonged(above, above_u, level.parent[n >> 3], static_cast<int>(n & 7));
+    const float value = value_at(n);
     u[n] = value;
     other[n] = value;
+  }
+};
+
+/// The same, and what the field before had added: the start of a level from that field.
+struct ProlongWithDetail {
+  Prolong prolong;
+  previous::Detail detail;
+  PSK_HD void operator()(std::int64_t n) const {
+    const float value = prolong.value_at(n) + detail(n);
+    prolong.u[n] = value;
+    prolong.other[n] = value;
   }
 };
 
@@ -195,15 +209,16 @@ LevelSolve solve_level(Exec& ex, const LevelSystem& system, const SolveOptions& 
   return report;
 }
 
-/// Starts a level from the field before. Both arrays hold the interpolated values.
+/// Fills both arrays of a level: from the level above, and from the field before, if there is one.
 template <exec::Space Exec>
-void add_detail(Exec& ex, const PreviousField& before, const octree::LevelView& level, ArrayView<float> u,
-                ArrayView<float> other) {
+void start_level(Exec& ex, const PreviousField& before, const Prolong& prolong) {
+  const octree::LevelView& level = prolong.level;
+  if (before.u == nullptr) return for_each(ex, "solve.prolong", level.nodes(), prolong);
   const octree::LevelView& old = before.tree.levels[level.depth];
   const octree::LevelView& above = before.tree.levels[level.depth - 1];
-  for_each(ex, "solve.start", level.nodes(),
-           previous::AddDetail{level, old, above, before.u + old.first_node, before.u + above.first_node,
-                               before.bricks + level.first_node / 8, u, other});
+  const previous::Detail detail{level, old, above, before.u + old.first_node, before.u + above.first_node,
+                                before.bricks + level.first_node / 8};
+  for_each(ex, "solve.start", level.nodes(), ProlongWithDetail{prolong, detail});
 }
 
 struct WeightedValue {
@@ -263,9 +278,8 @@ Solution solve_poisson(Exec& ex, const octree::OctreeView& tree, ArrayView<const
       exec::fill(ex, other.view(), 0.0F);
     } else {
       const octree::LevelView& above = tree.levels[d - 1];
-      for_each(ex, "solve.prolong", level.nodes(),
-               solve::Prolong{level, above, all.data + above.first_node, u, other.view()});
-      if (options.previous.u != nullptr) solve::add_detail(ex, options.previous, level, u, other.view());
+      solve::start_level(ex, options.previous,
+                         solve::Prolong{level, above, all.data + above.first_node, u, other.view()});
     }
     if (holds)
       for_each(ex, "solve.hold", level.bricks,

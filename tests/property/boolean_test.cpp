@@ -306,6 +306,12 @@ TEST(Booleans, RefuseWhatTheyCannotTake) {
   options = at_depth(5);
   options.reconstruction.attributes = true;
   EXPECT_EQ(code(options), ErrorCode::usage);
+  options = at_depth(5);
+  options.reconstruction.offset = 0.1;
+  EXPECT_EQ(code(options), ErrorCode::usage);
+  options = at_depth(5);
+  options.reconstruction.field = FieldKind::distance;
+  EXPECT_EQ(code(options), ErrorCode::usage);
   EXPECT_EQ(error_of(a, Cloud(), BooleanOp::unite), ErrorCode::empty_result);
   EXPECT_EQ(error_of(a, test::patch_mesh(4), BooleanOp::unite), ErrorCode::invalid_input);
   EXPECT_EQ(error_of(test::flipped(test::box_mesh()), a, BooleanOp::unite), ErrorCode::invalid_input);

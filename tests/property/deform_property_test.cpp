@@ -15,6 +15,7 @@
 
 #include "property/reconstruction.hpp"
 #include "support/deformations.hpp"
+#include "support/option_sets.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin {
@@ -215,12 +216,13 @@ TEST(Frames, DoNotDependOnHistoryThreadsOrTheOrderOfPoints) {
 }
 
 TEST(Frames, AreWhatTheReconstructorMakesOfTheDeformedCloud) {
-  Options options = shallow();
-  options.attributes = true;
-  Deformer deformer = on_cpu(numbered(test::torus_cloud(8000, 7)), options);
-  deformer.deform(test::twist_and_pull());
-  options.keep_strays = true;
-  expect_same_bytes(deformer.reconstruct(), test::reconstructed(deformer.cloud(), options));
+  for (auto [name, options] : test::option_sets(5, true)) {
+    SCOPED_TRACE(name);
+    Deformer deformer = on_cpu(numbered(test::torus_cloud(8000, 7)), options);
+    deformer.deform(test::twist_and_pull());
+    options.keep_strays = true;
+    expect_same_bytes(deformer.reconstruct(), test::reconstructed(deformer.cloud(), options));
+  }
 }
 
 TEST(Frames, DoNotDependOnTheOriginOfTheCloud) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "property/reconstruction.hpp"
+#include "support/option_sets.hpp"
 #include "support/shapes.hpp"
 #include "support/two_fingers.hpp"
 
@@ -58,6 +59,21 @@ TEST_P(PartingStrokes, SeparateFingersThatTheAutomaticSurfaceJoins) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AtDepth, PartingStrokes, testing::Values(6, 7, 8));
+
+TEST(ASession, StartsWithTheBytesOfAReconstructionAndEditsUnderAnyOptions) {
+  const Cloud cloud = two_fingers_cloud(8'000, 2);
+  for (const auto& [name, options] : test::option_sets(5, false)) {
+    SCOPED_TRACE(name);
+    EditSession session(cloud, {.reconstruction = options}, Device::cpu(2));
+    const Mesh plain = test::reconstructed(cloud, options);
+    expect_same_bytes(session.mesh(), plain);
+    session.apply(test::parting_strokes().front());
+    EXPECT_GT(session.steps().back().added, 0);
+    EXPECT_TRUE(session.mesh().vertices != plain.vertices);
+    ASSERT_TRUE(session.undo());
+    expect_same_bytes(session.mesh(), plain);
+  }
+}
 
 TEST(Undo, BringsTheOldBytesBackAndRedoTheNewOnes) {
   EditSession session = session_of(two_fingers_cloud(20'000, 2), 6);

@@ -177,6 +177,20 @@ TEST(Offset, DoesNotDependOnThreadsOrOrder) {
   expect_same_bytes(once, reconstructed(test::shuffled(cloud, 9), options));
 }
 
+TEST(Offset, TakesNoMoreMemoryThanEstimated) {
+  for (const std::int64_t points : {300, 20'000}) {  // fewer than cells, and more
+    const Cloud cloud = test::torus_cloud(points, 12);
+    for (const double offset : {-0.1, 0.05, 0.4}) {
+      const Options options = offset_options(6, offset);
+      Reconstructor reconstructor(Device::cpu(2));
+      (void)reconstructor.reconstruct(cloud, options);
+      const std::int64_t peak = reconstructor.report().device_peak_bytes;
+      EXPECT_LE(peak, estimate_device_bytes(cloud, options)) << points << " points, offset " << offset;
+      EXPECT_LE(peak, estimate_device_bytes(points, options)) << points << " points, offset " << offset;
+    }
+  }
+}
+
 TEST(Offset, BeyondTheMiddleLeavesNothing) {
   EXPECT_EQ(error_of([] { (void)reconstructed(test::sphere_cloud(5'000, 10), offset_options(5, -1.3)); }),
             ErrorCode::empty_result);

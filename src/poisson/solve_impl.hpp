@@ -216,8 +216,8 @@ void start_level(Exec& ex, const PreviousField& before, const Prolong& prolong) 
   if (before.u == nullptr) return for_each(ex, "solve.prolong", level.nodes(), prolong);
   const octree::LevelView& old = before.tree.levels[level.depth];
   const octree::LevelView& above = before.tree.levels[level.depth - 1];
-  const previous::Detail detail{level, old, above, before.u + old.first_node, before.u + above.first_node,
-                                before.bricks + level.first_node / 8};
+  const previous::Detail detail{
+      level, old, above, before.u + old.first_node, before.u + above.first_node, before.bricks + level.first_node / 8};
   for_each(ex, "solve.start", level.nodes(), ProlongWithDetail{prolong, detail});
 }
 

@@ -47,9 +47,7 @@ class EditCommand : public testing::Test {
 
   void expect_failure(const std::string& script, int code, const std::string& part) {
     const Result result = edit(script);
-    EXPECT_EQ(result.exit_code, code) << result.err;
-    EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
-    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    expect_error(result, code, part);
     EXPECT_FALSE(std::filesystem::exists(output_));
   }
 

@@ -50,9 +50,7 @@ class EnvelopeOption : public testing::Test {
   /// One line of error, this code, and no output.
   void expect_failure(const Args& more, int code, const std::string& part) {
     const Result result = reconstruct(more);
-    EXPECT_EQ(result.exit_code, code) << result.err;
-    EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
-    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    expect_error(result, code, part);
     EXPECT_FALSE(std::filesystem::exists(output_));
   }
 

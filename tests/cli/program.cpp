@@ -1,5 +1,7 @@
 #include "cli/program.hpp"
 
+#include <gtest/gtest.h>
+
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -164,6 +166,12 @@ Result pointskin_run(const std::vector<std::string>& args) {
   Start start;
   start.args = args;
   return run_program(start);
+}
+
+void expect_error(const Result& result, int code, const std::string& part) {
+  EXPECT_EQ(result.exit_code, code) << result.err;
+  EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
+  EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
 }
 
 bool is_one_error_line(const std::string& text) {

@@ -43,6 +43,9 @@ Result run_program(const Start& start);
 /// run_program with arguments alone.
 Result pointskin_run(const std::vector<std::string>& args);
 
+/// Expects that a program ended with this code and exactly one line on stderr, which holds `part`.
+void expect_error(const Result& result, int code, const std::string& part);
+
 /// True if `text` is exactly one line that starts with "pointskin: ".
 bool is_one_error_line(const std::string& text);
 

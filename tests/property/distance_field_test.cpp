@@ -63,12 +63,7 @@ TEST(DistanceField, OfASphereIsItsSignedDistanceInCells) {
   const Field field = Reconstructor(Device::cpu(2)).solve(cloud, options);
   EXPECT_EQ(field.isovalue(), 0);
   const double cell = field.cube_size_world() / 128;
-  test::Random random(9);
-  for (int i = 0; i < 200; ++i) {
-    const Vec3d d = random.direction();
-    const double r = random.in(1 - 2 * cell, 1 + 2 * cell);
-    EXPECT_NEAR(field.values({{r * d[0], r * d[1], r * d[2]}})[0], (1 - r) / cell, 0.1);
-  }
+  test::expect_distance_to_unit_sphere(field, 1, 2 * cell, cell);
 }
 
 TEST(DistanceField, PassesThroughCleanSamples) {

@@ -161,12 +161,7 @@ TEST(Offset, IsAFieldOfDistances) {
   const Field field = Reconstructor(Device::cpu(2)).solve(test::sphere_cloud(50'000, 6), offset_options(6, 0.25));
   const double cell = field.cube_size_world() / 64;
   EXPECT_NEAR(field.isovalue(), -0.25 / cell, 1e-6);
-  test::Random random(7);
-  for (int i = 0; i < 100; ++i) {
-    const Vec3d d = random.direction();
-    const double r = random.in(1.25 - 1.5 * cell, 1.25 + 1.5 * cell);
-    EXPECT_NEAR(field.values({{r * d[0], r * d[1], r * d[2]}})[0], (1 - r) / cell, 0.1);
-  }
+  test::expect_distance_to_unit_sphere(field, 1.25, 1.5 * cell, cell);
 }
 
 TEST(Offset, DoesNotDependOnThreadsOrOrder) {

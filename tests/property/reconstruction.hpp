@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "support/shapes.hpp"
+
 namespace pointskin::test {
 
 inline Mesh reconstructed(const Cloud& cloud, const Options& options, int threads = 2) {
@@ -69,6 +71,17 @@ inline std::optional<Cloud> shared_cloud(const std::string& name) {
   const std::string path = std::string(POINTSKIN_SOURCE_DIR) + "/../shared/data/" + name + ".ply";
   if (!std::filesystem::exists(path)) return std::nullopt;
   return read_cloud(path);
+}
+
+/// Expects the signed distance to the unit sphere, in cells and positive inside, to a tenth of a cell, at 200 places up
+/// to `band` from the sphere of `radius`.
+inline void expect_distance_to_unit_sphere(const Field& field, double radius, double band, double cell) {
+  Random random(9);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d d = random.direction();
+    const double r = random.in(radius - band, radius + band);
+    EXPECT_NEAR(field.values({{r * d[0], r * d[1], r * d[2]}})[0], (1 - r) / cell, 0.1);
+  }
 }
 
 }  // namespace pointskin::test

@@ -1,0 +1,363 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "exec/algorithms.hpp"
+#include "fluid/particle_tree.hpp"
+#include "step.hpp"
+
+namespace pointskin::simulation {
+namespace step {
+
+/// Neighbours of all particles. Neighbour k of particle i is at i across + k along: a GPU reads one k of many particles
+/// at once, a CPU all k of one.
+struct NeighbourLists {
+  ArrayView<std::int32_t> list;
+  ArrayView<std::uint8_t> count;  // found, at most kMostNeighbours + 1
+  std::int64_t across = 0, along = 0;
+
+  [[nodiscard]] PSK_HD int size(std::int64_t i) const {
+    return count[i] < kMostNeighbours ? count[i] : kMostNeighbours;
+  }
+  [[nodiscard]] PSK_HD std::int32_t& at(std::int64_t i, int k) const { return list[i * across + k * along]; }
+};
+
+PSK_HD inline Vec3f acceleration_of(const Force& force, const Vec3f& p) {
+  const Vec3f d = force.reach * (p - force.centre);
+  const float t = 1 - dot(d, d);
+  if (!(t > 0)) return {};
+  return t * t * (force.swirls ? cross(force.along, d) : force.along);
+}
+
+/// Where particles would go without each other.
+struct Predict {
+  StepSettings settings;
+  ArrayView<const Vec3f> position, velocity;
+  ArrayView<Vec3f> predicted;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f p = position[i];
+    Vec3f a{0, -settings.gravity, 0};
+    for (int f = 0; f < settings.force_count; ++f) a = a + acceleration_of(settings.forces[f], p);
+    Vec3f move = settings.seconds * (velocity[i] + settings.seconds * a);
+    const float squared = dot(move, move);
+    const float longest = settings.longest_move;
+    if (squared > longest * longest) move = longest / std::sqrt(squared) * move;
+    predicted[i] = settings.solids.confined(p + move);
+  }
+};
+
+/// Into the order of the cells.
+struct Reorder {
+  ArrayView<const std::int32_t> order;
+  ArrayView<const Vec3f> position, predicted;
+  ArrayView<const std::int32_t> id;
+  ArrayView<Vec3f> start, place;
+  ArrayView<std::int32_t> new_id;
+  PSK_HD void operator()(std::int64_t i) const {
+    const std::int32_t from = order[i];
+    start[i] = position[from];
+    place[i] = predicted[from];
+    new_id[i] = id[from];
+  }
+};
+
+struct FindNeighbours {
+  fluid::ParticleTreeView tree;
+  ArrayView<const Vec3f> place;
+  NeighbourLists neighbours;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f p = place[i];
+    int found = 0;
+    fluid::for_each_neighbour(tree, tree.cell[i], [&](std::int32_t j) {
+      const Vec3f d = p - place[j];
+      if (j == i || !(dot(d, d) < 1) || found > kMostNeighbours) return;
+      if (found < kMostNeighbours) neighbours.at(i, found) = j;
+      ++found;
+    });
+    neighbours.count[i] = static_cast<std::uint8_t>(found);
+  }
+};
+
+/// Unit vector from neighbour to particle and how far apart they are. Particles at one place part along x, by their
+/// ids.
+struct Apart {
+  Vec3f direction;
+  float distance;
+};
+PSK_HD inline Apart apart(const Vec3f& d, float squared, bool first) {
+  constexpr float kOnePlace = 1e-12F;
+  if (squared < kOnePlace) return {{first ? -1.0F : 1.0F, 0, 0}, 0};
+  const float r = std::sqrt(squared);
+  return {1 / r * d, r};
+}
+
+/// The multiplier of every particle's constraint, density <= rest density:
+/// lambda_i = - C_i / (sum_k |grad_k C_i|^2 + epsilon), what solids cover counting as one neighbour.
+struct FindMultipliers {
+  StepSettings settings;
+  ArrayView<const Vec3f> place;
+  NeighbourLists neighbours;
+  ArrayView<float> multiplier;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f p = place[i];
+    float sum = 1;
+    float squares = 0;
+    Vec3f gradient{};
+    const int n = neighbours.size(i);
+    for (int k = 0; k < n; ++k) {
+      const std::int32_t j = neighbours.at(i, k);
+      const Vec3f d = p - place[j];
+      const float squared = dot(d, d);
+      if (squared >= 1) continue;
+      const Apart to = apart(d, squared, i < j);
+      const float t = 1 - to.distance;
+      const float slope = t * t;
+      sum += weight(squared);
+      squares += slope * slope;
+      gradient = gradient - slope * to.direction;
+    }
+    const KernelConstants& kernel = settings.kernel;
+    const Cover cover = settings.solids.cover(p, kernel);
+    const float compression = sum * kernel.per_weight + cover.share - 1;
+    gradient = kernel.slope * gradient + cover.gradient;
+    const float scale =
+        kernel.slope * kernel.slope * squares + dot(gradient, gradient) + dot(cover.gradient, cover.gradient);
+    multiplier[i] = compression > 0 ? -compression / (scale + settings.relaxation) : 0.0F;
+  }
+};
+
+/// Moves every particle by its own and its neighbours' constraints; solids press with the particle's own multiplier, as
+/// a mirror image would.
+struct Correct {
+  StepSettings settings;
+  ArrayView<const Vec3f> place;
+  NeighbourLists neighbours;
+  ArrayView<const float> multiplier;
+  ArrayView<Vec3f> corrected;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    constexpr float kLongest = 0.25F;  // of one correction
+    const Vec3f p = place[i];
+    const float own = multiplier[i];
+    Vec3f sum{};
+    const int n = neighbours.size(i);
+    for (int k = 0; k < n; ++k) {
+      const std::int32_t j = neighbours.at(i, k);
+      const Vec3f d = p - place[j];
+      const float squared = dot(d, d);
+      if (squared >= 1) continue;
+      const Apart to = apart(d, squared, i < j);
+      const float t = 1 - to.distance;
+      const float w = weight(squared) * settings.kernel.tensile_inverse;
+      const float tensile = settings.artificial_pressure * (w * w) * (w * w);
+      sum = sum - (own + multiplier[j] - tensile) * (t * t) * to.direction;
+    }
+    Vec3f move = settings.kernel.slope * sum;
+    if (own != 0) move = move + 2 * own * settings.solids.cover(p, settings.kernel).gradient;
+    const float squared = dot(move, move);
+    if (squared > kLongest * kLongest) move = kLongest / std::sqrt(squared) * move;
+    corrected[i] = settings.solids.confined(p + move);
+  }
+};
+
+struct FindVelocities {
+  float per_second;
+  ArrayView<const Vec3f> start, place;
+  ArrayView<Vec3f> velocity;
+  PSK_HD void operator()(std::int64_t i) const { velocity[i] = per_second * (place[i] - start[i]); }
+};
+
+/// XSPH, and the densities of the new places: v_i + c sum_j (v_j - v_i) W_ij / rest density.
+struct Smooth {
+  StepSettings settings;
+  ArrayView<const Vec3f> place, velocity;
+  NeighbourLists neighbours;
+  ArrayView<Vec3f> smoothed;
+  ArrayView<float> density;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f p = place[i];
+    const Vec3f v = velocity[i];
+    float sum = 1;
+    Vec3f change{};
+    const int n = neighbours.size(i);
+    for (int k = 0; k < n; ++k) {
+      const std::int32_t j = neighbours.at(i, k);
+      const Vec3f d = p - place[j];
+      const float w = weight(dot(d, d));
+      sum += w;
+      change = change + w * (velocity[j] - v);
+    }
+    const KernelConstants& kernel = settings.kernel;
+    smoothed[i] = v + settings.viscosity * kernel.per_weight * change;
+    density[i] = sum * kernel.per_weight + settings.solids.cover(p, kernel).share;
+  }
+};
+
+/// Curl of the velocities.
+struct FindCurl {
+  StepSettings settings;
+  ArrayView<const Vec3f> place, velocity;
+  NeighbourLists neighbours;
+  ArrayView<Vec3f> curl;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f p = place[i];
+    const Vec3f v = velocity[i];
+    Vec3f sum{};
+    const int n = neighbours.size(i);
+    for (int k = 0; k < n; ++k) {
+      const std::int32_t j = neighbours.at(i, k);
+      const Vec3f d = p - place[j];
+      const float squared = dot(d, d);
+      if (squared >= 1) continue;
+      const Apart to = apart(d, squared, i < j);
+      const float t = 1 - to.distance;
+      sum = sum + cross(t * t * to.direction, velocity[j] - v);
+    }
+    curl[i] = settings.kernel.slope * sum;
+  }
+};
+
+/// Vorticity confinement: pushes around places where the curl is largest, as much as the curl is long.
+/// Source: Fedkiw, Stam & Jensen, "Visual simulation of smoke", 2001; Macklin & Mueller 2013, section 5.
+struct Confine {
+  StepSettings settings;
+  ArrayView<const Vec3f> place, curl;
+  NeighbourLists neighbours;
+  ArrayView<Vec3f> velocity;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f p = place[i];
+    const float own = std::sqrt(dot(curl[i], curl[i]));
+    Vec3f rise{};
+    const int n = neighbours.size(i);
+    for (int k = 0; k < n; ++k) {
+      const std::int32_t j = neighbours.at(i, k);
+      const Vec3f d = p - place[j];
+      const float squared = dot(d, d);
+      if (squared >= 1) continue;
+      const Apart to = apart(d, squared, i < j);
+      const float t = 1 - to.distance;
+      const float other = std::sqrt(dot(curl[j], curl[j]));
+      rise = rise - (other - own) * (t * t) * to.direction;
+    }
+    const float length = std::sqrt(dot(rise, rise));
+    if (!(length > 0)) return;
+    velocity[i] = velocity[i] + settings.seconds * settings.vorticity / length * cross(rise, curl[i]);
+  }
+};
+
+struct AddTotals {
+  PSK_HD Totals operator()(const Totals& a, const Totals& b) const {
+    return {a.compression + b.compression,
+            a.squared_speed + b.squared_speed,
+            a.height + b.height,
+            a.most_compression > b.most_compression ? a.most_compression : b.most_compression,
+            a.fastest_squared > b.fastest_squared ? a.fastest_squared : b.fastest_squared,
+            a.crowded + b.crowded,
+            a.lost + b.lost};
+  }
+};
+
+struct TotalsOfParticle {
+  ArrayView<const Vec3f> position, velocity;
+  ArrayView<const float> density;
+  ArrayView<const std::uint8_t> neighbours;
+  Vec3f tank;
+
+  PSK_HD Totals operator()(std::int64_t i) const {
+    const Vec3f p = position[i];
+    const Vec3f v = velocity[i];
+    const float squared = dot(v, v);
+    const float compression = density[i] > 1 ? density[i] - 1 : 0.0F;
+    const bool inside = p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x <= tank.x && p.y <= tank.y && p.z <= tank.z;
+    const bool finite = squared < 1e30F;  // false for NaN
+    return {compression,
+            squared,
+            p.y,
+            compression,
+            squared,
+            neighbours[i] > kMostNeighbours ? 1 : 0,
+            inside && finite ? 0 : 1};
+  }
+};
+
+struct ToWorld {
+  float radius;
+  ArrayView<const Vec3f> position, velocity;
+  ArrayView<Vec3f> out_position, out_velocity;
+  PSK_HD void operator()(std::int64_t i) const {
+    out_position[i] = radius * position[i];
+    out_velocity[i] = radius * velocity[i];
+  }
+};
+
+}  // namespace step
+
+template <exec::Space Exec>
+void substep(Exec& ex, Particles& particles, const StepSettings& settings, const fluid::CellGrid& grid) {
+  const std::int64_t n = particles.position.size();
+  auto predicted = exec::make_buffer<Vec3f>(ex, n);
+  for_each(ex, "simulation.predict", n,
+           step::Predict{settings, particles.position.cview(), particles.velocity.cview(), predicted.view()});
+  const fluid::ParticleTree tree = fluid::build_particle_tree(ex, predicted.cview(), grid);
+  auto start = exec::make_buffer<Vec3f>(ex, n);
+  auto place = exec::make_buffer<Vec3f>(ex, n);
+  auto id = exec::make_buffer<std::int32_t>(ex, n);
+  for_each(ex, "simulation.reorder", n,
+           step::Reorder{tree.order.cview(), particles.position.cview(), predicted.cview(), particles.id.cview(),
+                         start.view(), place.view(), id.view()});
+  particles.id.swap(id);
+
+  auto list = exec::make_buffer<std::int32_t>(ex, n * kMostNeighbours);
+  const step::NeighbourLists neighbours{list.view(), particles.neighbours.view(),
+                                        Exec::kManyThreads ? 1 : kMostNeighbours, Exec::kManyThreads ? n : 1};
+  for_each(ex, "simulation.neighbours", n, step::FindNeighbours{tree.view(), place.cview(), neighbours});
+
+  auto multiplier = exec::make_buffer<float>(ex, n);
+  for (int i = 0; i < settings.iterations; ++i) {
+    for_each(ex, "simulation.multipliers", n,
+             step::FindMultipliers{settings, place.cview(), neighbours, multiplier.view()});
+    for_each(ex, "simulation.correct", n,
+             step::Correct{settings, place.cview(), neighbours, multiplier.cview(), predicted.view()});
+    place.swap(predicted);
+  }
+
+  const ArrayView<Vec3f> velocity = predicted.view();  // its places are no longer needed
+  for_each(ex, "simulation.velocities", n,
+           step::FindVelocities{1 / settings.seconds, start.cview(), place.cview(), velocity});
+  if (settings.vorticity > 0) {
+    for_each(ex, "simulation.curl", n,
+             step::FindCurl{settings, place.cview(), velocity, neighbours, particles.velocity.view()});
+    for_each(ex, "simulation.vorticity", n,
+             step::Confine{settings, place.cview(), particles.velocity.cview(), neighbours, velocity});
+  }
+  for_each(
+      ex, "simulation.viscosity", n,
+      step::Smooth{settings, place.cview(), velocity, neighbours, particles.velocity.view(), particles.density.view()});
+  particles.position.swap(place);
+}
+
+template <exec::Space Exec>
+Totals totals_of(Exec& ex, const Particles& particles, const Solids& solids) {
+  return exec::reduce<Totals>(
+      ex, "simulation.totals", particles.position.size(),
+      step::TotalsOfParticle{particles.position.cview(), particles.velocity.cview(), particles.density.cview(),
+                             particles.neighbours.cview(), solids.tank},
+      step::AddTotals{});
+}
+
+template <exec::Space Exec>
+void to_world(Exec& ex, const Particles& particles, float radius_world, ArrayView<Vec3f> positions,
+              ArrayView<Vec3f> velocities) {
+  for_each(ex, "simulation.world", particles.position.size(),
+           step::ToWorld{radius_world, particles.position.cview(), particles.velocity.cview(), positions, velocities});
+}
+
+}  // namespace pointskin::simulation

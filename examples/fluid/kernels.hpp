@@ -48,11 +48,13 @@ PSK_HD inline float covered_by_plane(float d) {
   return 0.5F - 315.0F / 256 * to_d;
 }
 
-/// Minus its derivative.
-PSK_HD inline float slope_of_cover(float d) {
+/// What the spiky kernel's gradient sums up to beyond that plane, towards it: its integral over the plane,
+/// 30 times the integral of r (1 - r)^3 from d to 1. A fluid at rest whose pressure goes on behind the plane presses as
+/// much: whatever else walls did would drive it round.
+PSK_HD inline float push_of_plane(float d) {
   if (d >= 1) return 0;
-  const float t = 1 - d * d;
-  return 315.0F / 256 * (t * t) * (t * t);
+  const float u = 1 - d;
+  return (u * u) * (u * u) * (7.5F - 6 * u);
 }
 
 /// Sums over a cubic lattice at rest, in double.
@@ -79,7 +81,25 @@ inline KernelConstants make_kernel_constants() {
   return k;
 }
 
-/// The part of a kernel that solids cover, as a density ratio, and its gradient.
+/// The walls within a kernel radius of a particle, one along an axis at most, and the images of others in them. An
+/// image is never nearer than what it is the image of.
+struct Mirrors {
+  int near = 0;         ///< bit a: there is a wall across axis a
+  Vec3f twice_plane{};  ///< twice its coordinate
+
+  /// From the image of `other` in the walls of `set` to `p`.
+  [[nodiscard]] PSK_HD Vec3f from_image(const Vec3f& p, const Vec3f& other, int set) const {
+    return {(set & 1) != 0 ? p.x + other.x - twice_plane.x : p.x - other.x,
+            (set & 2) != 0 ? p.y + other.y - twice_plane.y : p.y - other.y,
+            (set & 4) != 0 ? p.z + other.z - twice_plane.z : p.z - other.z};
+  }
+  /// A vector as the walls of `set` show it.
+  [[nodiscard]] PSK_HD static Vec3f turned(const Vec3f& v, int set) {
+    return {(set & 1) != 0 ? -v.x : v.x, (set & 2) != 0 ? -v.y : v.y, (set & 4) != 0 ? -v.z : v.z};
+  }
+};
+
+/// The part of a kernel that the obstacle covers, as a density ratio, and its gradient.
 struct Cover {
   float share = 0;
   Vec3f gradient{};
@@ -87,7 +107,7 @@ struct Cover {
 
 /// The tank and the obstacle, in kernel radii.
 struct Solids {
-  Vec3f tank{};      ///< upper corner; the lower one is 0
+  Vec3f tank{};      ///< upper corner; the lower one is 0; sides > 2
   float gap = 0;     ///< particles stay so far inside
   Vec3f centre{};    ///< of the obstacle
   float radius = 0;  ///< of the obstacle; 0: there is none
@@ -107,40 +127,31 @@ struct Solids {
     return {clamped(p.x, tank.x), clamped(p.y, tank.y), clamped(p.z, tank.z)};
   }
 
-  /// Shares of several solids combine as if the kernel were a product: 1 - product of (1 - share).
-  [[nodiscard]] PSK_HD Cover cover(const Vec3f& p, const KernelConstants& k) const {
-    const Share x = across(p.x, tank.x, k.wall);
-    const Share y = across(p.y, tank.y, k.wall);
-    const Share z = across(p.z, tank.z, k.wall);
-    Cover out;
-    const float free = x.free * y.free * z.free;
-    out.gradient = {x.slope * (y.free * z.free), y.slope * (x.free * z.free), z.slope * (x.free * y.free)};
-    out.share = 1 - free;
-    if (radius > 0) add_obstacle(p, k, free, out);
+  [[nodiscard]] PSK_HD Mirrors mirrors(const Vec3f& p) const {
+    Mirrors out;
+    const auto look = [&out](float v, float upper, int bit, float& twice) {
+      if (v < 1) {
+        out.near |= bit;
+      } else if (upper - v < 1) {
+        out.near |= bit;
+        twice = 2 * upper;
+      }
+    };
+    look(p.x, tank.x, 1, out.twice_plane.x);
+    look(p.y, tank.y, 2, out.twice_plane.y);
+    look(p.z, tank.z, 4, out.twice_plane.z);
     return out;
   }
 
- private:
-  struct Share {
-    float free = 1;   ///< 1 - share
-    float slope = 0;  ///< of the share
-  };
-  PSK_HD static Share across(float v, float upper, float wall) {
-    if (v >= 1 && upper - v >= 1) return {};
-    return {1 - wall * (covered_by_plane(v) + covered_by_plane(upper - v)),
-            wall * (slope_of_cover(upper - v) - slope_of_cover(v))};
-  }
   /// The obstacle's surface counts as the plane that touches it.
-  PSK_HD void add_obstacle(const Vec3f& p, const KernelConstants& k, float free, Cover& out) const {
+  [[nodiscard]] PSK_HD Cover cover(const Vec3f& p, const KernelConstants& k) const {
+    if (!(radius > 0)) return {};
     const Vec3f d = p - centre;
     const float squared = dot(d, d);
-    if (squared >= (radius + 1) * (radius + 1) || !(squared > 0)) return;
+    if (squared >= (radius + 1) * (radius + 1) || !(squared > 0)) return {};
     const float r = std::sqrt(squared);
     const float distance = r > radius ? r - radius : 0.0F;
-    const float share = k.wall * covered_by_plane(distance);
-    const float slope = -k.wall * slope_of_cover(distance) / r;
-    out.gradient = (1 - share) * out.gradient + free * slope * d;
-    out.share = 1 - free * (1 - share);
+    return {k.wall * covered_by_plane(distance), -push_of_plane(distance) / r * d};
   }
 };
 

@@ -24,6 +24,32 @@ struct NeighbourLists {
   [[nodiscard]] PSK_HD std::int32_t& at(std::int64_t i, int k) const { return list[i * across + k * along]; }
 };
 
+/// Calls visit(j, d, squared, set) for every neighbour j of particle i and every image of one (of i itself, too) within
+/// the radius; `set` says in which walls, 0 the particle itself. d leads from it to i. The order is fixed.
+template <class Visit>
+PSK_HD void for_each_near(const NeighbourLists& neighbours, ArrayView<const Vec3f> place, const Mirrors& mirrors,
+                          std::int64_t i, const Visit& visit) {
+  const Vec3f p = place[i];
+  const int n = neighbours.size(i);
+  const auto visit_images = [&](std::int32_t j, const Vec3f& other) {
+    for (int set = mirrors.near; set != 0; set = (set - 1) & mirrors.near) {
+      const Vec3f d = mirrors.from_image(p, other, set);
+      const float squared = dot(d, d);
+      if (squared < 1) visit(j, d, squared, set);
+    }
+  };
+  for (int k = 0; k < n; ++k) {
+    const std::int32_t j = neighbours.at(i, k);
+    const Vec3f other = place[j];
+    const Vec3f d = p - other;
+    const float squared = dot(d, d);
+    if (!(squared < 1)) continue;
+    visit(j, d, squared, 0);
+    if (mirrors.near != 0) visit_images(j, other);
+  }
+  if (mirrors.near != 0) visit_images(static_cast<std::int32_t>(i), p);
+}
+
 PSK_HD inline Vec3f acceleration_of(const Force& force, const Vec3f& p) {
   const Vec3f d = force.reach * (p - force.centre);
   const float t = 1 - dot(d, d);
@@ -108,19 +134,15 @@ struct FindMultipliers {
     float sum = 1;
     float squares = 0;
     Vec3f gradient{};
-    const int n = neighbours.size(i);
-    for (int k = 0; k < n; ++k) {
-      const std::int32_t j = neighbours.at(i, k);
-      const Vec3f d = p - place[j];
-      const float squared = dot(d, d);
-      if (squared >= 1) continue;
-      const Apart to = apart(d, squared, i < j);
-      const float t = 1 - to.distance;
-      const float slope = t * t;
-      sum += weight(squared);
-      squares += slope * slope;
-      gradient = gradient - slope * to.direction;
-    }
+    for_each_near(neighbours, place, settings.solids.mirrors(p), i,
+                  [&](std::int32_t j, const Vec3f& d, float squared, int /*set*/) {
+                    const Apart to = apart(d, squared, i < j);
+                    const float t = 1 - to.distance;
+                    const float slope = t * t;
+                    sum += weight(squared);
+                    squares += slope * slope;
+                    gradient = gradient - slope * to.direction;
+                  });
     const KernelConstants& kernel = settings.kernel;
     const Cover cover = settings.solids.cover(p, kernel);
     const float compression = sum * kernel.per_weight + cover.share - 1;
@@ -145,18 +167,14 @@ struct Correct {
     const Vec3f p = place[i];
     const float own = multiplier[i];
     Vec3f sum{};
-    const int n = neighbours.size(i);
-    for (int k = 0; k < n; ++k) {
-      const std::int32_t j = neighbours.at(i, k);
-      const Vec3f d = p - place[j];
-      const float squared = dot(d, d);
-      if (squared >= 1) continue;
-      const Apart to = apart(d, squared, i < j);
-      const float t = 1 - to.distance;
-      const float w = weight(squared) * settings.kernel.tensile_inverse;
-      const float tensile = settings.artificial_pressure * (w * w) * (w * w);
-      sum = sum - (own + multiplier[j] - tensile) * (t * t) * to.direction;
-    }
+    for_each_near(neighbours, place, settings.solids.mirrors(p), i,
+                  [&](std::int32_t j, const Vec3f& d, float squared, int /*set*/) {
+                    const Apart to = apart(d, squared, i < j);
+                    const float t = 1 - to.distance;
+                    const float w = weight(squared) * settings.kernel.tensile_inverse;
+                    const float tensile = settings.artificial_pressure * (w * w) * (w * w);
+                    sum = sum - (own + multiplier[j] - tensile) * (t * t) * to.direction;
+                  });
     Vec3f move = settings.kernel.slope * sum;
     if (own != 0) move = move + 2 * own * settings.solids.cover(p, settings.kernel).gradient;
     const float squared = dot(move, move);
@@ -185,14 +203,12 @@ struct Smooth {
     const Vec3f v = velocity[i];
     float sum = 1;
     Vec3f change{};
-    const int n = neighbours.size(i);
-    for (int k = 0; k < n; ++k) {
-      const std::int32_t j = neighbours.at(i, k);
-      const Vec3f d = p - place[j];
-      const float w = weight(dot(d, d));
-      sum += w;
-      change = change + w * (velocity[j] - v);
-    }
+    for_each_near(neighbours, place, settings.solids.mirrors(p), i,
+                  [&](std::int32_t j, const Vec3f& /*d*/, float squared, int set) {
+                    const float w = weight(squared);
+                    sum += w;
+                    change = change + w * (Mirrors::turned(velocity[j], set) - v);
+                  });
     const KernelConstants& kernel = settings.kernel;
     smoothed[i] = v + settings.viscosity * kernel.per_weight * change;
     density[i] = sum * kernel.per_weight + settings.solids.cover(p, kernel).share;
@@ -210,16 +226,12 @@ struct FindCurl {
     const Vec3f p = place[i];
     const Vec3f v = velocity[i];
     Vec3f sum{};
-    const int n = neighbours.size(i);
-    for (int k = 0; k < n; ++k) {
-      const std::int32_t j = neighbours.at(i, k);
-      const Vec3f d = p - place[j];
-      const float squared = dot(d, d);
-      if (squared >= 1) continue;
-      const Apart to = apart(d, squared, i < j);
-      const float t = 1 - to.distance;
-      sum = sum + cross(t * t * to.direction, velocity[j] - v);
-    }
+    for_each_near(neighbours, place, settings.solids.mirrors(p), i,
+                  [&](std::int32_t j, const Vec3f& d, float squared, int set) {
+                    const Apart to = apart(d, squared, i < j);
+                    const float t = 1 - to.distance;
+                    sum = sum + cross(t * t * to.direction, Mirrors::turned(velocity[j], set) - v);
+                  });
     curl[i] = settings.kernel.slope * sum;
   }
 };
@@ -236,17 +248,13 @@ struct Confine {
     const Vec3f p = place[i];
     const float own = std::sqrt(dot(curl[i], curl[i]));
     Vec3f rise{};
-    const int n = neighbours.size(i);
-    for (int k = 0; k < n; ++k) {
-      const std::int32_t j = neighbours.at(i, k);
-      const Vec3f d = p - place[j];
-      const float squared = dot(d, d);
-      if (squared >= 1) continue;
-      const Apart to = apart(d, squared, i < j);
-      const float t = 1 - to.distance;
-      const float other = std::sqrt(dot(curl[j], curl[j]));
-      rise = rise - (other - own) * (t * t) * to.direction;
-    }
+    for_each_near(neighbours, place, settings.solids.mirrors(p), i,
+                  [&](std::int32_t j, const Vec3f& d, float squared, int /*set*/) {
+                    const Apart to = apart(d, squared, i < j);
+                    const float t = 1 - to.distance;
+                    const float other = std::sqrt(dot(curl[j], curl[j]));
+                    rise = rise - (other - own) * (t * t) * to.direction;
+                  });
     const float length = std::sqrt(dot(rise, rise));
     if (!(length > 0)) return;
     velocity[i] = velocity[i] + settings.seconds * settings.vorticity / length * cross(rise, curl[i]);

@@ -26,6 +26,8 @@ class EngineOn final : public Engine {
     copy_to_device(*ex_, positions.data(), particles_.position.view());
     particles_.velocity = exec::make_buffer<Vec3f>(*ex_, n);
     exec::fill(*ex_, particles_.velocity.view(), Vec3f{});
+    particles_.multiplier = exec::make_buffer<float>(*ex_, n);
+    exec::fill(*ex_, particles_.multiplier.view(), 0.0F);
     particles_.density = exec::make_buffer<float>(*ex_, n);
     exec::fill(*ex_, particles_.density.view(), 1.0F);
     particles_.neighbours = exec::make_buffer<std::uint8_t>(*ex_, n);

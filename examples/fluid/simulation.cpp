@@ -40,6 +40,7 @@ void validate(const SimulationOptions& options) {
   constexpr double kMost = 1e6;
   check_range("iterations", options.iterations, 1, 100);
   check_range("relaxation", options.relaxation, 0, kMost);
+  check_range("warm start", options.warm_start, 0, 1);
   check_range("artificial pressure", options.artificial_pressure, 0, 1);
   check_range("viscosity", options.viscosity, 0, 1);
   check_range("vorticity", options.vorticity, 0, kMost);
@@ -71,6 +72,7 @@ class Simulation::Impl {
 
   void start() {
     report_ = {};
+    settings_.seconds = 0;
     report_.particles = static_cast<std::int64_t>(scene_.positions.size());
     engine_->start(scene_, radius_);
     describe();
@@ -82,10 +84,14 @@ class Simulation::Impl {
     set_forces(interactions);
     const int substeps = substeps_for(seconds);
     const double part = seconds / substeps;
+    // Multipliers are a pressure times seconds^2.
+    const double ratio = settings_.seconds > 0 ? part / double{settings_.seconds} : 1;
+    settings_.warm_start = static_cast<float>(options_.warm_start * ratio * ratio);
     settings_.seconds = static_cast<float>(part);
     for (int i = 1; i <= substeps; ++i) {
       place_obstacle(report_.seconds + part * i);
       engine_->substep(settings_);
+      settings_.warm_start = static_cast<float>(options_.warm_start);
     }
     report_.substeps = substeps;
     report_.seconds += seconds;

@@ -13,8 +13,9 @@
 namespace pointskin::simulation {
 
 struct SimulationOptions {
-  int iterations = 4;                 ///< of the density constraint, a substep; in [1, 100]
-  double relaxation = 0.5;            ///< epsilon of the constraint, in units of kernel radii, >= 0; more is softer
+  int iterations = 4;       ///< of the density constraint, a substep; in [1, 100]
+  double relaxation = 0.5;  ///< epsilon of the constraint, in units of kernel radii, >= 0; more is softer
+  double warm_start = 0.5;  ///< part of the last substep's pressure that the next begins with, in [0, 1]; 0: none
   double artificial_pressure = 2e-4;  ///< keeps particles apart where they are few, >= 0
   double viscosity = 0.02;            ///< c of XSPH, in [0, 1]
   double vorticity = 0;               ///< of vorticity confinement, >= 0; 0: none, and then it costs nothing

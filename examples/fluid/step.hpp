@@ -41,8 +41,9 @@ struct StepSettings {
   float longest_move = 1;  ///< of a substep: what is faster is slowed down
   float relaxation = 0;    ///< epsilon of the constraint
   float artificial_pressure = 0;
-  float viscosity = 0;  ///< c of XSPH
-  float vorticity = 0;  ///< 0: no confinement
+  float viscosity = 0;   ///< c of XSPH
+  float vorticity = 0;   ///< 0: no confinement
+  float warm_start = 0;  ///< what is left of the last substep's multipliers
   int iterations = 4;
   KernelConstants kernel{};
   Solids solids{};
@@ -55,6 +56,7 @@ struct Particles {
   exec::Buffer<Vec3f> position;           ///< (n)
   exec::Buffer<Vec3f> velocity;           ///< (n) per second
   exec::Buffer<std::int32_t> id;          ///< (n) place in the scene
+  exec::Buffer<float> multiplier;         ///< (n) of the last substep: minus the pressure, times seconds^2
   exec::Buffer<float> density;            ///< (n) over the density at rest, after the last substep
   exec::Buffer<std::uint8_t> neighbours;  ///< (n) found in the last substep, at most kMostNeighbours + 1
 };

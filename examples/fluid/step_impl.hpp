@@ -80,13 +80,17 @@ struct Reorder {
   ArrayView<const std::int32_t> order;
   ArrayView<const Vec3f> position, predicted;
   ArrayView<const std::int32_t> id;
+  ArrayView<const float> multiplier;
+  float warm_start;
   ArrayView<Vec3f> start, place;
   ArrayView<std::int32_t> new_id;
+  ArrayView<float> sum;
   PSK_HD void operator()(std::int64_t i) const {
     const std::int32_t from = order[i];
     start[i] = position[from];
     place[i] = predicted[from];
     new_id[i] = id[from];
+    sum[i] = warm_start * multiplier[from];
   }
 };
 
@@ -127,11 +131,12 @@ struct FindMultipliers {
   StepSettings settings;
   ArrayView<const Vec3f> place;
   NeighbourLists neighbours;
-  ArrayView<float> multiplier;
+  ArrayView<float> sum;   // of all iterations and the warm start, <= 0
+  ArrayView<float> step;  // what is added to it
 
   PSK_HD void operator()(std::int64_t i) const {
     const Vec3f p = place[i];
-    float sum = 1;
+    float weights = 1;
     float squares = 0;
     Vec3f gradient{};
     for_each_near(neighbours, place, settings.solids.mirrors(p), i,
@@ -139,17 +144,20 @@ struct FindMultipliers {
                     const Apart to = apart(d, squared, i < j);
                     const float t = 1 - to.distance;
                     const float slope = t * t;
-                    sum += weight(squared);
+                    weights += weight(squared);
                     squares += slope * slope;
                     gradient = gradient - slope * to.direction;
                   });
     const KernelConstants& kernel = settings.kernel;
     const Cover cover = settings.solids.cover(p, kernel);
-    const float compression = sum * kernel.per_weight + cover.share - 1;
+    const float compression = weights * kernel.per_weight + cover.share - 1;
     gradient = kernel.slope * gradient + cover.gradient;
     const float scale =
         kernel.slope * kernel.slope * squares + dot(gradient, gradient) + dot(cover.gradient, cover.gradient);
-    multiplier[i] = compression > 0 ? -compression / (scale + settings.relaxation) : 0.0F;
+    const float before = sum[i];
+    const float after = before - compression / (scale + settings.relaxation);
+    sum[i] = after < 0 ? after : 0.0F;
+    step[i] = sum[i] - before;
   }
 };
 
@@ -318,23 +326,30 @@ void substep(Exec& ex, Particles& particles, const StepSettings& settings, const
   auto start = exec::make_buffer<Vec3f>(ex, n);
   auto place = exec::make_buffer<Vec3f>(ex, n);
   auto id = exec::make_buffer<std::int32_t>(ex, n);
+  auto sum = exec::make_buffer<float>(ex, n);
   for_each(ex, "simulation.reorder", n,
            step::Reorder{tree.order.cview(), particles.position.cview(), predicted.cview(), particles.id.cview(),
-                         start.view(), place.view(), id.view()});
+                         particles.multiplier.cview(), settings.warm_start, start.view(), place.view(), id.view(),
+                         sum.view()});
   particles.id.swap(id);
+  particles.multiplier.swap(sum);
 
   auto list = exec::make_buffer<std::int32_t>(ex, n * kMostNeighbours);
   const step::NeighbourLists neighbours{list.view(), particles.neighbours.view(),
                                         Exec::kManyThreads ? 1 : kMostNeighbours, Exec::kManyThreads ? n : 1};
   for_each(ex, "simulation.neighbours", n, step::FindNeighbours{tree.view(), place.cview(), neighbours});
 
-  auto multiplier = exec::make_buffer<float>(ex, n);
+  const auto correct = [&](ArrayView<const float> multiplier) {
+    for_each(ex, "simulation.correct", n,
+             step::Correct{settings, place.cview(), neighbours, multiplier, predicted.view()});
+    place.swap(predicted);
+  };
+  if (settings.warm_start > 0) correct(particles.multiplier.cview());
+  exec::Buffer<float> change = std::move(sum);
   for (int i = 0; i < settings.iterations; ++i) {
     for_each(ex, "simulation.multipliers", n,
-             step::FindMultipliers{settings, place.cview(), neighbours, multiplier.view()});
-    for_each(ex, "simulation.correct", n,
-             step::Correct{settings, place.cview(), neighbours, multiplier.cview(), predicted.view()});
-    place.swap(predicted);
+             step::FindMultipliers{settings, place.cview(), neighbours, particles.multiplier.view(), change.view()});
+    correct(change.cview());
   }
 
   const ArrayView<Vec3f> velocity = predicted.view();  // its places are no longer needed

@@ -112,29 +112,55 @@ PSK_HD void for_each_neighbour(const ParticleTreeView& tree, std::int32_t cell, 
   });
 }
 
-/// The same around any place, whose cell may be empty. Places outside of the cube count to the cells at its faces.
-/// Eight look-ups of bricks.
+/// Calls visit(first, last) for ranges of particles that together are those in the cells of a box, by ascending x, y, z
+/// of the cells: two boxes visit what they share in the same order. Cells outside of the cube are empty.
 template <class Visit>
-PSK_HD void for_each_near(const ParticleTreeView& tree, const Vec3f& place, const Visit& visit) {
-  const Vec3f unit = tree.cube.to_unit(place);
-  const int depth = tree.level.depth;
-  const octree::Coordinates c = octree::decode(octree::cell_key(octree::point_key(unit.x, unit.y, unit.z), depth));
-  const std::int32_t last_brick = (1 << (depth - 1)) - 1;
-  for (int x = (c.x - 1) >> 1; x <= (c.x + 1) >> 1; ++x)
-    for (int y = (c.y - 1) >> 1; y <= (c.y + 1) >> 1; ++y)
-      for (int z = (c.z - 1) >> 1; z <= (c.z + 1) >> 1; ++z) {
-        if (x < 0 || y < 0 || z < 0 || x > last_brick || y > last_brick || z > last_brick) continue;
-        const std::int32_t brick = tree.brick_at(octree::encode({x, y, z}));
-        if (brick < 0) continue;
-        for (int slot = 0; slot < 8; ++slot) {
-          const int dx = 2 * x + octree::slot_x(slot) - c.x;
-          const int dy = 2 * y + octree::slot_y(slot) - c.y;
-          const int dz = 2 * z + octree::slot_z(slot) - c.z;
-          if (dx < -1 || dy < -1 || dz < -1 || dx > 1 || dy > 1 || dz > 1) continue;
-          const std::int32_t end = tree.level.point_begin[8 * brick + slot + 1];
-          for (std::int32_t j = tree.level.point_begin[8 * brick + slot]; j < end; ++j) visit(j);
-        }
+PSK_HD void for_each_range_in(const ParticleTreeView& tree, const octree::Coordinates& lower,
+                              const octree::Coordinates& upper, const Visit& visit) {
+  const std::int32_t last = (1 << tree.level.depth) - 1;
+  const auto clamped_low = [](std::int32_t c) { return c < 0 ? 0 : c; };
+  const auto clamped_high = [&](std::int32_t c) { return c > last ? last : c; };
+  for (std::int32_t x = clamped_low(lower.x); x <= clamped_high(upper.x); ++x)
+    for (std::int32_t y = clamped_low(lower.y); y <= clamped_high(upper.y); ++y)
+      for (std::int32_t z = clamped_low(lower.z); z <= clamped_high(upper.z);) {
+        const std::int32_t brick = tree.brick_at(octree::encode({x >> 1, y >> 1, z >> 1}));
+        const int count = (z & 1) == 0 && z < clamped_high(upper.z) ? 2 : 1;  // siblings along z are one range
+        const std::int32_t first = 8 * brick + octree::slot_of(x & 1, y & 1, z & 1);
+        if (brick >= 0) visit(tree.level.point_begin[first], tree.level.point_begin[first + count]);
+        z += count;
       }
+}
+
+/// Cell, maybe outside of the cube, that a coordinate in units of cells lies in. Places far outside keep their side.
+PSK_HD inline std::int32_t cell_coordinate(double cells) {
+  constexpr double kFar = 1 << 24;
+  if (!(cells > -kFar)) return -(1 << 24);
+  if (cells > kFar) return 1 << 24;
+  const auto truncated = static_cast<std::int32_t>(cells);
+  return static_cast<double>(truncated) > cells ? truncated - 1 : truncated;
+}
+
+/// Calls visit(first, last) for ranges that hold all particles within `radius` of the box from `lower` to `upper`, in
+/// the order of for_each_range_in. Any radius.
+/// @param lower, upper, radius  world units
+template <class Visit>
+PSK_HD void for_each_range_near(const ParticleTreeView& tree, const Vec3f& lower, const Vec3f& upper, double radius,
+                                const Visit& visit) {
+  const double scale = static_cast<double>(std::int64_t{1} << tree.level.depth) / tree.cube.size;
+  // Particles were rounded to floats of the unit cube before they were sorted into cells.
+  const double slack = static_cast<double>(std::int64_t{1} << tree.level.depth) * 1.2e-7;
+  const double reach = radius * scale + slack;
+  const auto cell = [&](float v, double origin, double step) {
+    return cell_coordinate((static_cast<double>(v) - origin) * scale + step);
+  };
+  const Vec3d& o = tree.cube.lower;
+  const std::int32_t last = (1 << tree.level.depth) - 1;
+  const auto inside = [&](std::int32_t c) { return c < 0 ? 0 : c > last ? last : c; };
+  for_each_range_in(
+      tree,
+      {inside(cell(lower.x, o[0], -reach)), inside(cell(lower.y, o[1], -reach)), inside(cell(lower.z, o[2], -reach))},
+      {inside(cell(upper.x, o[0], reach)), inside(cell(upper.y, o[1], reach)), inside(cell(upper.z, o[2], reach))},
+      visit);
 }
 
 }  // namespace pointskin::fluid

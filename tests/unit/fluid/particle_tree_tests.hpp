@@ -46,10 +46,12 @@ struct CollectNear {
   PSK_HD void operator()(std::int64_t i) const {
     std::int64_t at = i * kMostFound;
     const Vec3f p = places[i];
-    fluid::for_each_near(tree, p, [&](std::int32_t j) {
-      const Vec3f q = positions[j];
-      const float d = (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
-      if (d <= radius * radius) found[at++] = j;
+    fluid::for_each_range_near(tree, p, p, radius, [&](std::int32_t first, std::int32_t last) {
+      for (std::int32_t j = first; j < last; ++j) {
+        const Vec3f q = positions[j];
+        const float d = (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
+        if (d <= radius * radius) found[at++] = j;
+      }
     });
     found[at] = -1;
   }

@@ -16,6 +16,8 @@ class Engine {
   virtual void substep(const StepSettings& settings) = 0;
   [[nodiscard]] virtual Totals totals(const Solids& solids) = 0;
   [[nodiscard]] virtual ParticleStates particles() const = 0;
+  /// @param box  of the particles, as in Totals
+  virtual void surface(const FluidOptions& options, const Bounds& box, Mesh& mesh, FluidReport& report) = 0;
   [[nodiscard]] virtual std::int64_t peak_bytes() const = 0;
 };
 

@@ -7,6 +7,7 @@
 
 #include "engine.hpp"
 #include "exec/algorithms.hpp"
+#include "fluid/surface.hpp"
 
 namespace pointskin::simulation {
 
@@ -49,25 +50,76 @@ class EngineOn final : public Engine {
 
   [[nodiscard]] ParticleStates particles() const override {
     ex_->activate();
-    const std::int64_t n = particles_.position.size();
-    auto positions = exec::make_buffer<Vec3f>(*ex_, n);
-    auto velocities = exec::make_buffer<Vec3f>(*ex_, n);
-    to_world(*ex_, particles_, radius_world_, positions.view(), velocities.view());
-    const auto count = static_cast<std::size_t>(n);
+    const World world = to_world(true);
+    const auto count = static_cast<std::size_t>(particles_.position.size());
     std::vector<std::int32_t> id(count);
-    std::vector<Vec3f> sorted(count);
-    ParticleStates out{std::vector<Vec3f>(count), std::vector<Vec3f>(count)};
     copy_to_host(*ex_, particles_.id.cview(), id.data());
-    copy_to_host(*ex_, positions.cview(), sorted.data());
+    ParticleStates out{std::vector<Vec3f>(count), std::vector<Vec3f>(count)};
+    std::vector<Vec3f> sorted(count);
+    copy_to_host(*ex_, world.positions.cview(), sorted.data());
     for (std::size_t i = 0; i < count; ++i) out.positions[static_cast<std::size_t>(id[i])] = sorted[i];
-    copy_to_host(*ex_, velocities.cview(), sorted.data());
-    for (std::size_t i = 0; i < count; ++i) out.velocities[static_cast<std::size_t>(id[i])] = sorted[i];
+    std::vector<float> component(count);
+    constexpr float Vec3f::*kAxes[3] = {&Vec3f::x, &Vec3f::y, &Vec3f::z};
+    for (std::size_t a = 0; a < 3; ++a) {
+      copy_to_host(*ex_, world.velocities[a].cview(), component.data());
+      for (std::size_t i = 0; i < count; ++i) out.velocities[static_cast<std::size_t>(id[i])].*kAxes[a] = component[i];
+    }
     return out;
+  }
+
+  void surface(const FluidOptions& options, const Bounds& box, Mesh& mesh, FluidReport& report) override {
+    ex_->activate();
+    report = {};
+    const World world = to_world(options.attributes);
+    fluid::Particles input{world.positions.cview()};
+    input.bounds = Bounds{radius_world_ * box.lower, radius_world_ * box.upper};
+    input.canonical = true;
+    constexpr const char* kNames[3] = {"vx", "vy", "vz"};
+    if (options.attributes)
+      for (std::size_t a = 0; a < 3; ++a)
+        input.values.push_back({kNames[a], AttributeType::float32, world.velocities[a].cview()});
+    fluid::FluidSurface made = fluid::make_surface(*ex_, input, options, report);
+    mesh.origin = {};
+    download(made.mesh.positions, mesh.vertices);
+    download(made.mesh.normals, mesh.normals);
+    download(made.mesh.triangles, mesh.triangles);
+    mesh.attributes.resize(made.values.size());
+    for (std::size_t a = 0; a < made.values.size(); ++a) {
+      mesh.attributes[a].name = kNames[a];
+      mesh.attributes[a].type = AttributeType::float32;
+      download(made.values[a], mesh.attributes[a].values);
+    }
+    report.particles = particles_.position.size();
+    report.device_peak_bytes = ex_->pool()->peak_bytes();
   }
 
   [[nodiscard]] std::int64_t peak_bytes() const override { return ex_->pool()->peak_bytes(); }
 
  private:
+  struct World {
+    exec::Buffer<Vec3f> positions;
+    exec::Buffer<float> velocities[3];
+  };
+
+  [[nodiscard]] World to_world(bool velocities) const {
+    const std::int64_t n = particles_.position.size();
+    World out;
+    out.positions = exec::make_buffer<Vec3f>(*ex_, n);
+    WorldViews views{out.positions.view(), {}};
+    for (std::size_t a = 0; a < 3 && velocities; ++a) {
+      out.velocities[a] = exec::make_buffer<float>(*ex_, n);
+      views.velocities[a] = out.velocities[a].view();
+    }
+    simulation::to_world(*ex_, particles_, radius_world_, views);
+    return out;
+  }
+
+  template <class T>
+  void download(const exec::Buffer<T>& from, std::vector<T>& to) const {
+    to.resize(static_cast<std::size_t>(from.size()));
+    copy_to_host(*ex_, from.cview(), to.data());
+  }
+
   std::shared_ptr<Exec> ex_;
   Particles particles_;
   fluid::CellGrid grid_;

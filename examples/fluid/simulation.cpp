@@ -100,10 +100,17 @@ class Simulation::Impl {
     report_.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   }
 
+  void surface(FluidOptions options, Mesh& mesh) {
+    if (options.particle_radius == 0) options.particle_radius = 0.5 * double{scene_.spacing};
+    pointskin::validate(options);
+    engine_->surface(options, box_, mesh, surface_report_);
+  }
+
   Scene scene_;
   SimulationOptions options_;
   Device device_;
   SimulationReport report_;
+  FluidReport surface_report_;
   std::unique_ptr<Engine> engine_;
 
  private:
@@ -146,6 +153,7 @@ class Simulation::Impl {
     const double n = static_cast<double>(report_.particles);
     const double radius = radius_;
     const double mass = kWaterDensity * double{scene_.spacing} * scene_.spacing * scene_.spacing;
+    box_ = totals.box;
     report_.lost = totals.lost;
     report_.crowded = totals.crowded;
     report_.mean_density_error = totals.compression / n;
@@ -157,6 +165,7 @@ class Simulation::Impl {
 
   float radius_ = 1;  ///< of the kernel, metres
   StepSettings settings_;
+  Bounds box_;
 };
 
 Simulation::Simulation(Scene scene, const SimulationOptions& options, Device device)
@@ -169,9 +178,11 @@ void Simulation::step(double seconds, const std::vector<Interaction>& interactio
   impl_->step(seconds, interactions);
 }
 void Simulation::restart() { impl_->start(); }
+void Simulation::surface(const FluidOptions& options, Mesh& mesh) { impl_->surface(options, mesh); }
 ParticleStates Simulation::particles() const { return impl_->engine_->particles(); }
 const Scene& Simulation::scene() const { return impl_->scene_; }
 const SimulationOptions& Simulation::options() const { return impl_->options_; }
+const FluidReport& Simulation::surface_report() const { return impl_->surface_report_; }
 const SimulationReport& Simulation::report() const { return impl_->report_; }
 const Device& Simulation::device() const { return impl_->device_; }
 double Simulation::particle_radius() const { return 0.5 * double{impl_->scene_.spacing}; }

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include <pointskin/device.hpp>
+#include <pointskin/fluid.hpp>
+#include <pointskin/mesh.hpp>
 #include <pointskin/vector.hpp>
 
 #include "scene.hpp"
@@ -75,6 +77,14 @@ class Simulation {
 
   /// Copies the particles to the host.
   [[nodiscard]] ParticleStates particles() const;
+
+  /// The surface of the water as FluidSurfacer makes it, of the particles where they are on the device; with
+  /// `options.attributes` vertices have the velocity as vx, vy and vz. A particle_radius of 0 means particle_radius().
+  /// The same bytes whenever the steps were the same; sums run in the simulation's order, so last bits differ from
+  /// those of FluidSurfacer.
+  /// @throws Error as FluidSurfacer::surface
+  void surface(const FluidOptions& options, Mesh& mesh);
+  [[nodiscard]] const FluidReport& surface_report() const;
 
   [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] const SimulationOptions& options() const;

@@ -5,6 +5,6 @@ namespace pointskin::simulation {
 
 template void substep(exec::Cpu&, Particles&, const StepSettings&, const fluid::CellGrid&);
 template Totals totals_of(exec::Cpu&, const Particles&, const Solids&);
-template void to_world(exec::Cpu&, const Particles&, float, ArrayView<Vec3f>, ArrayView<Vec3f>);
+template void to_world(exec::Cpu&, const Particles&, float, const WorldViews&);
 
 }  // namespace pointskin::simulation

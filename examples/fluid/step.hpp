@@ -9,6 +9,7 @@
 
 #include <cstdint>
 
+#include <pointskin/cloud.hpp>
 #include <pointskin/vector.hpp>
 
 #include "core/array_view.hpp"
@@ -72,6 +73,7 @@ struct Totals {
   double compression = 0;    ///< sum of max(0, density - 1)
   double squared_speed = 0;  ///< sum
   double height = 0;         ///< sum
+  Bounds box{};              ///< of the particles
   float most_compression = 0;
   float fastest_squared = 0;
   std::int32_t crowded = 0;  ///< particles with more than kMostNeighbours neighbours
@@ -82,9 +84,14 @@ struct Totals {
 template <exec::Space Exec>
 Totals totals_of(Exec& ex, const Particles& particles, const Solids& solids);
 
-/// World positions and velocities: the factor turns kernel radii into metres. One launch.
+/// Positions and velocities in metres, each of shape (n).
+struct WorldViews {
+  ArrayView<Vec3f> positions;
+  ArrayView<float> velocities[3];  ///< by axis; empty: not wanted
+};
+
+/// One launch. @param radius_world  the kernel's, metres
 template <exec::Space Exec>
-void to_world(Exec& ex, const Particles& particles, float radius_world, ArrayView<Vec3f> positions,
-              ArrayView<Vec3f> velocities);
+void to_world(Exec& ex, const Particles& particles, float radius_world, const WorldViews& out);
 
 }  // namespace pointskin::simulation

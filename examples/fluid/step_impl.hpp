@@ -238,7 +238,7 @@ struct FindCurl {
                   [&](std::int32_t j, const Vec3f& d, float squared, int set) {
                     const Apart to = apart(d, squared, i < j);
                     const float t = 1 - to.distance;
-                    sum = sum + cross(t * t * to.direction, Mirrors::turned(velocity[j], set) - v);
+                    sum = sum + cross(Mirrors::turned(velocity[j], set) - v, t * t * to.direction);
                   });
     curl[i] = settings.kernel.slope * sum;
   }
@@ -270,12 +270,19 @@ struct Confine {
 };
 
 struct AddTotals {
+  PSK_HD static float least(float a, float b) { return b < a ? b : a; }
+  PSK_HD static float most(float a, float b) { return b > a ? b : a; }
+  PSK_HD static Bounds join(const Bounds& a, const Bounds& b) {
+    return {{least(a.lower.x, b.lower.x), least(a.lower.y, b.lower.y), least(a.lower.z, b.lower.z)},
+            {most(a.upper.x, b.upper.x), most(a.upper.y, b.upper.y), most(a.upper.z, b.upper.z)}};
+  }
   PSK_HD Totals operator()(const Totals& a, const Totals& b) const {
     return {a.compression + b.compression,
             a.squared_speed + b.squared_speed,
             a.height + b.height,
-            a.most_compression > b.most_compression ? a.most_compression : b.most_compression,
-            a.fastest_squared > b.fastest_squared ? a.fastest_squared : b.fastest_squared,
+            join(a.box, b.box),
+            most(a.most_compression, b.most_compression),
+            most(a.fastest_squared, b.fastest_squared),
             a.crowded + b.crowded,
             a.lost + b.lost};
   }
@@ -297,6 +304,7 @@ struct TotalsOfParticle {
     return {compression,
             squared,
             p.y,
+            {p, p},
             compression,
             squared,
             neighbours[i] > kMostNeighbours ? 1 : 0,
@@ -307,10 +315,14 @@ struct TotalsOfParticle {
 struct ToWorld {
   float radius;
   ArrayView<const Vec3f> position, velocity;
-  ArrayView<Vec3f> out_position, out_velocity;
+  WorldViews out;
   PSK_HD void operator()(std::int64_t i) const {
-    out_position[i] = radius * position[i];
-    out_velocity[i] = radius * velocity[i];
+    out.positions[i] = radius * position[i];
+    if (out.velocities[0].empty()) return;
+    const Vec3f v = radius * velocity[i];
+    out.velocities[0][i] = v.x;
+    out.velocities[1][i] = v.y;
+    out.velocities[2][i] = v.z;
   }
 };
 
@@ -377,10 +389,9 @@ Totals totals_of(Exec& ex, const Particles& particles, const Solids& solids) {
 }
 
 template <exec::Space Exec>
-void to_world(Exec& ex, const Particles& particles, float radius_world, ArrayView<Vec3f> positions,
-              ArrayView<Vec3f> velocities) {
+void to_world(Exec& ex, const Particles& particles, float radius_world, const WorldViews& out) {
   for_each(ex, "simulation.world", particles.position.size(),
-           step::ToWorld{radius_world, particles.position.cview(), particles.velocity.cview(), positions, velocities});
+           step::ToWorld{radius_world, particles.position.cview(), particles.velocity.cview(), out});
 }
 
 }  // namespace pointskin::simulation

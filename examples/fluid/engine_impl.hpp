@@ -8,6 +8,7 @@
 #include "engine.hpp"
 #include "exec/algorithms.hpp"
 #include "fluid/surface.hpp"
+#include "pipeline/phase_clock.hpp"
 
 namespace pointskin::simulation {
 
@@ -79,6 +80,7 @@ class EngineOn final : public Engine {
       for (std::size_t a = 0; a < 3; ++a)
         input.values.push_back({kNames[a], AttributeType::float32, world.velocities[a].cview()});
     fluid::FluidSurface made = fluid::make_surface(*ex_, input, options, report);
+    pointskin::detail::PhaseClock downloading(*ex_);
     mesh.origin = {};
     download(made.mesh.positions, mesh.vertices);
     download(made.mesh.normals, mesh.normals);
@@ -89,6 +91,8 @@ class EngineOn final : public Engine {
       mesh.attributes[a].type = AttributeType::float32;
       download(made.values[a], mesh.attributes[a].values);
     }
+    downloading.lap(report.download_ms);
+    downloading.read();
     report.particles = particles_.position.size();
     report.device_peak_bytes = ex_->pool()->peak_bytes();
   }

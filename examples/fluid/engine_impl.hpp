@@ -60,11 +60,14 @@ class EngineOn final : public Engine {
     copy_to_host(*ex_, world.positions.cview(), sorted.data());
     for (std::size_t i = 0; i < count; ++i) out.positions[static_cast<std::size_t>(id[i])] = sorted[i];
     std::vector<float> component(count);
-    constexpr float Vec3f::*kAxes[3] = {&Vec3f::x, &Vec3f::y, &Vec3f::z};
-    for (std::size_t a = 0; a < 3; ++a) {
-      copy_to_host(*ex_, world.velocities[a].cview(), component.data());
-      for (std::size_t i = 0; i < count; ++i) out.velocities[static_cast<std::size_t>(id[i])].*kAxes[a] = component[i];
-    }
+    const auto take = [&](const exec::Buffer<float>& from, auto&& component_of) {
+      copy_to_host(*ex_, from.cview(), component.data());
+      for (std::size_t i = 0; i < count; ++i)
+        component_of(out.velocities[static_cast<std::size_t>(id[i])]) = component[i];
+    };
+    take(world.velocities[0], [](Vec3f& v) -> float& { return v.x; });
+    take(world.velocities[1], [](Vec3f& v) -> float& { return v.y; });
+    take(world.velocities[2], [](Vec3f& v) -> float& { return v.z; });
     return out;
   }
 

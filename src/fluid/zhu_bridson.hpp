@@ -94,7 +94,7 @@ struct Symmetric3 {
 };
 
 /// The mean of the eigenvalues with their eighth powers as weights: the largest in magnitude if others are much
-/// smaller, never above, and 3 % below at the most where it is positive and none is negative.
+/// smaller, never above, and 6 % below at the most where none is negative.
 PSK_HD inline float largest_eigenvalue(const Symmetric3& m) {
   const float norm = std::sqrt(m.dot(m));
   if (!(norm > 0)) return 0;

@@ -19,10 +19,10 @@ namespace band {
 // ---- Where the fluid is deep -------------------------------------------------------------------------------------
 
 /// 1 for cells of particles so well surrounded that no surface is near: the cells around them hold `total` together,
-/// and `each` one by one.
+/// and none is empty.
 struct FindDeep {
   octree::LevelView cells;
-  std::int32_t each, total;
+  std::int32_t total;
   ArrayView<std::uint8_t> deep;
   PSK_HD void operator()(std::int64_t i) const {
     const auto cell = static_cast<std::int32_t>(i);
@@ -32,7 +32,7 @@ struct FindDeep {
       const std::int32_t other = cells.neighbour(cell, j / 9 - 1, j / 3 % 3 - 1, j % 3 - 1);
       const std::int32_t count = other < 0 ? 0 : cells.point_begin[other + 1] - cells.point_begin[other];
       sum += count;
-      full = count >= each;
+      full = count > 0;
     }
     deep[i] = full && sum >= total ? 1 : 0;
   }
@@ -448,9 +448,9 @@ Band find_band(Exec& ex, const Field& field, const ParticleTreeView& tree, Array
   // A cell may hold so many particles by rule that counts of a few say nothing.
   if (options.particles_per_cell >= 4) {
     deep = exec::make_buffer<std::uint8_t>(ex, std::int64_t{8} * tree.level.bricks);
-    for_each(ex, "fluid.deep", deep.size(),
-             band::FindDeep{tree.level, static_cast<std::int32_t>(0.5 * options.particles_per_cell),
-                            static_cast<std::int32_t>(0.85 * 27 * options.particles_per_cell), deep.view()});
+    for_each(
+        ex, "fluid.deep", deep.size(),
+        band::FindDeep{tree.level, static_cast<std::int32_t>(0.85 * 27 * options.particles_per_cell), deep.view()});
   }
   for (;;) {
     const band::ReachOfParticle reach_of{tree, deep.cview(), centres, options.depth - 1, kRounding * field.reach()};

@@ -114,13 +114,17 @@ SortedParticles sort_particles(Exec& ex, const Particles& particles, const Fluid
   return sorted;
 }
 
+inline ZhuBridsonField isotropic_field(const SortedParticles& sorted, const FluidFrame& frame,
+                                       const FluidOptions& options) {
+  return {sorted.tree.view(), sorted.positions.cview(), static_cast<float>(frame.kernel_radius / frame.cube.size),
+          static_cast<float>(threshold_of(options) / (2 * options.smoothing_length)),
+          static_cast<float>(2 * options.smoothing_length / options.cube_size)};
+}
+
 template <exec::Space Exec>
 Band find_isotropic_band(Exec& ex, const SortedParticles& sorted, const FluidFrame& frame,
                          const FluidOptions& options) {
-  const ZhuBridsonField field{sorted.tree.view(), sorted.positions.cview(),
-                              static_cast<float>(frame.kernel_radius / frame.cube.size),
-                              static_cast<float>(threshold_of(options) / (2 * options.smoothing_length)),
-                              static_cast<float>(2 * options.smoothing_length / options.cube_size)};
+  const ZhuBridsonField field = isotropic_field(sorted, frame, options);
   BandOptions band;
   band.depth = frame.depth;
   // A corner of a coarse cell is at most sqrt(3) finest cells from the middle of a drop.

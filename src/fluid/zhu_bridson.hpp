@@ -29,32 +29,46 @@ inline constexpr float kReach = 0.75F;
 inline constexpr float kLowEigenvalue = 1.2F;
 inline constexpr float kHighEigenvalue = 2.0F;
 
+/// Values below, in finest cells, are not damped: what is so far outside stays there.
+inline constexpr float kFarOutside = -1.5F;
+
 /// What is summed over the particles around a place; d = (p - x) / R, q = max(0, 1 - |d|^2). T: a float or several.
 template <class T>
 struct MeanSums {
-  T weight{};                            ///< q^3
-  T x{}, y{}, z{};                       ///< q^3 d
-  T sx{}, sy{}, sz{};                    ///< q^2 d
+  T weight{};       ///< q^3
+  T x{}, y{}, z{};  ///< q^3 d
+  T nearest{};      ///< largest q
+
+  PSK_HD PSK_INLINE void add(const T& dx, const T& dy, const T& dz) {
+    const T zero{};
+    const T difference = 1.0F - (dx * dx + dy * dy + dz * dz);
+    const T q = difference > zero ? difference : zero;
+    const T k = q * q * q;
+    nearest = q > nearest ? q : nearest;
+    weight += k;
+    x += k * dx;
+    y += k * dy;
+    z += k * dz;
+  }
+};
+
+/// What its gradient needs besides.
+template <class T>
+struct GradientSums {
+  T x{}, y{}, z{};                       ///< q^2 d
   T xx{}, xy{}, xz{}, yy{}, yz{}, zz{};  ///< q^2 d d^T
-  T nearest{};                           ///< largest q
 
   PSK_HD PSK_INLINE void add(const T& dx, const T& dy, const T& dz) {
     const T zero{};
     const T difference = 1.0F - (dx * dx + dy * dy + dz * dz);
     const T q = difference > zero ? difference : zero;
     const T slope = q * q;
-    const T k = slope * q;
-    nearest = q > nearest ? q : nearest;
-    weight += k;
-    x += k * dx;
-    y += k * dy;
-    z += k * dz;
     const T ax = slope * dx;
     const T ay = slope * dy;
     const T az = slope * dz;
-    sx += ax;
-    sy += ay;
-    sz += az;
+    x += ax;
+    y += ay;
+    z += az;
     xx += ax * dx;
     xy += ax * dy;
     xz += ax * dz;
@@ -80,7 +94,7 @@ struct Symmetric3 {
 };
 
 /// The mean of the eigenvalues with their eighth powers as weights: the largest in magnitude if others are much
-/// smaller, never above, and 3 % below at the most where it is positive and none is negative.
+/// smaller, never above, and 6 % below at the most where none is negative.
 PSK_HD inline float largest_eigenvalue(const Symmetric3& m) {
   const float norm = std::sqrt(m.dot(m));
   if (!(norm > 0)) return 0;
@@ -102,32 +116,48 @@ struct ZhuBridsonField {
 
   [[nodiscard]] PSK_HD float at(const Vec3f& x) const {
     MeanSums<float> sums;
+    GradientSums<float> gradient;
     const float inverse = 1 / radius;
     for_each_range_near(tree, x, x, radius, [&](std::int32_t first, std::int32_t last) {
       for (std::int32_t j = first; j < last; ++j) {
         const Vec3f p = positions[j];
-        sums.add((p.x - x.x) * inverse, (p.y - x.y) * inverse, (p.z - x.z) * inverse);
+        const float dx = (p.x - x.x) * inverse;
+        const float dy = (p.y - x.y) * inverse;
+        const float dz = (p.z - x.z) * inverse;
+        sums.add(dx, dy, dz);
+        gradient.add(dx, dy, dz);
       }
     });
-    return value_of(sums);
+    const Mean mean = mean_of(sums);
+    return mean.is_final ? mean.value : damped(mean, gradient);
   }
 
-  [[nodiscard]] PSK_HD float value_of(const MeanSums<float>& sums) const {
-    const float outside = (threshold - kReach) * cells;
-    if (!(sums.nearest > 1 - kReach * kReach)) return outside;
+  /// Without the gradient.
+  struct Mean {
+    float x, y, z, inverse_weight, distance;
+    float value;    ///< undamped, finest cells
+    bool is_final;  ///< nothing is left to be damped
+  };
+  [[nodiscard]] PSK_HD Mean mean_of(const MeanSums<float>& sums) const {
+    if (!(sums.nearest > 1 - kReach * kReach)) return {0, 0, 0, 0, 0, (threshold - kReach) * cells, true};
     const float inverse = 1 / sums.weight;
     const float x = sums.x * inverse;
     const float y = sums.y * inverse;
     const float z = sums.z * inverse;
     const float distance = std::sqrt(x * x + y * y + z * z);
-    const float six = 6 * inverse;
-    const Symmetric3 gradient{six * (sums.xx - x * sums.sx),
-                              six * (sums.xy - 0.5F * (x * sums.sy + y * sums.sx)),
-                              six * (sums.xz - 0.5F * (x * sums.sz + z * sums.sx)),
-                              six * (sums.yy - y * sums.sy),
-                              six * (sums.yz - 0.5F * (y * sums.sz + z * sums.sy)),
-                              six * (sums.zz - z * sums.sz)};
-    return (threshold * damping(largest_eigenvalue(gradient)) - distance) * cells;
+    const float value = (threshold - distance) * cells;
+    return {x, y, z, inverse, distance, value, value < kFarOutside};
+  }
+
+  [[nodiscard]] PSK_HD float damped(const Mean& m, const GradientSums<float>& sums) const {
+    const float six = 6 * m.inverse_weight;
+    const Symmetric3 gradient{six * (sums.xx - m.x * sums.x),
+                              six * (sums.xy - 0.5F * (m.x * sums.y + m.y * sums.x)),
+                              six * (sums.xz - 0.5F * (m.x * sums.z + m.z * sums.x)),
+                              six * (sums.yy - m.y * sums.y),
+                              six * (sums.yz - 0.5F * (m.y * sums.z + m.z * sums.y)),
+                              six * (sums.zz - m.z * sums.z)};
+    return (threshold * damping(largest_eigenvalue(gradient)) - m.distance) * cells;
   }
 
   PSK_HD static float damping(float eigenvalue) {
@@ -144,26 +174,68 @@ struct ZhuBridsonField {
     const Float8 y = lower.y + Float8{0, 0, 1, 1, 0, 0, 1, 1} * width;
     const Float8 z = lower.z + Float8{0, 1, 0, 1, 0, 1, 0, 1} * width;
     const float inverse = 1 / radius;
-    const float half = 0.5F * width;
-    const Vec3f centre{lower.x + half, lower.y + half, lower.z + half};
-    // Particles that no corner can see add zeros; they are left out.
-    const float far = (radius + 0.8661F * width) * 1.0001F;
     MeanSums<Float8> sums;
-    const Vec3f upper{lower.x + width, lower.y + width, lower.z + width};
-    for_each_range_near(tree, lower, upper, radius, [&](std::int32_t first, std::int32_t last) {
-      for (std::int32_t j = first; j < last; ++j) {
-        const Vec3f p = positions.data[j];
-        const float cx = p.x - centre.x;
-        const float cy = p.y - centre.y;
-        const float cz = p.z - centre.z;
-        if (cx * cx + cy * cy + cz * cz > far * far) continue;
-        sums.add((p.x - x) * inverse, (p.y - y) * inverse, (p.z - z) * inverse);
-      }
-    });
+    ParticlesAround around(*this, lower, width);
+    around.for_each([&](const Vec3f& p) { sums.add((p.x - x) * inverse, (p.y - y) * inverse, (p.z - z) * inverse); });
+    Mean means[8];
+    bool all_final = true;
+    for (int s = 0; s < 8; ++s) {
+      means[s] = mean_of({sums.weight[s], sums.x[s], sums.y[s], sums.z[s], sums.nearest[s]});
+      out[s] = means[s].value;
+      all_final = all_final && means[s].is_final;
+    }
+    if (all_final) return;
+    GradientSums<Float8> g;
+    around.for_each([&](const Vec3f& p) { g.add((p.x - x) * inverse, (p.y - y) * inverse, (p.z - z) * inverse); });
     for (int s = 0; s < 8; ++s)
-      out[s] = value_of({sums.weight[s], sums.x[s], sums.y[s], sums.z[s], sums.sx[s], sums.sy[s], sums.sz[s],
-                         sums.xx[s], sums.xy[s], sums.xz[s], sums.yy[s], sums.yz[s], sums.zz[s], sums.nearest[s]});
+      if (!means[s].is_final)
+        out[s] = damped(means[s], {g.x[s], g.y[s], g.z[s], g.xx[s], g.xy[s], g.xz[s], g.yy[s], g.yz[s], g.zz[s]});
   }
+
+ private:
+  /// The particles that some corner of a brick sees. Others add zeros; they are left out without a branch.
+  class ParticlesAround {
+   public:
+    PSK_INLINE ParticlesAround(const ZhuBridsonField& field, const Vec3f& lower, float width)
+        : field_(field), lower_(lower), width_(width) {
+      const float half = 0.5F * width;
+      const Vec3f centre{lower.x + half, lower.y + half, lower.z + half};
+      const float far = (field.radius + 0.8661F * width) * 1.0001F;
+      visit_ranges([&](std::int32_t first, std::int32_t last) {
+        for (std::int32_t j = first; j < last; ++j) {
+          const Vec3f p = field.positions.data[j];
+          const float dx = p.x - centre.x;
+          const float dy = p.y - centre.y;
+          const float dz = p.z - centre.z;
+          near_[count_ < kRoom ? count_ : kRoom] = p;
+          count_ += dx * dx + dy * dy + dz * dz <= far * far ? 1 : 0;
+        }
+      });
+    }
+    template <class Visit>
+    PSK_INLINE void for_each(const Visit& visit) const {
+      if (count_ <= kRoom) {
+        for (int i = 0; i < count_; ++i) visit(near_[i]);
+      } else {
+        visit_ranges([&](std::int32_t first, std::int32_t last) {
+          for (std::int32_t j = first; j < last; ++j) visit(field_.positions.data[j]);
+        });
+      }
+    }
+
+   private:
+    template <class Visit>
+    PSK_INLINE void visit_ranges(const Visit& visit) const {
+      for_each_range_near(field_.tree, lower_, {lower_.x + width_, lower_.y + width_, lower_.z + width_}, field_.radius,
+                          visit);
+    }
+    static constexpr int kRoom = 512;
+    const ZhuBridsonField& field_;
+    Vec3f lower_;
+    float width_;
+    int count_ = 0;
+    Vec3f near_[kRoom + 1];  // the last one is for what does not count
+  };
 #endif
 };
 

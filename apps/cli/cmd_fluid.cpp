@@ -266,9 +266,26 @@ void write_report(const FluidArgs& args, const FluidOptions& options, const Devi
   write_file_atomically(args.report, json_text(json));
 }
 
+/// What CLI11 cannot know: which of the options belong together.
+void check_given(const FluidArgs& args) {
+  const auto refuse = [](const std::string& story) { throw Error(ErrorCode::usage, story); };
+  const bool simulates = !args.simulation.scene.empty();
+  if (simulates && !args.input.empty())
+    refuse(args.input + " is not read because of --simulate; leave one of them out");
+  if (simulates && (args.first || args.last)) refuse("--first and --last belong to sequences of files; use --frames");
+  if (simulates) return;
+  if (args.input.empty()) refuse("IN is required: particles of a frame, or --simulate SCENE");
+  if (args.output.empty()) refuse("--output is required");
+  if (args.options.particle_radius == 0) refuse("--particle-radius is required");
+  if (!args.simulation.particles_out.empty()) refuse("--particles-out needs --simulate");
+}
+
 int run(const FluidArgs& args) {
   const Clock::time_point start = Clock::now();
+  check_given(args);
   const FluidOptions options = library_options(args);
+  if (!args.simulation.scene.empty())
+    return run_simulation(args.simulation, {args.output, args.report, args.device, args.threads, args.quiet, options});
   parse_shift(args.shift);
   if (!args.max_memory.empty()) parse_bytes(args.max_memory);
   if (args.at_once < 0 || args.at_once > 4096)

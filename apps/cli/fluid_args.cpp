@@ -7,13 +7,11 @@ namespace {
 
 void define_files(CLI::App& command, FluidArgs& args) {
   const std::string group = "Files";
-  command.add_option("IN", args.input, "particles of a frame, or frame_{}.vtk for a sequence; - reads stdin")
-      ->required();
+  command.add_option("IN", args.input, "particles of a frame, or frame_{}.vtk for a sequence; - reads stdin");
   command
       .add_option("-o,--output", args.output, "mesh: .ply, .obj or .stl, {} where IN has it; - writes PLY to stdout")
       ->type_name("OUT")
-      ->group(group)
-      ->required();
+      ->group(group);
   command.add_option("--first", args.first, "number of the first frame of a sequence")->type_name("N")->group(group);
   command.add_option("--last", args.last, "number of the last frame of a sequence")->type_name("N")->group(group);
   command.add_option("--report", args.report, "write what was done as JSON; also measures the meshes")
@@ -31,8 +29,7 @@ void define_surface(CLI::App& command, FluidArgs& args) {
   const auto value = [&](const char* name, auto& target, const char* type, const char* description) {
     return command.add_option(name, target, description)->type_name(type)->group(group);
   };
-  value("-r,--particle-radius", options.particle_radius, "R", "half of the particles' distance at rest, world units")
-      ->required();
+  value("-r,--particle-radius", options.particle_radius, "R", "half of the particles' distance at rest, world units");
   value("-c,--cube-size", options.cube_size, "C", "width of the finest cells, 0.05 to 4")->capture_default_str();
   value("-l,--smoothing-length", options.smoothing_length, "L", "half of the kernel's radius, 1 to 8")
       ->capture_default_str();
@@ -71,6 +68,7 @@ void define_fluid_options(CLI::App& command, FluidArgs& args) {
   define_files(command, args);
   define_surface(command, args);
   define_finish(command, args);
+  define_simulation(command, args.simulation);
   const std::string group = "Device and limits";
   command.add_option("--device", args.device, "auto, cpu, cuda or cuda:N")
       ->type_name("DEV")
@@ -95,7 +93,7 @@ FluidOptions library_options(const FluidArgs& args) {
   options.normals = !args.no_normals;
   options.attributes = !args.no_attributes;
   options.smoothing_weights = !args.no_weights;
-  validate(options);
+  if (args.simulation.scene.empty() || options.particle_radius != 0) validate(options);
   return options;
 }
 

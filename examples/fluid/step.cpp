@@ -1,5 +1,6 @@
 #include "exec/cpu_primitives.hpp"
 #include "step_impl.hpp"
+#include "totals_impl.hpp"
 
 namespace pointskin::simulation {
 

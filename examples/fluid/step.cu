@@ -1,5 +1,6 @@
 #include "exec/cuda_primitives.cuh"
 #include "step_impl.hpp"
+#include "totals_impl.hpp"
 
 namespace pointskin::simulation {
 

@@ -10,44 +10,60 @@
 
 namespace pointskin::simulation::step {
 
-/// Neighbours of all particles. Neighbour k of particle i is at i across + k along: a GPU reads one k of many particles
-/// at once, a CPU all k of one.
+/// A particle's place with a number of its own: one read of 16 bytes.
+struct alignas(16) Placed {
+  Vec3f place;
+  float value;
+};
+
+/// Neighbours of all particles, by lanes: lane j % kLanes has particle j. Neighbour k of list l, which is
+/// that of lane l % kLanes of particle l / kLanes, is at l across + k along: a GPU reads one k of many lists at once, a
+/// CPU all k of one.
 struct NeighbourLists {
   ArrayView<std::int32_t> list;
   ArrayView<std::uint8_t> count;  // found, at most kMostNeighbours + 1
   std::int64_t across = 0, along = 0;
 
-  [[nodiscard]] PSK_HD int size(std::int64_t i) const {
-    return count[i] < kMostNeighbours ? count[i] : kMostNeighbours;
+  [[nodiscard]] PSK_HD int size(std::int64_t l) const {
+    return count[l] < kMostNeighbours ? count[l] : kMostNeighbours;
   }
-  [[nodiscard]] PSK_HD std::int32_t& at(std::int64_t i, int k) const { return list[i * across + k * along]; }
+  [[nodiscard]] PSK_HD std::int32_t& at(std::int64_t l, int k) const { return list[l * across + k * along]; }
 };
 
-/// Calls visit(j, d, squared, set) for every neighbour j of particle i and every image of one (of i itself, too) within
-/// the radius; `set` says in which walls, 0 the particle itself. d leads from it to i. The order is fixed.
+/// Calls visit(j, value of j, d, squared, set) for every neighbour j of particle i that is in the list of a lane, and
+/// every image of one (of i itself, too, for the first lane) within the radius; `set` says in which walls, 0 the
+/// particle itself. d leads from it to i. The order is fixed.
 template <class Visit>
-PSK_HD void for_each_near(const NeighbourLists& neighbours, ArrayView<const Vec3f> place, const Mirrors& mirrors,
-                          std::int64_t i, const Visit& visit) {
-  const Vec3f p = place[i];
-  const int n = neighbours.size(i);
-  const auto visit_images = [&](std::int32_t j, const Vec3f& other) {
+PSK_HD void for_each_near(const NeighbourLists& neighbours, ArrayView<const Placed> particles, const Mirrors& mirrors,
+                          std::int64_t i, int lane, const Visit& visit) {
+  const Placed own = particles[i];
+  const Vec3f p = own.place;
+  const std::int64_t list = i * kLanes + lane;
+  const int n = neighbours.size(list);
+  const auto visit_images = [&](std::int32_t j, const Placed& other) {
     for (int set = mirrors.near; set != 0; set = (set - 1) & mirrors.near) {
-      const Vec3f d = mirrors.from_image(p, other, set);
+      const Vec3f d = mirrors.from_image(p, other.place, set);
       const float squared = dot(d, d);
-      if (squared < 1) visit(j, d, squared, set);
+      if (squared < 1) visit(j, other.value, d, squared, set);
     }
   };
   for (int k = 0; k < n; ++k) {
-    const std::int32_t j = neighbours.at(i, k);
-    const Vec3f other = place[j];
-    const Vec3f d = p - other;
+    const std::int32_t j = neighbours.at(list, k);
+    const Placed other = particles[j];
+    const Vec3f d = p - other.place;
     const float squared = dot(d, d);
     if (!(squared < 1)) continue;
-    visit(j, d, squared, 0);
+    visit(j, other.value, d, squared, 0);
     if (mirrors.near != 0) visit_images(j, other);
   }
-  if (mirrors.near != 0) visit_images(static_cast<std::int32_t>(i), p);
+  if (mirrors.near != 0 && lane == 0) visit_images(static_cast<std::int32_t>(i), own);
 }
+
+/// A sum over neighbours that is a vector.
+struct VectorSum {
+  Vec3f vector{};
+  PSK_HD VectorSum operator+(const VectorSum& other) const { return {simulation::operator+(vector, other.vector)}; }
+};
 
 /// Unit vector from neighbour to particle and how far apart they are. Particles at one place part along x, by their
 /// ids.

@@ -45,99 +45,144 @@ struct Reorder {
   ArrayView<const std::int32_t> id;
   ArrayView<const float> multiplier;
   float warm_start;
-  ArrayView<Vec3f> start, place;
+  ArrayView<Vec3f> start;
+  ArrayView<Placed> place;  // with what the last substep leaves of the multipliers
   ArrayView<std::int32_t> new_id;
   ArrayView<float> sum;
   PSK_HD void operator()(std::int64_t i) const {
     const std::int32_t from = order[i];
     start[i] = position[from];
-    place[i] = predicted[from];
     new_id[i] = id[from];
     sum[i] = warm_start * multiplier[from];
+    place[i] = {predicted[from], sum[i]};
   }
 };
 
+/// Finds the neighbours of some lanes of a particle.
 struct FindNeighbours {
   fluid::ParticleTreeView tree;
-  ArrayView<const Vec3f> place;
+  ArrayView<const Placed> particles;
   NeighbourLists neighbours;
 
-  PSK_HD void operator()(std::int64_t i) const {
-    const Vec3f p = place[i];
+  PSK_HD void of_lane(std::int64_t i, int lane) const {
+    const std::int64_t list = i * kLanes + lane;
+    const Vec3f p = particles[i].place;
     int found = 0;
-    fluid::for_each_neighbour(tree, tree.cell[i], [&](std::int32_t j) {
-      const Vec3f d = p - place[j];
-      if (j == i || !(dot(d, d) < 1) || found > kMostNeighbours) return;
-      if (found < kMostNeighbours) neighbours.at(i, found) = j;
-      ++found;
+    fluid::for_each_range_around(tree.level, tree.cell[i], [&](std::int32_t first, std::int32_t last) {
+      for (std::int32_t j = first + ((lane - first) & (kLanes - 1)); j < last; j += kLanes)
+        try_one(i, j, p, list, found);
     });
-    neighbours.count[i] = static_cast<std::uint8_t>(found);
+    neighbours.count[list] = static_cast<std::uint8_t>(found);
   }
+  PSK_HD void of_all_lanes(std::int64_t i) const {
+    const Vec3f p = particles[i].place;
+    int found[kLanes] = {};
+    fluid::for_each_range_around(tree.level, tree.cell[i], [&](std::int32_t first, std::int32_t last) {
+      for (std::int32_t j = first; j < last; ++j) {
+        const int lane = j % kLanes;
+        try_one(i, j, p, i * kLanes + lane, found[lane]);
+      }
+    });
+    for (int lane = 0; lane < kLanes; ++lane)
+      neighbours.count[i * kLanes + lane] = static_cast<std::uint8_t>(found[lane]);
+  }
+  PSK_HD void try_one(std::int64_t i, std::int32_t j, const Vec3f& p, std::int64_t list, int& found) const {
+    const Vec3f d = p - particles[j].place;
+    if (j == i || !(dot(d, d) < 1) || found > kMostNeighbours) return;
+    if (found < kMostNeighbours) neighbours.at(list, found) = j;
+    ++found;
+  }
+};
+/// The same lists, by a thread each or by one a particle.
+struct FindNeighboursByLanes {
+  FindNeighbours find;
+  PSK_HD void operator()(std::int64_t list) const { find.of_lane(list / kLanes, static_cast<int>(list % kLanes)); }
+};
+struct FindNeighboursAtOnce {
+  FindNeighbours find;
+  PSK_HD void operator()(std::int64_t i) const { find.of_all_lanes(i); }
 };
 
 /// The multiplier of every particle's constraint, density <= rest density:
 /// lambda_i = - C_i / (sum_k |grad_k C_i|^2 + epsilon), what solids cover counting as one neighbour.
 struct FindMultipliers {
-  StepSettings settings;
-  ArrayView<const Vec3f> place;
-  NeighbourLists neighbours;
-  ArrayView<float> sum;   // of all iterations and the warm start, <= 0
-  ArrayView<float> step;  // what is added to it
-
-  PSK_HD void operator()(std::int64_t i) const {
-    const Vec3f p = place[i];
-    float weights = 1;
-    float squares = 0;
+  static constexpr int kLanes = simulation::kLanes;
+  struct Sum {
+    float weights = 0, squares = 0;
     Vec3f gradient{};
-    for_each_near(neighbours, place, settings.solids.mirrors(p), i,
-                  [&](std::int32_t j, const Vec3f& d, float squared, int /*set*/) {
+    PSK_HD Sum operator+(const Sum& o) const {
+      return {weights + o.weights, squares + o.squares, simulation::operator+(gradient, o.gradient)};
+    }
+  };
+
+  StepSettings settings;
+  ArrayView<const Placed> particles;
+  NeighbourLists neighbours;
+  ArrayView<float> sum;    // of all iterations and the warm start, <= 0
+  ArrayView<Placed> step;  // the places with what is added to it
+
+  [[nodiscard]] PSK_HD Sum part(std::int64_t i, int lane) const {
+    Sum out;
+    for_each_near(neighbours, particles, settings.solids.mirrors(particles[i].place), i, lane,
+                  [&](std::int32_t j, float /*value*/, const Vec3f& d, float squared, int /*set*/) {
                     const Apart to = apart(d, squared, i < j);
                     const float t = 1 - to.distance;
                     const float slope = t * t;
-                    weights += weight(squared);
-                    squares += slope * slope;
-                    gradient = gradient - slope * to.direction;
+                    out.weights += weight(squared);
+                    out.squares += slope * slope;
+                    out.gradient = out.gradient - slope * to.direction;
                   });
+    return out;
+  }
+
+  PSK_HD void finish(std::int64_t i, const Sum& near) const {
+    const Vec3f p = particles[i].place;
     const KernelConstants& kernel = settings.kernel;
     const Cover cover = settings.solids.cover(p, kernel);
-    const float compression = weights * kernel.per_weight + cover.share - 1;
-    gradient = kernel.slope * gradient + cover.gradient;
+    const float compression = (1 + near.weights) * kernel.per_weight + cover.share - 1;
+    const Vec3f gradient = kernel.slope * near.gradient + cover.gradient;
     const float scale =
-        kernel.slope * kernel.slope * squares + dot(gradient, gradient) + dot(cover.gradient, cover.gradient);
+        kernel.slope * kernel.slope * near.squares + dot(gradient, gradient) + dot(cover.gradient, cover.gradient);
     const float before = sum[i];
     const float after = before - compression / (scale + settings.relaxation);
     sum[i] = after < 0 ? after : 0.0F;
-    step[i] = sum[i] - before;
+    step[i] = {p, sum[i] - before};
   }
 };
 
 /// Moves every particle by its own and its neighbours' constraints; solids press with the particle's own multiplier, as
 /// a mirror image would.
 struct Correct {
-  StepSettings settings;
-  ArrayView<const Vec3f> place;
-  NeighbourLists neighbours;
-  ArrayView<const float> multiplier;
-  ArrayView<Vec3f> corrected;
+  static constexpr int kLanes = simulation::kLanes;
+  using Sum = VectorSum;
 
-  PSK_HD void operator()(std::int64_t i) const {
-    constexpr float kLongest = 0.25F;  // of one correction
-    const Vec3f p = place[i];
-    const float own = multiplier[i];
+  StepSettings settings;
+  ArrayView<const Placed> particles;  // with their multipliers
+  NeighbourLists neighbours;
+  ArrayView<Placed> corrected;
+
+  [[nodiscard]] PSK_HD Sum part(std::int64_t i, int lane) const {
+    const Placed own = particles[i];
     Vec3f sum{};
-    for_each_near(neighbours, place, settings.solids.mirrors(p), i,
-                  [&](std::int32_t j, const Vec3f& d, float squared, int /*set*/) {
+    for_each_near(neighbours, particles, settings.solids.mirrors(own.place), i, lane,
+                  [&](std::int32_t j, float other, const Vec3f& d, float squared, int /*set*/) {
                     const Apart to = apart(d, squared, i < j);
                     const float t = 1 - to.distance;
                     const float w = weight(squared) * settings.kernel.tensile_inverse;
                     const float tensile = settings.artificial_pressure * (w * w) * (w * w);
-                    sum = sum - (own + multiplier[j] - tensile) * (t * t) * to.direction;
+                    sum = sum - (own.value + other - tensile) * (t * t) * to.direction;
                   });
-    Vec3f move = settings.kernel.slope * sum;
-    if (own != 0) move = move + 2 * own * settings.solids.cover(p, settings.kernel).gradient;
+    return {sum};
+  }
+
+  PSK_HD void finish(std::int64_t i, const Sum& sum) const {
+    constexpr float kLongest = 0.25F;  // of one correction
+    const Placed own = particles[i];
+    Vec3f move = settings.kernel.slope * sum.vector;
+    if (own.value != 0) move = move + 2 * own.value * settings.solids.cover(own.place, settings.kernel).gradient;
     const float squared = dot(move, move);
     if (squared > kLongest * kLongest) move = kLongest / std::sqrt(squared) * move;
-    corrected[i] = settings.solids.confined(p + move);
+    corrected[i] = {settings.solids.confined(own.place + move), 0};
   }
 };
 
@@ -151,37 +196,42 @@ void substep(Exec& ex, Particles& particles, const StepSettings& settings, const
            step::Predict{settings, particles.position.cview(), particles.velocity.cview(), predicted.view()});
   const fluid::ParticleTree tree = fluid::build_particle_tree(ex, predicted.cview(), grid);
   auto start = exec::make_buffer<Vec3f>(ex, n);
-  auto place = exec::make_buffer<Vec3f>(ex, n);
+  auto now = exec::make_buffer<step::Placed>(ex, n);
+  auto next = exec::make_buffer<step::Placed>(ex, n);
   auto id = exec::make_buffer<std::int32_t>(ex, n);
   auto sum = exec::make_buffer<float>(ex, n);
   for_each(ex, "simulation.reorder", n,
            step::Reorder{tree.order.cview(), particles.position.cview(), predicted.cview(), particles.id.cview(),
-                         particles.multiplier.cview(), settings.warm_start, start.view(), place.view(), id.view(),
+                         particles.multiplier.cview(), settings.warm_start, start.view(), now.view(), id.view(),
                          sum.view()});
   particles.id.swap(id);
   particles.multiplier.swap(sum);
 
-  auto list = exec::make_buffer<std::int32_t>(ex, n * kMostNeighbours);
+  const std::int64_t lists = n * kLanes;
+  auto list = exec::make_buffer<std::int32_t>(ex, lists * kMostNeighbours);
   const step::NeighbourLists neighbours{list.view(), particles.neighbours.view(),
-                                        Exec::kManyThreads ? 1 : kMostNeighbours, Exec::kManyThreads ? n : 1};
-  for_each(ex, "simulation.neighbours", n, step::FindNeighbours{tree.view(), place.cview(), neighbours});
+                                        Exec::kManyThreads ? 1 : kMostNeighbours, Exec::kManyThreads ? lists : 1};
+  const step::FindNeighbours find{tree.view(), now.cview(), neighbours};
+  if constexpr (Exec::kManyThreads)
+    for_each(ex, "simulation.neighbours", lists, step::FindNeighboursByLanes{find});
+  else
+    for_each(ex, "simulation.neighbours", n, step::FindNeighboursAtOnce{find});
 
-  const auto correct = [&](ArrayView<const float> multiplier) {
-    for_each(ex, "simulation.correct", n,
-             step::Correct{settings, place.cview(), neighbours, multiplier, predicted.view()});
-    place.swap(predicted);
+  const auto correct = [&] {
+    for_each_by_lanes(ex, "simulation.correct", n, step::Correct{settings, now.cview(), neighbours, next.view()});
+    now.swap(next);
   };
-  if (settings.warm_start > 0) correct(particles.multiplier.cview());
-  exec::Buffer<float> change = std::move(sum);
+  if (settings.warm_start > 0) correct();
   for (int i = 0; i < settings.iterations; ++i) {
-    for_each(ex, "simulation.multipliers", n,
-             step::FindMultipliers{settings, place.cview(), neighbours, particles.multiplier.view(), change.view()});
-    correct(change.cview());
+    for_each_by_lanes(
+        ex, "simulation.multipliers", n,
+        step::FindMultipliers{settings, now.cview(), neighbours, particles.multiplier.view(), next.view()});
+    now.swap(next);
+    correct();
   }
 
   const ArrayView<Vec3f> velocity = predicted.view();  // its places are no longer needed
-  step::update_velocities(ex, particles, settings, neighbours, {start.cview(), place.cview()}, velocity);
-  particles.position.swap(place);
+  step::update_velocities(ex, particles, settings, neighbours, start.cview(), now.cview(), velocity);
 }
 
 }  // namespace pointskin::simulation

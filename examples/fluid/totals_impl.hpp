@@ -38,14 +38,12 @@ struct TotalsOfParticle {
     const float compression = density[i] > 1 ? density[i] - 1 : 0.0F;
     const bool inside = p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x <= tank.x && p.y <= tank.y && p.z <= tank.z;
     const bool finite = squared < 1e30F;  // false for NaN
-    return {compression,
-            squared,
-            p.y,
-            {p, p},
-            compression,
-            squared,
-            neighbours[i] > kMostNeighbours ? 1 : 0,
-            inside && finite ? 0 : 1};
+    return {compression, squared, p.y, {p, p}, compression, squared, is_crowded(i) ? 1 : 0, inside && finite ? 0 : 1};
+  }
+  [[nodiscard]] PSK_HD bool is_crowded(std::int64_t i) const {
+    bool any = false;
+    for (int lane = 0; lane < kLanes; ++lane) any = any || neighbours[i * kLanes + lane] > kMostNeighbours;
+    return any;
   }
 };
 

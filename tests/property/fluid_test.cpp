@@ -47,7 +47,7 @@ class FluidKernels : public ::testing::TestWithParam<FluidKernel> {
     return result;
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, FluidKernels, ::testing::Values(FluidKernel::isotropic));
+INSTANTIATE_TEST_SUITE_P(All, FluidKernels, ::testing::Values(FluidKernel::isotropic, FluidKernel::anisotropic));
 
 TEST_P(FluidKernels, AreWatertightWhateverTheParticles) {
   for (const NamedParticles& frame : particle_frames(kSeed))

@@ -1,6 +1,6 @@
 // pointskin fluid: single frames, sequences, the report, and what is wrong with them.
-#include <cstdint>
-#include <cstdio>
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -42,8 +42,11 @@ class FluidCommand : public testing::Test {
     write_file(folder_ / "frame_x.vtk", "not a frame");
   }
 
+  /// With a radius and a cube size of 1 unless others are given.
   Result fluid(const std::string& input, const Args& more) {
-    Args args = {"fluid", input, "-r", "1", "-c", "1", "-q"};
+    Args args = {"fluid", input, "-q"};
+    for (const char* option : {"-r", "-c"})
+      if (std::find(more.begin(), more.end(), option) == more.end()) args.insert(args.end(), {option, "1"});
     args.insert(args.end(), more.begin(), more.end());
     return pointskin_run(args);
   }

@@ -37,8 +37,8 @@ void define_surface(CLI::App& command, FluidArgs& args) {
       ->check(CLI::IsMember({"isotropic", "anisotropic"}))
       ->capture_default_str();
   value("-t,--surface-threshold", options.surface_threshold, "T",
-        "isotropic: distance from the particles' mean, 0 to 2 [1]; anisotropic: share of the density at rest, 0 to 1 "
-        "[0.4]");
+        "isotropic: distance from the mean of particles, 0 to 2 [1];\n"
+        "anisotropic: share of the density at rest, 0 to 1 [0.2]");
   command.add_flag("--no-attributes", args.no_attributes, "do not carry properties of the particles to the vertices")
       ->group(group);
   command.add_flag("--no-normals", args.no_normals, "leave vertex normals out of the mesh")->group(group);

@@ -85,7 +85,8 @@ simulation::SimulationOptions simulation_options(const SimulateArgs& args) {
 Cloud cloud_of(simulation::ParticleStates particles) {
   Cloud cloud;
   cloud.positions = std::move(particles.positions);
-  constexpr std::pair<const char*, float Vec3f::*> kAxes[3] = {{"vx", &Vec3f::x}, {"vy", &Vec3f::y}, {"vz", &Vec3f::z}};
+  constexpr std::pair<const char*, float Vec3f::*> kAxes[3] = {
+      {"velocity_x", &Vec3f::x}, {"velocity_y", &Vec3f::y}, {"velocity_z", &Vec3f::z}};
   for (const auto& [name, axis] : kAxes) {
     std::vector<float> values;
     values.reserve(particles.velocities.size());
@@ -224,7 +225,7 @@ void define_simulation(CLI::App& command, SimulateArgs& args) {
   value("--iterations", args.iterations, "N", "of the density constraint a substep, 1 to 100");
   value("--viscosity", args.viscosity, "C", "of XSPH, no unit, 0 to 1");
   value("--vorticity", args.vorticity, "E", "of vorticity confinement, no unit, 0: none");
-  command.add_option("--particles-out", args.particles_out, "particles of every frame: .ply with vx, vy, vz")
+  command.add_option("--particles-out", args.particles_out, "particles of every frame: .ply with velocity_x, _y, _z")
       ->type_name("OUT")
       ->group(group);
 }

@@ -78,7 +78,7 @@ class EngineOn final : public Engine {
     fluid::Particles input{world.positions.cview()};
     input.bounds = Bounds{radius_world_ * box.lower, radius_world_ * box.upper};
     input.canonical = true;
-    constexpr const char* kNames[3] = {"vx", "vy", "vz"};
+    constexpr const char* kNames[3] = {"velocity_x", "velocity_y", "velocity_z"};
     if (options.attributes)
       for (std::size_t a = 0; a < 3; ++a)
         input.values.push_back({kNames[a], AttributeType::float32, world.velocities[a].cview()});

@@ -79,9 +79,9 @@ class Simulation {
   [[nodiscard]] ParticleStates particles() const;
 
   /// The surface of the water as FluidSurfacer makes it, of the particles where they are on the device; with
-  /// `options.attributes` vertices have the velocity as vx, vy and vz. A particle_radius of 0 means particle_radius().
-  /// The same bytes whenever the steps were the same; sums run in the simulation's order, so last bits differ from
-  /// those of FluidSurfacer.
+  /// `options.attributes` vertices have the velocity as velocity_x, velocity_y and velocity_z. A particle_radius of 0
+  /// means particle_radius(). The same bytes whenever the steps were the same; sums run in the simulation's order, so
+  /// last bits differ from those of FluidSurfacer.
   /// @throws Error as FluidSurfacer::surface
   void surface(const FluidOptions& options, Mesh& mesh);
   [[nodiscard]] const FluidReport& surface_report() const;

@@ -26,7 +26,7 @@ struct FluidOptions {
   double smoothing_length = 2;  ///< in [1, 8]; the kernel reaches twice as far
   double cube_size = 0.5;       ///< width of the finest cells, in [0.05, 4]
   /// 0: the default, which keeps the volume. isotropic: distance from the mean of the particles, in particle radii,
-  /// in (0, 2], default 1. anisotropic: share of the density at rest, in (0, 1], default 0.4
+  /// in (0, 2], default 1. anisotropic: share of the density at rest, in (0, 1], default 0.2
   double surface_threshold = 0;
   int smoothing_iterations = 0;   ///< of weighted Laplacian smoothing, in [0, 1000]
   bool smoothing_weights = true;  ///< true: single particles and thin sheets are smoothed less

@@ -294,6 +294,28 @@ struct MarkCrossed {
   }
 };
 
+/// The cells in which particles lie, if all corners are outside: a drop may lie between them.
+struct MarkDrops {
+  octree::LevelView coarse;
+  const float* values;
+  ParticleTreeView tree;
+  ArrayView<const std::uint8_t> deep;  // empty: none is
+  ArrayView<const Vec3f> centres;
+  NodeBits crossed;
+  PSK_HD void operator()(std::int64_t i) const {
+    if (!deep.empty() && deep[tree.cell[i]] != 0) return;
+    const Vec3f p = centres[i];
+    const std::uint64_t key = octree::cell_key(octree::point_key(p.x, p.y, p.z), coarse.depth);
+    const auto node =
+        static_cast<std::int32_t>(octree::build::find_node({coarse.brick_key, std::int64_t{coarse.bricks}}, key));
+    for (int s = 0; s < 8; ++s) {
+      const std::int32_t corner = coarse.neighbour(node, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+      if (corner < 0 || values[corner] >= 0) return;
+    }
+    crossed.insert(node);
+  }
+};
+
 /// Bricks that hold cells of the band, or corners of them.
 struct IsNeeded {
   octree::LevelView coarse;
@@ -408,7 +430,8 @@ FineBricks list_fine(Exec& ex, const SparseLevel& coarse, const NodeBits& crosse
 
 /// The band, or false if the surface leaves the coarse level.
 template <exec::Space Exec, class Field>
-bool grow_band(Exec& ex, const Field& field, const SparseLevel& coarse, float doubt, Band& band) {
+bool grow_band(Exec& ex, const Field& field, const ReachOfParticle& particles, const SparseLevel& coarse, float doubt,
+               Band& band) {
   constexpr const char* kLabel = "fluid.crossed";
   const std::int64_t nodes = 8 * coarse.bricks();
   const std::int64_t words = (nodes + 31) / 32;
@@ -418,6 +441,8 @@ bool grow_band(Exec& ex, const Field& field, const SparseLevel& coarse, float do
   const NodeBits missing{bits.data() + words};
   std::uint32_t* const status = bits.data() + 2 * words;
   for_each(ex, kLabel, nodes, MarkCrossed{coarse.view(), coarse.values.data(), doubt, crossed});
+  for_each(ex, kLabel, particles.centres.size,
+           MarkDrops{coarse.view(), coarse.values.data(), particles.tree, particles.deep, particles.centres, crossed});
   FineBricks known;
   exec::Buffer<float> known_values;
   for (band.rounds = 0;; ++band.rounds) {
@@ -462,7 +487,7 @@ Band find_band(Exec& ex, const Field& field, const ParticleTreeView& tree, Array
     band::evaluate(ex, "fluid.values", field, coarse, nullptr, {});
     Band band;
     band.coarse_corners = 8 * coarse.bricks();
-    if (band::grow_band(ex, field, coarse, options.doubt, band)) return band;
+    if (band::grow_band(ex, field, reach_of, coarse, options.doubt, band)) return band;
     if (deep.empty()) throw Error(ErrorCode::internal, "the surface lies beyond the reach of all particles");
     deep.reset();  // it was not as deep as it looked
   }

@@ -46,22 +46,32 @@ struct FansView {
   }
 };
 
+/// The vertex after the one that each entry of the fans belongs to. In a closed mesh each neighbour follows once.
+struct FindNext {
+  ArrayView<const std::int32_t> corners;
+  ArrayView<const Triangle> triangles;
+  ArrayView<std::int32_t> next;
+  PSK_HD void operator()(std::int64_t i) const {
+    const std::int32_t corner = corners[i] % 3;
+    next[i] = triangles[corners[i] / 3].data()[corner == 2 ? 0 : corner + 1];
+  }
+};
+
 struct SmoothVertex {
-  FansView fans;
+  ArrayView<const std::int32_t> begin, next;
   ArrayView<const float> weights;
   ArrayView<const Vec3f> in;
   ArrayView<Vec3f> out;
   PSK_HD void operator()(std::int64_t v) const {
     const Vec3f p = in[v];
     Vec3f sum{};
-    int count = 0;
-    fans.around(v, [&](const Triangle& t, int corner) {  // in a closed mesh each neighbour follows v once
-      const Vec3f next = in[t.data()[corner == 2 ? 0 : corner + 1]];
-      sum.x += next.x - p.x;
-      sum.y += next.y - p.y;
-      sum.z += next.z - p.z;
-      ++count;
-    });
+    for (std::int32_t i = begin[v]; i < begin[v + 1]; ++i) {
+      const Vec3f other = in[next[i]];
+      sum.x += other.x - p.x;
+      sum.y += other.y - p.y;
+      sum.z += other.z - p.z;
+    }
+    const std::int32_t count = begin[v + 1] - begin[v];
     const float step = count == 0 ? 0.0F : (weights.empty() ? 1.0F : weights[v]) / static_cast<float>(count);
     out[v] = {p.x + step * sum.x, p.y + step * sum.y, p.z + step * sum.z};
   }
@@ -196,12 +206,13 @@ Fans find_fans(Exec& ex, ArrayView<const Triangle> triangles, std::int64_t verti
 template <exec::Space Exec>
 void smooth(Exec& ex, const Fans& fans, ArrayView<const Triangle> triangles, ArrayView<const float> weights,
             int iterations, exec::Buffer<Vec3f>& positions) {
-  auto next = exec::make_buffer<Vec3f>(ex, positions.size());
+  auto next = exec::make_buffer<std::int32_t>(ex, fans.corners.size());
+  for_each(ex, "fluid.smooth", next.size(), mesh_graph::FindNext{fans.corners.cview(), triangles, next.view()});
+  auto moved = exec::make_buffer<Vec3f>(ex, positions.size());
   for (int i = 0; i < iterations; ++i) {
     for_each(ex, "fluid.smooth", positions.size(),
-             mesh_graph::SmoothVertex{
-                 {fans.begin.cview(), fans.corners.cview(), triangles}, weights, positions.cview(), next.view()});
-    positions.swap(next);
+             mesh_graph::SmoothVertex{fans.begin.cview(), next.cview(), weights, positions.cview(), moved.view()});
+    positions.swap(moved);
   }
 }
 

@@ -40,7 +40,7 @@ FluidFrame fit_frame(const Bounds& box, const FluidOptions& options) {
 
 double threshold_of(const FluidOptions& options) {
   if (options.surface_threshold != 0) return options.surface_threshold;
-  return options.kernel == FluidKernel::anisotropic ? 0.4 : 1.0;
+  return options.kernel == FluidKernel::anisotropic ? 0.2 : 1.0;
 }
 
 template FluidSurface make_surface(exec::Cpu&, const Particles&, const FluidOptions&, FluidReport&);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "exec/algorithms.hpp"
+#include "fluid/anisotropic_impl.hpp"
 #include "fluid/band_impl.hpp"
 #include "fluid/mesh_graph_impl.hpp"
 #include "fluid/particle_tree_impl.hpp"
@@ -133,6 +134,43 @@ Band find_isotropic_band(Exec& ex, const SortedParticles& sorted, const FluidFra
   return find_band(ex, field, field.tree, field.positions, band);
 }
 
+inline AnisotropicField anisotropic_field(const Ellipsoids& ellipsoids, const FluidFrame& frame,
+                                          const FluidOptions& options) {
+  return {ellipsoids.tree.view(),
+          ellipsoids.centres.cview(),
+          ellipsoids.ellipsoids.cview(),
+          static_cast<float>(frame.kernel_radius / frame.cube.size),
+          static_cast<float>(threshold_of(options)),
+          static_cast<float>(2 / options.cube_size)};
+}
+
+template <exec::Space Exec>
+Ellipsoids ellipsoids_of(Exec& ex, const SortedParticles& sorted, const FluidFrame& frame,
+                         const FluidOptions& options) {
+  return find_ellipsoids(ex, sorted.tree, sorted.positions.cview(),
+                         static_cast<float>(frame.kernel_radius / frame.cube.size),
+                         std::pow(1 / options.smoothing_length, 3));
+}
+
+template <exec::Space Exec>
+Band find_anisotropic_band(Exec& ex, const AnisotropicField& field, const FluidFrame& frame,
+                           const FluidOptions& options) {
+  BandOptions band;
+  band.depth = frame.depth;
+  // Where there is nothing, the value is -threshold: that is no doubt.
+  band.doubt = std::min(0.75F, 0.8F * field.threshold * field.cells);
+  band.particles_per_cell = std::pow(options.smoothing_length, 3);
+  return find_band(ex, field, field.tree, field.positions, band);
+}
+
+/// The band of the field that the options ask for.
+template <exec::Space Exec>
+Band find_band_of(Exec& ex, const SortedParticles& sorted, const FluidFrame& frame, const FluidOptions& options) {
+  if (options.kernel == FluidKernel::isotropic) return find_isotropic_band(ex, sorted, frame, options);
+  const Ellipsoids ellipsoids = ellipsoids_of(ex, sorted, frame, options);
+  return find_anisotropic_band(ex, anisotropic_field(ellipsoids, frame, options), frame, options);
+}
+
 /// Averages all values, and the crowding where it is asked for, at the vertices.
 template <exec::Space Exec>
 void fill_values(Exec& ex, const ParticlesView& view, const SortedParticles& sorted, const Particles& particles,
@@ -210,7 +248,7 @@ FluidSurface make_surface(Exec& ex, const Particles& particles, const FluidOptio
   make::SortedParticles sorted = make::sort_particles(ex, particles, frame);
   clock.lap(report.particles_ms);
 
-  Band band = make::find_isotropic_band(ex, sorted, frame, options);
+  Band band = make::find_band_of(ex, sorted, frame, options);
   report.particles = particles.positions.size;
   report.depth = frame.depth;
   report.coarse_corners = band.coarse_corners;

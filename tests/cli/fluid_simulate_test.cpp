@@ -58,7 +58,7 @@ TEST_F(FluidSimulate, WritesMeshesAndParticlesOfEveryFrame) {
     const Cloud particles = read_cloud(folder_ / ("p_" + number + ".ply"));
     EXPECT_EQ(particles.size(), 1000);
     ASSERT_EQ(particles.attributes.size(), 3U);
-    EXPECT_EQ(particles.attributes[1].name, "vy");
+    EXPECT_EQ(particles.attributes[1].name, "velocity_y");
     if (frame == 0) {
       EXPECT_EQ(particles.attributes[1].values, std::vector<float>(1000, 0.0F));
     }

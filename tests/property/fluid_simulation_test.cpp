@@ -289,7 +289,7 @@ TEST(Surface, OfASimulationIsClosedAndCarriesVelocities) {
   const double water = 3000 * std::pow(double{simulation.scene().spacing}, 3);
   EXPECT_NEAR(report.volume, water, 0.1 * water);
   ASSERT_EQ(mesh.attributes.size(), 3U);
-  EXPECT_EQ(mesh.attributes[1].name, "vy");
+  EXPECT_EQ(mesh.attributes[1].name, "velocity_y");
   const auto lowest = *std::min_element(mesh.attributes[1].values.begin(), mesh.attributes[1].values.end());
   EXPECT_LT(lowest, -0.5F);
   EXPECT_GE(lowest, -1.2F * static_cast<float>(simulation.report().max_speed));

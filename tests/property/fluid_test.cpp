@@ -47,7 +47,7 @@ class FluidKernels : public ::testing::TestWithParam<FluidKernel> {
     return result;
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, FluidKernels, ::testing::Values(FluidKernel::isotropic));
+INSTANTIATE_TEST_SUITE_P(All, FluidKernels, ::testing::Values(FluidKernel::isotropic, FluidKernel::anisotropic));
 
 TEST_P(FluidKernels, AreWatertightWhateverTheParticles) {
   for (const NamedParticles& frame : particle_frames(kSeed))
@@ -68,11 +68,12 @@ TEST_P(FluidKernels, AreWatertightWhateverTheParticles) {
       }
 }
 
-TEST_P(FluidKernels, KeepTheVolumeOfABallWithinFivePercent) {
+TEST_P(FluidKernels, KeepTheVolumeOfABall) {
   const Cloud ball = ball_of_particles(0.01, 0.25, 0.2, kSeed);
   const double rest = static_cast<double>(ball.size()) * std::pow(0.02, 3);
   const MeshReport report = expect_watertight(surface_of(ball, options(0.01)));
-  EXPECT_NEAR(report.volume / rest, 1, 0.05);
+  // The centres of ellipsoids move inwards, farther where the surface is curved.
+  EXPECT_NEAR(report.volume / rest, 1, GetParam() == FluidKernel::isotropic ? 0.05 : 0.07);
   EXPECT_EQ(report.components, 1);
   EXPECT_EQ(report.euler, 2);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -34,7 +35,8 @@ Frame prepare(exec::Cpu& ex, const Cloud& cloud, const FluidOptions& options) {
 }
 
 /// Edges between neighbouring corners of a grid over the whole cube whose ends have different signs.
-std::int64_t crossed_edges_of_grid(exec::Cpu& ex, const fluid::ZhuBridsonField& field, int depth) {
+template <class Field>
+std::int64_t crossed_edges_of_grid(exec::Cpu& ex, const Field& field, int depth) {
   const std::int64_t side = (std::int64_t{1} << depth) + 1;
   std::vector<std::uint8_t> inside(static_cast<std::size_t>(side * side * side));
   const float width = 1.0F / static_cast<float>(1 << depth);
@@ -73,6 +75,52 @@ TEST(FluidBand, LosesNoCrossingOfADenseGrid) {
     }
 }
 
+TEST(FluidBand, LosesNoCrossingOfEllipsoids) {
+  exec::Cpu ex(2);
+  for (const NamedParticles& frame : particle_frames(kSeed))
+    for (const double cube_size : {0.6, 1.0, 1.7}) {
+      SCOPED_TRACE(::testing::Message() << frame.name << ", cube size " << cube_size);
+      FluidOptions options;
+      options.particle_radius = 1;
+      options.cube_size = cube_size;
+      options.kernel = FluidKernel::anisotropic;
+      const Frame f = prepare(ex, frame.cloud, options);
+      if (f.frame.depth > 6) continue;
+      const fluid::Ellipsoids ellipsoids = fluid::make::ellipsoids_of(ex, f.sorted, f.frame, options);
+      const fluid::AnisotropicField field = fluid::make::anisotropic_field(ellipsoids, f.frame, options);
+      const fluid::Band band = fluid::make::find_anisotropic_band(ex, field, f.frame, options);
+      const surface::Surface mesh = surface::extract_surface(ex, band.field(), {.curvature = 0, .normals = false});
+      EXPECT_EQ(mesh.positions.size(), crossed_edges_of_grid(ex, field, f.frame.depth));
+      for (std::int64_t i = 0; i < ellipsoids.centres.size(); ++i) {
+        const fluid::Ellipsoid& e = ellipsoids.ellipsoids.data()[i];
+        ASSERT_TRUE(e.xx >= 0.99F && e.yy >= 0.99F && e.zz >= 0.99F) << "reaches beyond the kernel's radius";
+      }
+    }
+}
+
+TEST(Eigenvalues, ComeWithOrthonormalVectorsThatGiveTheMatrixBack) {
+  Random random(kSeed);
+  for (int trial = 0; trial < 500; ++trial) {
+    double m[3][3];
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b <= a; ++b) m[a][b] = m[b][a] = trial % 3 == 0 && a != b ? 0 : random.in(-1, 1);
+    double copy[3][3];
+    std::copy(&m[0][0], &m[0][0] + 9, &copy[0][0]);
+    const fluid::Eigen3 e = fluid::eigen_of(copy);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        double back = 0;
+        double dot = 0;
+        for (int k = 0; k < 3; ++k) {
+          back += e.values[k] * e.vectors[a][k] * e.vectors[b][k];
+          dot += e.vectors[k][a] * e.vectors[k][b];
+        }
+        ASSERT_NEAR(back, m[a][b], 1e-12);
+        ASSERT_NEAR(dot, a == b ? 1 : 0, 1e-12);
+      }
+  }
+}
+
 TEST(FluidBand, HoldsTheFieldsValuesBitForBit) {
   exec::Cpu ex(2);
   for (const NamedParticles& frame : particle_frames(kSeed)) {
@@ -89,6 +137,18 @@ TEST(FluidBand, HoldsTheFieldsValuesBitForBit) {
       ASSERT_EQ(band.fine.values.data()[n],
                 f.field.at({static_cast<float>(c.x) * width, static_cast<float>(c.y) * width,
                             static_cast<float>(c.z) * width}))
+          << n;
+    }
+    const fluid::Ellipsoids ellipsoids = fluid::make::ellipsoids_of(ex, f.sorted, f.frame, options);
+    options.kernel = FluidKernel::anisotropic;
+    const fluid::AnisotropicField field = fluid::make::anisotropic_field(ellipsoids, f.frame, options);
+    const fluid::Band other = fluid::make::find_anisotropic_band(ex, field, f.frame, options);
+    const octree::LevelView fine = other.fine.view();
+    for (std::int32_t n = 0; n < fine.nodes(); ++n) {
+      const octree::Coordinates c = octree::decode(fine.node_key(n));
+      const float width = 1.0F / static_cast<float>(1 << fine.depth);
+      ASSERT_EQ(other.fine.values.data()[n], field.at({static_cast<float>(c.x) * width, static_cast<float>(c.y) * width,
+                                                       static_cast<float>(c.z) * width}))
           << n;
     }
   }

@@ -114,7 +114,8 @@ class Frames {
     }
   }
 
-  [[nodiscard]] Json take_json() { return std::move(json_); }
+  /// The frames' lines of the report, joined by commas.
+  [[nodiscard]] const std::string& lines() const { return lines_; }
   [[nodiscard]] const std::vector<double>& step_ms() const { return step_ms_; }
   [[nodiscard]] const std::vector<double>& surface_ms() const { return surface_ms_; }
   [[nodiscard]] std::int64_t triangles() const { return static_cast<std::int64_t>(mesh_.triangles.size()); }
@@ -136,8 +137,11 @@ class Frames {
     if (!output_.output.empty()) write_mesh(frame_file(output_.output, frame, args_.frames), mesh_, output_.threads);
     if (!args_.particles_out.empty())
       write_cloud(frame_file(args_.particles_out, frame, args_.frames), cloud_of(fluid_.particles()), output_.threads);
-    if (!output_.report.empty()) json_.push_back(describe(ms_since(writing)));
+    if (!output_.report.empty()) add_line(describe(ms_since(writing)));
   }
+
+  /// As text: many frames would make a tree of values that outgrows the simulation.
+  void add_line(const Json& json) { lines_ += (lines_.empty() ? "\n    " : ",\n    ") + json.dump(); }
 
   [[nodiscard]] Json describe(double write_ms) const {
     const simulation::SimulationReport& r = fluid_.report();
@@ -169,7 +173,7 @@ class Frames {
   simulation::Simulation& fluid_;
   Mesh mesh_;
   std::vector<double> step_ms_, surface_ms_;
-  Json json_ = Json::array();
+  std::string lines_;
 };
 
 Json options_json(const SimulateArgs& args, const SimulateOutput& output) {
@@ -190,7 +194,7 @@ Json options_json(const SimulateArgs& args, const SimulateOutput& output) {
 }
 
 void write_report(const SimulateArgs& args, const SimulateOutput& output, const simulation::Simulation& fluid,
-                  Frames& frames) {
+                  const Frames& frames) {
   const Device& device = fluid.device();
   const simulation::Scene& scene = fluid.scene();
   Json json = {{"version", 1}, {"command", "fluid --simulate"}};
@@ -200,11 +204,15 @@ void write_report(const SimulateArgs& args, const SimulateOutput& output, const 
                    {"spacing", scene.spacing},
                    {"tank", {scene.tank.x, scene.tank.y, scene.tank.z}}};
   json["options"] = options_json(args, output);
-  json["frames"] = frames.take_json();
+  const std::string place = "frames go here";
+  json["frames"] = place;
   json["ms"] = {{"simulate_median", spread_of(frames.step_ms()).median}};
   if (!frames.surface_ms().empty()) json["ms"]["surface_median"] = spread_of(frames.surface_ms()).median;
   json["memory"] = {{"host_peak_bytes", host_peak_bytes()}, {"device_peak_bytes", fluid.peak_bytes()}};
-  write_file_atomically(output.report, json_text(json));
+  std::string text = json_text(json);
+  const std::string quoted = '"' + place + '"';
+  text.replace(text.find(quoted), quoted.size(), "[" + frames.lines() + "\n  ]");
+  write_file_atomically(output.report, text);
 }
 
 }  // namespace

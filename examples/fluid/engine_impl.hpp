@@ -32,7 +32,7 @@ class EngineOn final : public Engine {
     exec::fill(*ex_, particles_.multiplier.view(), 0.0F);
     particles_.density = exec::make_buffer<float>(*ex_, n);
     exec::fill(*ex_, particles_.density.view(), 1.0F);
-    particles_.neighbours = exec::make_buffer<std::uint8_t>(*ex_, n * kLanes);
+    particles_.neighbours = exec::make_buffer<std::uint8_t>(*ex_, n * lanes_for(n));
     exec::fill(*ex_, particles_.neighbours.view(), std::uint8_t{0});
     particles_.id = exec::iota(*ex_, n);
     radius_world_ = radius_world;

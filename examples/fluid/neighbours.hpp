@@ -19,26 +19,28 @@ struct alignas(16) Placed {
 /// Neighbours of all particles, by lanes: lane j % kLanes has particle j. Neighbour k of list l, which is
 /// that of lane l % kLanes of particle l / kLanes, is at l across + k along: a GPU reads one k of many lists at once, a
 /// CPU all k of one.
+template <int Lanes>
 struct NeighbourLists {
+  static constexpr int kLanes = Lanes;
+  static constexpr int kMost = most_neighbours(Lanes);
+
   ArrayView<std::int32_t> list;
-  ArrayView<std::uint8_t> count;  // found, at most kMostNeighbours + 1
+  ArrayView<std::uint8_t> count;  // found, at most kMost + 1
   std::int64_t across = 0, along = 0;
 
-  [[nodiscard]] PSK_HD int size(std::int64_t l) const {
-    return count[l] < kMostNeighbours ? count[l] : kMostNeighbours;
-  }
+  [[nodiscard]] PSK_HD int size(std::int64_t l) const { return count[l] < kMost ? count[l] : kMost; }
   [[nodiscard]] PSK_HD std::int32_t& at(std::int64_t l, int k) const { return list[l * across + k * along]; }
 };
 
 /// Calls visit(j, value of j, d, squared, set) for every neighbour j of particle i that is in the list of a lane, and
 /// every image of one (of i itself, too, for the first lane) within the radius; `set` says in which walls, 0 the
 /// particle itself. d leads from it to i. The order is fixed.
-template <class Visit>
-PSK_HD void for_each_near(const NeighbourLists& neighbours, ArrayView<const Placed> particles, const Mirrors& mirrors,
-                          std::int64_t i, int lane, const Visit& visit) {
+template <int Lanes, class Visit>
+PSK_HD void for_each_near(const NeighbourLists<Lanes>& neighbours, ArrayView<const Placed> particles,
+                          const Mirrors& mirrors, std::int64_t i, int lane, const Visit& visit) {
   const Placed own = particles[i];
   const Vec3f p = own.place;
-  const std::int64_t list = i * kLanes + lane;
+  const std::int64_t list = i * Lanes + lane;
   const int n = neighbours.size(list);
   const auto visit_images = [&](std::int32_t j, const Placed& other) {
     for (int set = mirrors.near; set != 0; set = (set - 1) & mirrors.near) {

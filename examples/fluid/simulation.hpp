@@ -23,7 +23,7 @@ struct SimulationOptions {
   double vorticity = 0;               ///< of vorticity confinement, >= 0; 0: none, and then it costs nothing
   double gravity = 9.81;              ///< downwards, metres / second^2, >= 0
   /// A frame is cut into as few equal substeps as keep the fastest particle's way below this many kernel radii.
-  double courant = 0.8;     ///< in [0.05, 1]
+  double courant = 1;       ///< in [0.05, 1]
   int fewest_substeps = 2;  ///< in [1, most_substeps]
   int most_substeps = 64;   ///< at most 1000; what would still be faster than one radius a substep is slowed down
 };

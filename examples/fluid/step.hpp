@@ -20,12 +20,13 @@
 
 namespace pointskin::simulation {
 
-/// The neighbours of a particle are in lists of their own for this many lanes (exec/lanes.hpp).
-inline constexpr int kLanes = 4;
+/// Lists that the neighbours of a particle are divided into (exec/lanes.hpp). Few particles leave most of a GPU idle if
+/// each has one thread; many fill it, and then one thread a particle has the least to do.
+inline constexpr int lanes_for(std::int64_t particles) { return particles < 1 << 18 ? 4 : 1; }
 
-/// Neighbours that are kept for a lane. At rest there are 26 within the radius; with more than this many, the last in
-/// the order of the cells are left out and the particle counts as crowded.
-inline constexpr int kMostNeighbours = 24;
+/// Neighbours that are kept in a list. At rest a particle has 26 within the radius; with more than this many in a list,
+/// the last in the order of the cells are left out and the particle counts as crowded.
+inline constexpr int most_neighbours(int lanes) { return lanes == 1 ? 64 : 24; }
 
 /// As many forces may act at once.
 inline constexpr int kMostInteractions = 8;
@@ -62,7 +63,8 @@ struct Particles {
   exec::Buffer<std::int32_t> id;          ///< (n) place in the scene
   exec::Buffer<float> multiplier;         ///< (n) of the last substep: minus the pressure, times seconds^2
   exec::Buffer<float> density;            ///< (n) over the density at rest, after the last substep
-  exec::Buffer<std::uint8_t> neighbours;  ///< (n, kLanes) found in the last substep, at most kMostNeighbours + 1
+  exec::Buffer<std::uint8_t> neighbours;  ///< (n, lanes_for(n)) found in the last substep, at most
+                                          ///< most_neighbours() + 1
 };
 
 /// Moves the particles on by one substep and puts them into the order of the cells of `grid`, which is around the tank.
@@ -79,7 +81,7 @@ struct Totals {
   Bounds box{};              ///< of the particles
   float most_compression = 0;
   float fastest_squared = 0;
-  std::int32_t crowded = 0;  ///< particles with more than kMostNeighbours neighbours in a lane
+  std::int32_t crowded = 0;  ///< particles with more neighbours than are kept
   std::int32_t lost = 0;     ///< particles with a coordinate that is not finite or outside of the tank
 };
 

@@ -59,54 +59,57 @@ struct Reorder {
 };
 
 /// Finds the neighbours of some lanes of a particle.
+template <int Lanes>
 struct FindNeighbours {
   fluid::ParticleTreeView tree;
   ArrayView<const Placed> particles;
-  NeighbourLists neighbours;
+  NeighbourLists<Lanes> neighbours;
 
   PSK_HD void of_lane(std::int64_t i, int lane) const {
-    const std::int64_t list = i * kLanes + lane;
+    const std::int64_t list = i * Lanes + lane;
     const Vec3f p = particles[i].place;
     int found = 0;
     fluid::for_each_range_around(tree.level, tree.cell[i], [&](std::int32_t first, std::int32_t last) {
-      for (std::int32_t j = first + ((lane - first) & (kLanes - 1)); j < last; j += kLanes)
-        try_one(i, j, p, list, found);
+      for (std::int32_t j = first + ((lane - first) & (Lanes - 1)); j < last; j += Lanes) try_one(i, j, p, list, found);
     });
     neighbours.count[list] = static_cast<std::uint8_t>(found);
   }
   PSK_HD void of_all_lanes(std::int64_t i) const {
     const Vec3f p = particles[i].place;
-    int found[kLanes] = {};
+    int found[Lanes] = {};
     fluid::for_each_range_around(tree.level, tree.cell[i], [&](std::int32_t first, std::int32_t last) {
       for (std::int32_t j = first; j < last; ++j) {
-        const int lane = j % kLanes;
-        try_one(i, j, p, i * kLanes + lane, found[lane]);
+        const int lane = j % Lanes;
+        try_one(i, j, p, i * Lanes + lane, found[lane]);
       }
     });
-    for (int lane = 0; lane < kLanes; ++lane)
-      neighbours.count[i * kLanes + lane] = static_cast<std::uint8_t>(found[lane]);
+    for (int lane = 0; lane < Lanes; ++lane)
+      neighbours.count[i * Lanes + lane] = static_cast<std::uint8_t>(found[lane]);
   }
   PSK_HD void try_one(std::int64_t i, std::int32_t j, const Vec3f& p, std::int64_t list, int& found) const {
     const Vec3f d = p - particles[j].place;
-    if (j == i || !(dot(d, d) < 1) || found > kMostNeighbours) return;
-    if (found < kMostNeighbours) neighbours.at(list, found) = j;
+    if (j == i || !(dot(d, d) < 1) || found > NeighbourLists<Lanes>::kMost) return;
+    if (found < NeighbourLists<Lanes>::kMost) neighbours.at(list, found) = j;
     ++found;
   }
 };
 /// The same lists, by a thread each or by one a particle.
+template <int Lanes>
 struct FindNeighboursByLanes {
-  FindNeighbours find;
-  PSK_HD void operator()(std::int64_t list) const { find.of_lane(list / kLanes, static_cast<int>(list % kLanes)); }
+  FindNeighbours<Lanes> find;
+  PSK_HD void operator()(std::int64_t list) const { find.of_lane(list / Lanes, static_cast<int>(list % Lanes)); }
 };
+template <int Lanes>
 struct FindNeighboursAtOnce {
-  FindNeighbours find;
+  FindNeighbours<Lanes> find;
   PSK_HD void operator()(std::int64_t i) const { find.of_all_lanes(i); }
 };
 
 /// The multiplier of every particle's constraint, density <= rest density:
 /// lambda_i = - C_i / (sum_k |grad_k C_i|^2 + epsilon), what solids cover counting as one neighbour.
+template <int Lanes>
 struct FindMultipliers {
-  static constexpr int kLanes = simulation::kLanes;
+  static constexpr int kLanes = Lanes;
   struct Sum {
     float weights = 0, squares = 0;
     Vec3f gradient{};
@@ -117,7 +120,7 @@ struct FindMultipliers {
 
   StepSettings settings;
   ArrayView<const Placed> particles;
-  NeighbourLists neighbours;
+  NeighbourLists<Lanes> neighbours;
   ArrayView<float> sum;    // of all iterations and the warm start, <= 0
   ArrayView<Placed> step;  // the places with what is added to it
 
@@ -152,13 +155,14 @@ struct FindMultipliers {
 
 /// Moves every particle by its own and its neighbours' constraints; solids press with the particle's own multiplier, as
 /// a mirror image would.
+template <int Lanes>
 struct Correct {
-  static constexpr int kLanes = simulation::kLanes;
+  static constexpr int kLanes = Lanes;
   using Sum = VectorSum;
 
   StepSettings settings;
   ArrayView<const Placed> particles;  // with their multipliers
-  NeighbourLists neighbours;
+  NeighbourLists<Lanes> neighbours;
   ArrayView<Placed> corrected;
 
   [[nodiscard]] PSK_HD Sum part(std::int64_t i, int lane) const {
@@ -188,8 +192,8 @@ struct Correct {
 
 }  // namespace step
 
-template <exec::Space Exec>
-void substep(Exec& ex, Particles& particles, const StepSettings& settings, const fluid::CellGrid& grid) {
+template <int Lanes, exec::Space Exec>
+void substep_by_lanes(Exec& ex, Particles& particles, const StepSettings& settings, const fluid::CellGrid& grid) {
   const std::int64_t n = particles.position.size();
   auto predicted = exec::make_buffer<Vec3f>(ex, n);
   for_each(ex, "simulation.predict", n,
@@ -207,31 +211,41 @@ void substep(Exec& ex, Particles& particles, const StepSettings& settings, const
   particles.id.swap(id);
   particles.multiplier.swap(sum);
 
-  const std::int64_t lists = n * kLanes;
-  auto list = exec::make_buffer<std::int32_t>(ex, lists * kMostNeighbours);
-  const step::NeighbourLists neighbours{list.view(), particles.neighbours.view(),
-                                        Exec::kManyThreads ? 1 : kMostNeighbours, Exec::kManyThreads ? lists : 1};
-  const step::FindNeighbours find{tree.view(), now.cview(), neighbours};
+  const std::int64_t lists = n * Lanes;
+  auto list = exec::make_buffer<std::int32_t>(ex, lists * step::NeighbourLists<Lanes>::kMost);
+  const step::NeighbourLists<Lanes> neighbours{list.view(), particles.neighbours.view(),
+                                               Exec::kManyThreads ? 1 : step::NeighbourLists<Lanes>::kMost,
+                                               Exec::kManyThreads ? lists : 1};
+  const step::FindNeighbours<Lanes> find{tree.view(), now.cview(), neighbours};
   if constexpr (Exec::kManyThreads)
-    for_each(ex, "simulation.neighbours", lists, step::FindNeighboursByLanes{find});
+    for_each(ex, "simulation.neighbours", lists, step::FindNeighboursByLanes<Lanes>{find});
   else
-    for_each(ex, "simulation.neighbours", n, step::FindNeighboursAtOnce{find});
+    for_each(ex, "simulation.neighbours", n, step::FindNeighboursAtOnce<Lanes>{find});
 
   const auto correct = [&] {
-    for_each_by_lanes(ex, "simulation.correct", n, step::Correct{settings, now.cview(), neighbours, next.view()});
+    for_each_by_lanes(ex, "simulation.correct", n,
+                      step::Correct<Lanes>{settings, now.cview(), neighbours, next.view()});
     now.swap(next);
   };
   if (settings.warm_start > 0) correct();
   for (int i = 0; i < settings.iterations; ++i) {
     for_each_by_lanes(
         ex, "simulation.multipliers", n,
-        step::FindMultipliers{settings, now.cview(), neighbours, particles.multiplier.view(), next.view()});
+        step::FindMultipliers<Lanes>{settings, now.cview(), neighbours, particles.multiplier.view(), next.view()});
     now.swap(next);
     correct();
   }
 
   const ArrayView<Vec3f> velocity = predicted.view();  // its places are no longer needed
   step::update_velocities(ex, particles, settings, neighbours, start.cview(), now.cview(), velocity);
+}
+
+template <exec::Space Exec>
+void substep(Exec& ex, Particles& particles, const StepSettings& settings, const fluid::CellGrid& grid) {
+  if (lanes_for(particles.position.size()) == 1)
+    substep_by_lanes<1>(ex, particles, settings, grid);
+  else
+    substep_by_lanes<4>(ex, particles, settings, grid);
 }
 
 }  // namespace pointskin::simulation

@@ -30,6 +30,7 @@ struct TotalsOfParticle {
   ArrayView<const float> density;
   ArrayView<const std::uint8_t> neighbours;
   Vec3f tank;
+  int lanes;
 
   PSK_HD Totals operator()(std::int64_t i) const {
     const Vec3f p = position[i];
@@ -42,7 +43,7 @@ struct TotalsOfParticle {
   }
   [[nodiscard]] PSK_HD bool is_crowded(std::int64_t i) const {
     bool any = false;
-    for (int lane = 0; lane < kLanes; ++lane) any = any || neighbours[i * kLanes + lane] > kMostNeighbours;
+    for (int lane = 0; lane < lanes; ++lane) any = any || neighbours[i * lanes + lane] > most_neighbours(lanes);
     return any;
   }
 };
@@ -68,7 +69,7 @@ Totals totals_of(Exec& ex, const Particles& particles, const Solids& solids) {
   return exec::reduce<Totals>(
       ex, "simulation.totals", particles.position.size(),
       step::TotalsOfParticle{particles.position.cview(), particles.velocity.cview(), particles.density.cview(),
-                             particles.neighbours.cview(), solids.tank},
+                             particles.neighbours.cview(), solids.tank, lanes_for(particles.position.size())},
       step::AddTotals{});
 }
 

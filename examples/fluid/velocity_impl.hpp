@@ -18,8 +18,9 @@ struct FindVelocities {
 };
 
 /// XSPH, and the densities of the new places: v_i + c sum_j (v_j - v_i) W_ij / rest density.
+template <int Lanes>
 struct Smooth {
-  static constexpr int kLanes = simulation::kLanes;
+  static constexpr int kLanes = Lanes;
   struct Sum {
     float weights = 0;
     Vec3f change{};
@@ -29,7 +30,7 @@ struct Smooth {
   StepSettings settings;
   ArrayView<const Placed> particles;
   ArrayView<const Vec3f> velocity;
-  NeighbourLists neighbours;
+  NeighbourLists<Lanes> neighbours;
   ArrayView<Vec3f> position, smoothed;
   ArrayView<float> density;
 
@@ -55,14 +56,15 @@ struct Smooth {
 };
 
 /// Curl of the velocities.
+template <int Lanes>
 struct FindCurl {
-  static constexpr int kLanes = simulation::kLanes;
+  static constexpr int kLanes = Lanes;
   using Sum = VectorSum;
 
   StepSettings settings;
   ArrayView<const Placed> particles;
   ArrayView<const Vec3f> velocity;
-  NeighbourLists neighbours;
+  NeighbourLists<Lanes> neighbours;
   ArrayView<Vec3f> curl;
 
   [[nodiscard]] PSK_HD Sum part(std::int64_t i, int lane) const {
@@ -81,14 +83,15 @@ struct FindCurl {
 
 /// Vorticity confinement: pushes around places where the curl is largest, as much as the curl is long.
 /// Source: Fedkiw, Stam & Jensen, "Visual simulation of smoke", 2001; Macklin & Mueller 2013, section 5.
+template <int Lanes>
 struct Confine {
-  static constexpr int kLanes = simulation::kLanes;
+  static constexpr int kLanes = Lanes;
   using Sum = VectorSum;
 
   StepSettings settings;
   ArrayView<const Placed> particles;
   ArrayView<const Vec3f> curl;
-  NeighbourLists neighbours;
+  NeighbourLists<Lanes> neighbours;
   ArrayView<Vec3f> velocity;
 
   [[nodiscard]] PSK_HD Sum part(std::int64_t i, int lane) const {
@@ -113,20 +116,21 @@ struct Confine {
 /// Writes positions, velocities and densities of `particles`.
 /// @param start, now  where they were and are
 /// @param velocity    scratch
-template <exec::Space Exec>
-void update_velocities(Exec& ex, Particles& particles, const StepSettings& settings, const NeighbourLists& neighbours,
-                       ArrayView<const Vec3f> start, ArrayView<const Placed> now, ArrayView<Vec3f> velocity) {
+template <int Lanes, exec::Space Exec>
+void update_velocities(Exec& ex, Particles& particles, const StepSettings& settings,
+                       const NeighbourLists<Lanes>& neighbours, ArrayView<const Vec3f> start,
+                       ArrayView<const Placed> now, ArrayView<Vec3f> velocity) {
   const std::int64_t n = now.size;
   for_each(ex, "simulation.velocities", n, FindVelocities{1 / settings.seconds, start, now, velocity});
   if (settings.vorticity > 0) {
     for_each_by_lanes(ex, "simulation.curl", n,
-                      FindCurl{settings, now, velocity, neighbours, particles.velocity.view()});
+                      FindCurl<Lanes>{settings, now, velocity, neighbours, particles.velocity.view()});
     for_each_by_lanes(ex, "simulation.vorticity", n,
-                      Confine{settings, now, particles.velocity.cview(), neighbours, velocity});
+                      Confine<Lanes>{settings, now, particles.velocity.cview(), neighbours, velocity});
   }
   for_each_by_lanes(ex, "simulation.viscosity", n,
-                    Smooth{settings, now, velocity, neighbours, particles.position.view(), particles.velocity.view(),
-                           particles.density.view()});
+                    Smooth<Lanes>{settings, now, velocity, neighbours, particles.position.view(),
+                                  particles.velocity.view(), particles.density.view()});
 }
 
 }  // namespace pointskin::simulation::step

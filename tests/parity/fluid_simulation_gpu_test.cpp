@@ -55,5 +55,10 @@ TEST_F(FluidSimulationOnGpu, GivesTheBytesOfTheCpuWithVorticityAndWithoutAWarmSt
   expect_parity(SceneKind::dam_break, 20000, 20, options);
 }
 
+TEST_F(FluidSimulationOnGpu, GivesTheBytesOfTheCpuForSoManyThatEachHasOneThread) {
+  ASSERT_EQ(lanes_for(270'000), 1);
+  expect_parity(SceneKind::dam_break, 270'000, 3);
+}
+
 }  // namespace
 }  // namespace pointskin::simulation

@@ -241,7 +241,7 @@ TEST(Interaction, PushesAndSwirlsWhatIsWithinItsBall) {
   EXPECT_LT(mean_along(velocities_after(push), z), -0.05);
   for (std::size_t i = 0; i < pushed.size(); ++i)  // what is far away hardly notices
     if (squared_distance(scene.positions[i], push.centre) > 0.16) {
-      ASSERT_LT(squared_distance(pushed[i], {}), 1e-4) << i;
+      ASSERT_LT(squared_distance(pushed[i], {}), 1e-3) << i;
     }
   push = {Interaction::Kind::swirl, push.centre, {0, 1, 0}, 0.3F, 30};
   const auto around = [&](const Vec3f& p) {  // y cross (p - centre)

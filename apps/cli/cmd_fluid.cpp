@@ -276,7 +276,8 @@ void check_given(const FluidArgs& args) {
   if (simulates) return;
   if (args.input.empty()) refuse("IN is required: particles of a frame, or --simulate SCENE");
   if (args.output.empty()) refuse("--output is required");
-  if (args.options.particle_radius == 0) refuse("--particle-radius is required");
+  if (args.options.particle_radius == 0)
+    refuse("particle_radius is required and must be positive: --particle-radius R");
   if (!args.simulation.particles_out.empty()) refuse("--particles-out needs --simulate");
 }
 

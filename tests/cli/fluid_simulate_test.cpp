@@ -50,7 +50,8 @@ TEST_F(FluidSimulate, WritesMeshesAndParticlesOfEveryFrame) {
   for (const std::string& found : schema_violations(schema, report, "report")) ADD_FAILURE() << found;
   ASSERT_EQ(report["frames"].size(), 11U);
   for (int frame = 0; frame < 11; ++frame) {
-    const std::string number = (frame < 10 ? "0" : "") + std::to_string(frame);
+    std::string number = std::to_string(frame);
+    if (frame < 10) number.insert(number.begin(), '0');
     const MeshReport mesh = measure(read_mesh(folder_ / ("m_" + number + ".ply")));
     EXPECT_TRUE(mesh.watertight()) << frame;
     EXPECT_EQ(report["frames"][frame]["frame"], frame);

@@ -22,14 +22,14 @@ struct ReadOptions {
 /// Reads an oriented cloud. PLY (ascii, binary little and big endian, any property types, extra elements and lists
 /// skipped), XYZ, PTS, ASC, TXT, CSV text (3 columns: xyz; 4: xyz + scalar; 6: xyz + normal, or xyz + rgb when all
 /// three are whole numbers in 0..255 and some exceed 1; 7: xyz + scalar + rgb; 9: xyz + rgb + normal, or xyz + normal +
-/// rgb where only that fits; any number when a first line or comment names the columns), and the vertices of OBJ, STL
-/// and OFF. The format is taken from the content ("ply" magic), else from the extension, else (no extension) from the
-/// content again. `path` "-" reads stdin.
-/// Coordinates are read as double; points with a coordinate that is not finite or larger than 1e38 are dropped and
-/// counted in Cloud::dropped; a non-finite normal becomes a zero normal. Every extra scalar property travels by name,
-/// as uint8 if the file stores it as uchar, else as float32.
-/// O(n); memory: the cloud plus the mapped file, for text also what its columns need (double for coordinates).
-/// Deterministic for any thread count. The file must not be shortened while it is read.
+/// rgb where only that fits; any number when a first line or comment names the columns), legacy VTK (ascii and binary;
+/// the points of POLYDATA and UNSTRUCTURED_GRID; the components of a vector v are v_x, v_y and v_z), JSON ([[x, y, z],
+/// ...]), and the vertices of OBJ, STL and OFF. The format is taken from the content ("ply" and VTK magic), else from
+/// the extension, else (no extension) from the content again. `path` "-" reads stdin. Coordinates are read as double;
+/// points with a coordinate that is not finite or larger than 1e38 are dropped and counted in Cloud::dropped; a
+/// non-finite normal becomes a zero normal. Every extra scalar property travels by name, as uint8 if the file stores it
+/// as uchar, else as float32. O(n); memory: the cloud plus the mapped file, for text also what its columns need (double
+/// for coordinates). Deterministic for any thread count. The file must not be shortened while it is read.
 /// @throws Error invalid_input with file and line or byte, when the file is missing, empty, truncated or garbled.
 ///         Counts are compared with the file's size before memory is taken.
 Cloud read_cloud(const std::string& path, const ReadOptions& options = {});

@@ -9,6 +9,7 @@
 #include <pointskin/edit.hpp>
 #include <pointskin/error.hpp>
 #include <pointskin/field.hpp>
+#include <pointskin/fluid.hpp>
 #include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/octree.hpp>

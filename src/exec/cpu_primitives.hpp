@@ -13,6 +13,7 @@
 
 #include "core/array_view.hpp"
 #include "exec/cpu.hpp"
+#include "exec/lanes.hpp"
 #include "exec/memory.hpp"
 #include "exec/reduce_order.hpp"
 #include "exec/sweep.hpp"
@@ -43,6 +44,12 @@ void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
 template <class F>
 void for_each_apart(Cpu& ex, const char* label, std::int64_t n, const F& f) {
   for_each(ex, label, n, f);
+}
+
+/// Calls f.finish(i, sum of its parts) for every i in [0, n); see exec/lanes.hpp.
+template <class F>
+void for_each_by_lanes(Cpu& ex, const char* label, std::int64_t n, const F& f) {
+  for_each(ex, label, n, SumOfLanes<F>{f});
 }
 
 /// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds

@@ -15,6 +15,7 @@
 #include "core/array_view.hpp"
 #include "exec/cuda.hpp"
 #include "exec/cuda_check.cuh"
+#include "exec/lanes.hpp"
 #include "exec/memory.hpp"
 #include "exec/reduce_order.hpp"
 #include "exec/sweep.hpp"
@@ -59,6 +60,40 @@ void for_each_apart(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   unsigned lanes = kWarp;
   while (lanes > 1 && n * lanes > kRoom * ex.multiprocessors()) lanes /= 2;
   for_each(ex, label, n * lanes, OneOfLanes<F>{f, lanes});
+}
+
+/// `value` of the lane whose number differs in the bits of `mask`.
+template <class T>
+__device__ T shuffled(const T& value, int mask) {
+  static_assert(sizeof(T) % 4 == 0);
+  std::uint32_t words[sizeof(T) / 4];
+  memcpy(words, &value, sizeof(T));
+  for (std::uint32_t& word : words) word = __shfl_xor_sync(~0U, word, mask);
+  T other;
+  memcpy(&other, words, sizeof(T));
+  return other;
+}
+
+template <class F>
+__global__ void __launch_bounds__(kThreadsPerBlock) for_each_by_lanes_kernel(std::int64_t n, const F f) {
+  const std::int64_t thread = static_cast<std::int64_t>(blockIdx.x) * kThreadsPerBlock + threadIdx.x;
+  const std::int64_t i = thread / F::kLanes;
+  const int lane = static_cast<int>(thread % F::kLanes);
+  typename F::Sum sum{};
+  if (i < n) sum = f.part(i, lane);
+  for (int step = 1; step < F::kLanes; step *= 2) sum = sum + shuffled(sum, step);
+  if (i < n && lane == 0) f.finish(i, sum);
+}
+
+/// Calls f.finish(i, sum of its parts) for every i in [0, n), a thread for every part; see exec/lanes.hpp.
+/// Asynchronous.
+template <class F>
+void for_each_by_lanes(Cuda& ex, const char* label, std::int64_t n, const F& f) {
+  static_assert((F::kLanes & (F::kLanes - 1)) == 0 && F::kLanes <= kWarp);
+  if (n <= 0) return;
+  const std::int64_t blocks = (n * F::kLanes + kThreadsPerBlock - 1) / kThreadsPerBlock;
+  for_each_by_lanes_kernel<<<static_cast<unsigned>(blocks), kThreadsPerBlock, 0, stream_of(ex)>>>(n, f);
+  cuda_check(cudaGetLastError(), label);
 }
 
 inline constexpr int kWarpsPerBlock = kThreadsPerBlock / kWarp;

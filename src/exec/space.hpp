@@ -4,6 +4,8 @@
 //
 //   for_each(ex, "label", n, f)                f(i) for every i in [0, n)
 //   for_each_apart(ex, "label", n, f)          the same, for f that takes another path for every i
+//   for_each_by_lanes(ex, "label", n, f)       f.finish(i, s) for every i in [0, n), s the sum of f.part(i, lane) over
+//                                              F::kLanes lanes in the order of lanes.hpp
 //   sweep(ex, "label", rounds, n, f)           f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i),
 //                                              rounds one after another; what prepare returns must not change meanwhile
 //   reduce_tail(ex, "label", values, out, combine)  the last step of reduce: few values to one

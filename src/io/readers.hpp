@@ -13,9 +13,10 @@
 
 namespace pointskin::io {
 
-enum class Format { ply, text, obj, stl, off };
+enum class Format { ply, text, obj, stl, off, vtk, json };
 
-/// The format of `source`: "ply" magic, else the extension of its name, else (no extension, stdin) its content.
+/// The format of `source`: "ply" or "# vtk DataFile" magic, else the extension of its name, else (no extension, stdin)
+/// its content.
 /// @throws Error invalid_input for an unknown extension
 Format detect_format(const Source& source, bool want_mesh);
 
@@ -29,6 +30,8 @@ Mesh parse_mesh(const Source& source, Format format, const ReadOptions& options)
 
 /// The format readers behind parse_cloud and parse_mesh.
 Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_ply_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_ply_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_obj(exec::Cpu& ex, const Source& source, const ReadOptions& options);

@@ -363,7 +363,9 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   exec::Buffer<std::uint64_t> first;
   const std::uint64_t table = scan_counts(ex, counts, first, kMostEdgesPerBrick);
   counts.reset();
-  const exec::Buffer<std::int32_t> traced = select(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()});
+  exec::Buffer<std::int32_t> traced;
+  if (f.tree.finest().first_node > 0)  // there are coarser leaves
+    traced = select(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()});
   auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
   for_each_apart(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
   exec::Buffer<std::uint64_t> first_traced;

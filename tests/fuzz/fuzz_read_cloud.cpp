@@ -13,7 +13,7 @@ using namespace pointskin;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   constexpr io::Format kFormats[] = {io::Format::ply, io::Format::text, io::Format::obj, io::Format::stl,
-                                     io::Format::off};
+                                     io::Format::off, io::Format::vtk,  io::Format::json};
   const io::Format format = kFormats[data[0] % std::size(kFormats)];
   ReadOptions options;
   options.threads = 1;

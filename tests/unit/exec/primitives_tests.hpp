@@ -56,6 +56,19 @@ struct AddFloats {
   PSK_HD float operator()(float a, float b) const { return a + b; }
 };
 
+/// out[i] = the sum of 8 random floats, 8 i and on.
+struct SumByLanes {
+  static constexpr int kLanes = 8;
+  struct Sum {
+    float value = 0;
+    std::int32_t lanes = 0;
+    PSK_HD Sum operator+(const Sum& other) const { return {value + other.value, lanes + other.lanes}; }
+  };
+  ArrayView<float> out;
+  PSK_HD Sum part(std::int64_t i, int lane) const { return {RandomFloat{}(kLanes * i + lane), 1 << lane}; }
+  PSK_HD void finish(std::int64_t i, const Sum& sum) const { out[i] = sum.lanes == (1 << kLanes) - 1 ? sum.value : -1; }
+};
+
 /// The tree that exec::reduce documents: lane l of max(1, n / 64) combines elements l, l + lanes, l + 2 lanes, ...;
 /// then the same over the lanes, until one is left.
 inline float documented_sum(std::int64_t n) {
@@ -256,6 +269,23 @@ TYPED_TEST_P(Primitives, FillGatherAndCount) {
   }
 }
 
+TYPED_TEST_P(Primitives, AddLanesInPairs) {
+  auto& ex = this->space();
+  for (const std::int64_t n : kSizes) {
+    SCOPED_TRACE(n);
+    auto out = exec::make_buffer<float>(ex, n);
+    for_each_by_lanes(ex, "test", n, SumByLanes{out.view()});
+    std::vector<float> expected(index(n));
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto at = [&](std::int64_t lane) { return RandomFloat{}(8 * i + lane); };
+      const float lower = (at(0) + at(1)) + (at(2) + at(3));
+      const float upper = (at(4) + at(5)) + (at(6) + at(7));
+      expected[index(i)] = lower + upper;
+    }
+    expect_same(to_host(ex, out), expected);
+  }
+}
+
 TYPED_TEST_P(Primitives, ReduceByTheDocumentedTree) {
   for (const std::int64_t n : kSizes) {
     if (n == 0) continue;
@@ -418,7 +448,7 @@ TYPED_TEST_P(Primitives, BuffersMoveTheirMemoryAndKeepTheirPool) {
   EXPECT_TRUE(pool.expired());
 }
 
-REGISTER_TYPED_TEST_SUITE_P(Primitives, CallEveryIndexOnce, SelectKeptIndicesInAscendingOrder,
+REGISTER_TYPED_TEST_SUITE_P(Primitives, CallEveryIndexOnce, AddLanesInPairs, SelectKeptIndicesInAscendingOrder,
                             ScanWithAndWithoutTheTotalAndInPlace, ScanCountsOf32Bits, SortPairsByAllBits,
                             SortPairsStably, SortPairsByTheirLowestBitsAlone, SortPairsWhoseKeysAgreeInSomeDigits,
                             SortKeys, SortKeysByTheirLowestBitsAlone, CopyToTheSpaceWithinItAndBack, FillGatherAndCount,

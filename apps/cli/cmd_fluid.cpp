@@ -1,0 +1,328 @@
+// pointskin fluid: particles of a simulation, frame after frame, to meshes.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <pointskin/error.hpp>
+#include <pointskin/fluid.hpp>
+#include <pointskin/io.hpp>
+
+#include "args.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "fluid_args.hpp"
+#include "frame_files.hpp"
+#include "json_text.hpp"
+#include "output_check.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "signals.hpp"
+#include "statistics.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+double ms_since(const Clock::time_point& start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// One frame and what became of it.
+struct FluidFrameRecord {
+  FrameFile input;
+  std::string output;
+  std::int64_t particles = 0, dropped = 0, triangles = 0;
+  FluidReport run;
+  MeshReport mesh;  ///< with --report
+  double read_ms = 0, surface_ms = 0, write_ms = 0, total_ms = 0;
+};
+
+void check_files(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
+  if (args.report == "-") throw Error(ErrorCode::usage, "--report: stdout carries the mesh only; name a file");
+  if (!is_pattern(args.input) && is_pattern(args.output))
+    throw Error(ErrorCode::usage, fmt::format("-o: {} has {{}}, but the input has none", args.output));
+  if (is_pattern(args.input) && !is_pattern(args.output))
+    throw Error(ErrorCode::usage,
+                fmt::format("-o: {} needs {{}}, where the frame's number goes, as the input has it", args.output));
+  check_mesh_output(frames.front().output);
+  for (const FluidFrameRecord& frame : frames) {
+    std::error_code ignored;  // files that do not exist are not the same
+    for (const std::string& written : {frame.output, args.report})
+      if (!written.empty() && written != "-" && std::filesystem::equivalent(frame.input.path, written, ignored))
+        throw Error(ErrorCode::usage, "the input " + frame.input.path + " would be overwritten");
+  }
+  if (args.report.empty()) return;
+  if (args.report == args.output) throw Error(ErrorCode::usage, "--report names the same file as -o");
+  check_replaceable(args.report);
+}
+
+/// Reads, makes and writes frames, with memory that is used again. One a thread.
+class Worker {
+ public:
+  Worker(const FluidArgs& args, const FluidOptions& options, const Device& device)
+      : args_(args), options_(options), surfacer_(device), threads_(device.threads) {}
+
+  void run(FluidFrameRecord& frame) {
+    throw_if_interrupted();
+    const Clock::time_point start = Clock::now();
+    const Cloud cloud = read_cloud(frame.input.path, {.shift = parse_shift(args_.shift), .threads = threads_});
+    frame.particles = cloud.size();
+    frame.dropped = cloud.dropped;
+    frame.read_ms = ms_since(start);
+    throw_if_interrupted();
+    const Clock::time_point made = Clock::now();
+    try {
+      surfacer_.surface(cloud, options_, mesh_);
+    } catch (const Error& error) {
+      throw Error(error.code(), fmt::format("{}: {}", frame.input.path, error.what()));
+    }
+    frame.run = surfacer_.report();
+    frame.triangles = static_cast<std::int64_t>(mesh_.triangles.size());
+    frame.surface_ms = ms_since(made);
+    throw_if_interrupted();
+    const Clock::time_point writing = Clock::now();
+    write_mesh(frame.output, mesh_, threads_);
+    frame.write_ms = ms_since(writing);
+    frame.total_ms = ms_since(start);
+    if (!args_.report.empty()) frame.mesh = measure(mesh_, threads_);
+  }
+
+ private:
+  const FluidArgs& args_;
+  FluidOptions options_;
+  FluidSurfacer surfacer_;
+  int threads_;
+  Mesh mesh_;
+};
+
+/// All frames: the first alone, so that the memory of one is known, then as many together as fit.
+class Sequence {
+ public:
+  Sequence(const FluidArgs& args, const FluidOptions& options, const Device& device,
+           std::vector<FluidFrameRecord>& frames)
+      : args_(args), options_(options), device_(device), frames_(frames), line_(!args.quiet && stderr_is_terminal()) {}
+
+  /// @throws the error of the first frame that failed
+  void run() {
+    {
+      Worker first(args_, options_, device_);
+      first.run(frames_.front());
+      done(frames_.front());
+      at_once_ = frames_at_once();
+      if (at_once_ == 1)
+        for (std::size_t i = 1; i < frames_.size(); ++i) {
+          first.run(frames_[i]);
+          done(frames_[i]);
+        }
+    }
+    if (at_once_ > 1) run_together();
+    line_.clear();
+  }
+
+  [[nodiscard]] int at_once() const { return at_once_; }
+
+ private:
+  void done(const FluidFrameRecord& frame) {
+    const std::lock_guard lock(mutex_);
+    if (frame.dropped > 0)
+      print_warning(
+          fmt::format("{}: {} particles were dropped: a coordinate is not finite", frame.input.path, frame.dropped));
+    ++done_;
+    line_.update({"frames", static_cast<double>(done_) / static_cast<double>(frames_.size())});
+  }
+
+  /// A GPU works on one frame after another.
+  [[nodiscard]] int frames_at_once() const {
+    const auto left = static_cast<std::int64_t>(frames_.size()) - 1;
+    if (device_.kind == DeviceKind::cuda || left < 2) return 1;
+    const int threads = args_.threads > 0 ? args_.threads : static_cast<int>(std::thread::hardware_concurrency());
+    const std::int64_t wanted = args_.at_once > 0 ? args_.at_once : std::max(1, threads);
+    const std::int64_t memory =
+        args_.max_memory.empty() ? device_.available_bytes() / 5 * 4 : parse_bytes(args_.max_memory);
+    // Frames grow: half as much again, and the file, the particles and the mesh on the host.
+    const FluidFrameRecord& first = frames_.front();
+    const std::int64_t each =
+        first.run.device_peak_bytes * 3 / 2 + 64 * first.particles + 64 * first.triangles + (std::int64_t{1} << 20);
+    return static_cast<int>(std::clamp<std::int64_t>(std::min(memory / each, left), 1, wanted));
+  }
+
+  void run_together() {
+    const int threads = args_.threads > 0 ? args_.threads : static_cast<int>(std::thread::hardware_concurrency());
+    const Device share = Device::cpu(std::max(1, threads / at_once_));
+    std::vector<std::exception_ptr> failures(frames_.size());
+    std::atomic<std::size_t> next{1};
+    const auto work = [&] {
+      std::size_t i = 0;
+      try {
+        Worker worker(args_, options_, share);
+        for (i = next++; i < frames_.size(); i = next++) {
+          worker.run(frames_[i]);
+          done(frames_[i]);
+        }
+      } catch (...) {
+        failures[std::min(i, frames_.size() - 1)] = std::current_exception();
+        next = frames_.size();
+      }
+    };
+    std::vector<std::thread> workers;
+    for (int w = 0; w < at_once_; ++w) workers.emplace_back(work);
+    for (std::thread& worker : workers) worker.join();
+    for (const std::exception_ptr& failure : failures)
+      if (failure) std::rethrow_exception(failure);
+  }
+
+  const FluidArgs& args_;
+  const FluidOptions& options_;
+  const Device& device_;
+  std::vector<FluidFrameRecord>& frames_;
+  ProgressLine line_;
+  std::mutex mutex_;
+  std::size_t done_ = 0;
+  int at_once_ = 1;
+};
+
+Json frame_json(const FluidFrameRecord& frame) {
+  const FluidReport& run = frame.run;
+  const MeshReport& mesh = frame.mesh;
+  return {{"input", frame.input.path},
+          {"output", frame.output},
+          {"particles", frame.particles},
+          {"dropped", frame.dropped},
+          {"depth", run.depth},
+          {"corners", {{"coarse", run.coarse_corners}, {"fine", run.fine_corners}}},
+          {"rounds", run.rounds},
+          {"removed_components", run.removed_components},
+          {"mesh",
+           {{"vertices", mesh.vertices},
+            {"triangles", mesh.triangles},
+            {"closed", mesh.closed()},
+            {"manifold", mesh.manifold()},
+            {"components", mesh.components},
+            {"euler", mesh.euler},
+            {"volume", mesh.volume}}},
+          {"ms",
+           {{"read", frame.read_ms},
+            {"upload", run.upload_ms},
+            {"particles", run.particles_ms},
+            {"field", run.field_ms},
+            {"extract", run.extract_ms},
+            {"finish", run.finish_ms},
+            {"download", run.download_ms},
+            {"surface", frame.surface_ms},
+            {"write", frame.write_ms},
+            {"total", frame.total_ms}}}};
+}
+
+Json options_json(const FluidArgs& args, const FluidOptions& options) {
+  const auto or_null = [](const std::optional<std::int64_t>& n) { return n ? Json(*n) : Json(nullptr); };
+  return {{"particle_radius", options.particle_radius},
+          {"kernel", args.kernel},
+          {"smoothing_length", options.smoothing_length},
+          {"cube_size", options.cube_size},
+          {"surface_threshold", options.surface_threshold == 0 ? Json("default") : Json(options.surface_threshold)},
+          {"smoothing_iterations", options.smoothing_iterations},
+          {"smoothing_weights", options.smoothing_weights},
+          {"min_component", options.min_component},
+          {"normals", options.normals},
+          {"attributes", options.attributes},
+          {"device", args.device},
+          {"threads", args.threads},
+          {"shift", args.shift},
+          {"first", or_null(args.first)},
+          {"last", or_null(args.last)},
+          {"input", args.input},
+          {"output", args.output}};
+}
+
+void write_report(const FluidArgs& args, const FluidOptions& options, const Device& device,
+                  const std::vector<FluidFrameRecord>& frames, int at_once, double total_ms) {
+  Json json = {{"version", 1}, {"command", "fluid"}};
+  json["device"] = {{"kind", device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", device.name()}};
+  json["options"] = options_json(args, options);
+  json["at_once"] = at_once;
+  json["frames"] = Json::array();
+  std::int64_t peak = 0;
+  std::vector<double> surface_ms;
+  for (const FluidFrameRecord& frame : frames) {
+    json["frames"].push_back(frame_json(frame));
+    peak = std::max(peak, frame.run.device_peak_bytes);
+    surface_ms.push_back(frame.surface_ms);
+  }
+  json["ms"] = {{"surface_median", spread_of(surface_ms).median}, {"total", total_ms}};
+  json["memory"] = {{"host_peak_bytes", host_peak_bytes()}, {"device_peak_bytes", peak}};
+  write_file_atomically(args.report, json_text(json));
+}
+
+/// What CLI11 cannot know: which of the options belong together.
+void check_given(const FluidArgs& args) {
+  const auto refuse = [](const std::string& story) { throw Error(ErrorCode::usage, story); };
+  const bool simulates = !args.simulation.scene.empty();
+  if (simulates && !args.input.empty())
+    refuse(args.input + " is not read because of --simulate; leave one of them out");
+  if (simulates && (args.first || args.last)) refuse("--first and --last belong to sequences of files; use --frames");
+  if (simulates) return;
+  if (args.input.empty()) refuse("IN is required: particles of a frame, or --simulate SCENE");
+  if (args.output.empty()) refuse("--output is required");
+  if (args.options.particle_radius == 0)
+    refuse("particle_radius is required and must be positive: --particle-radius R");
+  if (!args.simulation.particles_out.empty()) refuse("--particles-out needs --simulate");
+}
+
+int run(const FluidArgs& args) {
+  const Clock::time_point start = Clock::now();
+  check_given(args);
+  const FluidOptions options = library_options(args);
+  if (!args.simulation.scene.empty())
+    return run_simulation(args.simulation, {args.output, args.report, args.device, args.threads, args.quiet, options});
+  parse_shift(args.shift);
+  if (!args.max_memory.empty()) parse_bytes(args.max_memory);
+  if (args.at_once < 0 || args.at_once > 4096)
+    throw Error(ErrorCode::usage, fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
+  const Device device = parse_device(args.device, args.threads);
+  std::vector<FluidFrameRecord> frames;
+  for (FrameFile& file : find_frames(args.input, args.first, args.last)) {
+    frames.emplace_back();
+    frames.back().output = with_number(args.output, file.number);
+    frames.back().input = std::move(file);
+  }
+  check_files(args, frames);
+
+  on_interrupt(OnInterrupt::remember);
+  Sequence sequence(args, options, device, frames);
+  sequence.run();
+  const double total_ms = ms_since(start);
+  if (!args.report.empty()) write_report(args, options, device, frames, sequence.at_once(), total_ms);
+  if (args.quiet) return 0;
+  std::vector<double> surface_ms;
+  for (const FluidFrameRecord& frame : frames) surface_ms.push_back(frame.surface_ms);
+  const FluidFrameRecord& last = frames.back();
+  print_note(fmt::format("{}particles {}, depth {}, triangles {}; ms: surface {:.1f}{}, total {:.1f}; {} at once",
+                         frames.size() > 1 ? fmt::format("frames {}; the last one: ", frames.size()) : "",
+                         last.particles, last.run.depth, last.triangles, spread_of(surface_ms).median,
+                         frames.size() > 1 ? " in the middle" : "", total_ms, sequence.at_once()));
+  return 0;
+}
+
+}  // namespace
+
+void add_fluid(CLI::App& program, Job& job) {
+  CLI::App* command = add_command(program, "fluid", "Make closed meshes of a simulation's particles.");
+  auto args = std::make_shared<FluidArgs>();
+  define_fluid_options(*command, *args);
+  finish_command(*command, job, args, run);
+}
+
+}  // namespace pointskin::cli

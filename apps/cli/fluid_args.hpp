@@ -1,0 +1,32 @@
+// The command line of `pointskin fluid`.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include <pointskin/fluid.hpp>
+
+#include "fluid_simulate.hpp"
+
+namespace pointskin::cli {
+
+struct FluidArgs {
+  std::string input, output, report;  ///< report empty: none
+  std::string kernel = "isotropic", device = "auto", shift = "auto";
+  std::string max_memory;  ///< empty: what the machine has left
+  FluidOptions options;
+  SimulateArgs simulation;  ///< with a scene: instead of `input`
+  std::optional<std::int64_t> first, last;
+  int threads = 0, at_once = 0;
+  bool no_normals = false, no_attributes = false, no_weights = false, quiet = false;
+};
+
+void define_fluid_options(CLI::App& command, FluidArgs& args);
+
+/// The library's options. @throws Error usage if one is out of range
+FluidOptions library_options(const FluidArgs& args);
+
+}  // namespace pointskin::cli

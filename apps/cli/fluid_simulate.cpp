@@ -1,0 +1,264 @@
+#include "fluid_simulate.hpp"
+
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <pointskin/error.hpp>
+#include <pointskin/io.hpp>
+#include <pointskin/mesh.hpp>
+
+#include "args.hpp"
+#include "console.hpp"
+#include "fluid/simulation.hpp"
+#include "json_text.hpp"
+#include "output_check.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "signals.hpp"
+#include "statistics.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
+
+/// Name of a frame's file: {} becomes its number, with as many digits as the last one has.
+std::string frame_file(const std::string& pattern, int frame, int frames) {
+  const std::size_t place = pattern.find("{}");
+  if (place == std::string::npos) return pattern;
+  const std::size_t digits = std::to_string(frames - 1).size();
+  std::string number = std::to_string(frame);
+  number.insert(0, digits - number.size(), '0');
+  return pattern.substr(0, place) + number + pattern.substr(place + 2);
+}
+
+void check_pattern(const std::string& pattern, const char* option) {
+  if (!pattern.empty() && pattern.find("{}") == std::string::npos)
+    throw_usage(
+        fmt::format("{}: {} needs {{}}, where the frame's number goes, because of --simulate", option, pattern));
+}
+
+/// Everything that can be found wrong before the first frame.
+simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& output) {
+  const auto kind = simulation::parse_scene(args.scene);
+  if (!kind) {
+    std::string names;
+    for (const simulation::SceneKind known : simulation::all_scenes())
+      names += (names.empty() ? "" : ", ") + std::string(simulation::name_of(known));
+    throw_usage(fmt::format("--simulate: '{}' is no scene; there are {}", args.scene, names));
+  }
+  if (args.frames < 1 || args.frames > 1'000'000)
+    throw_usage(fmt::format("--frames: {} is not in [1, 1000000]", args.frames));
+  if (!(args.fps >= 1 && args.fps <= 10'000)) throw_usage(fmt::format("--fps: {} is not in [1, 10000]", args.fps));
+  if (output.output.empty() && args.particles_out.empty() && output.report.empty())
+    throw_usage("no output; name meshes with -o, particles with --particles-out or a --report");
+  check_pattern(output.output, "-o");
+  check_pattern(args.particles_out, "--particles-out");
+  if (!output.output.empty() && output.output == args.particles_out)
+    throw_usage("-o and --particles-out name the same files");
+  if (output.report == "-") throw_usage("--report: stdout carries data only; name a file");
+  if (!output.output.empty()) check_mesh_output(frame_file(output.output, 0, args.frames));
+  if (!args.particles_out.empty()) {
+    if (!has_extension(args.particles_out, ".ply"))
+      throw_usage(fmt::format("--particles-out: {}: particles are written as .ply only", args.particles_out));
+    check_mesh_output(frame_file(args.particles_out, 0, args.frames));
+  }
+  if (!output.report.empty()) check_replaceable(output.report);
+  return *kind;
+}
+
+simulation::SimulationOptions simulation_options(const SimulateArgs& args) {
+  simulation::SimulationOptions options;
+  options.iterations = args.iterations;
+  options.viscosity = args.viscosity;
+  options.vorticity = args.vorticity;
+  validate(options);
+  return options;
+}
+
+Cloud cloud_of(simulation::ParticleStates particles) {
+  Cloud cloud;
+  cloud.positions = std::move(particles.positions);
+  constexpr std::pair<const char*, float Vec3f::*> kAxes[3] = {
+      {"velocity_x", &Vec3f::x}, {"velocity_y", &Vec3f::y}, {"velocity_z", &Vec3f::z}};
+  for (const auto& [name, axis] : kAxes) {
+    std::vector<float> values;
+    values.reserve(particles.velocities.size());
+    for (const Vec3f& v : particles.velocities) values.push_back(v.*axis);
+    cloud.attributes.push_back({name, AttributeType::float32, std::move(values)});
+  }
+  return cloud;
+}
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Steps, makes surfaces, writes and reports, one frame after another.
+class Frames {
+ public:
+  Frames(const SimulateArgs& args, const SimulateOutput& output, simulation::Simulation& fluid)
+      : args_(args), output_(output), fluid_(fluid) {}
+
+  void run_all(ProgressLine& progress) {
+    for (int frame = 0; frame < args_.frames; ++frame) {
+      throw_if_interrupted();
+      progress.update({"simulate", static_cast<double>(frame) / args_.frames});
+      run_one(frame);
+    }
+  }
+
+  /// The frames' lines of the report, joined by commas.
+  [[nodiscard]] const std::string& lines() const { return lines_; }
+  [[nodiscard]] const std::vector<double>& step_ms() const { return step_ms_; }
+  [[nodiscard]] const std::vector<double>& surface_ms() const { return surface_ms_; }
+  [[nodiscard]] std::int64_t triangles() const { return static_cast<std::int64_t>(mesh_.triangles.size()); }
+
+ private:
+  void run_one(int frame) {
+    if (frame > 0) fluid_.step(1 / args_.fps);
+    step_ms_.push_back(fluid_.report().ms);
+    if (fluid_.report().lost > 0)
+      throw Error(ErrorCode::internal,
+                  fmt::format("frame {}: {} particles left the tank", frame, fluid_.report().lost));
+    const auto surfacing = std::chrono::steady_clock::now();
+    if (!output_.output.empty()) {
+      fluid_.surface(output_.surface, mesh_);
+      surface_ms_.push_back(ms_since(surfacing));
+    }
+    throw_if_interrupted();
+    const auto writing = std::chrono::steady_clock::now();
+    if (!output_.output.empty()) write_mesh(frame_file(output_.output, frame, args_.frames), mesh_, output_.threads);
+    if (!args_.particles_out.empty())
+      write_cloud(frame_file(args_.particles_out, frame, args_.frames), cloud_of(fluid_.particles()), output_.threads);
+    if (!output_.report.empty()) add_line(describe(ms_since(writing)));
+  }
+
+  /// As text: many frames would make a tree of values that outgrows the simulation.
+  void add_line(const Json& json) { lines_ += (lines_.empty() ? "\n    " : ",\n    ") + json.dump(); }
+
+  [[nodiscard]] Json describe(double write_ms) const {
+    const simulation::SimulationReport& r = fluid_.report();
+    Json json = {{"frame", r.frame},
+                 {"seconds", r.seconds},
+                 {"particles", r.particles},
+                 {"substeps", r.substeps},
+                 {"mean_density_error", r.mean_density_error},
+                 {"max_density_error", r.max_density_error},
+                 {"kinetic_energy", r.kinetic_energy},
+                 {"potential_energy", r.potential_energy},
+                 {"max_speed", r.max_speed},
+                 {"crowded", r.crowded}};
+    if (!output_.output.empty()) {
+      const MeshReport mesh = measure(mesh_, output_.threads);
+      json["mesh"] = {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
+                      {"manifold", mesh.manifold()}, {"components", mesh.components}, {"watertight", mesh.watertight()},
+                      {"volume", mesh.volume}};
+    }
+    json["ms"] = {{"simulate", r.ms}};
+    if (!output_.output.empty()) json["ms"]["surface"] = surface_ms_.back();
+    json["ms"]["write"] = write_ms;
+    json["host_peak_bytes"] = host_peak_bytes();
+    return json;
+  }
+
+  const SimulateArgs& args_;
+  const SimulateOutput& output_;
+  simulation::Simulation& fluid_;
+  Mesh mesh_;
+  std::vector<double> step_ms_, surface_ms_;
+  std::string lines_;
+};
+
+Json options_json(const SimulateArgs& args, const SimulateOutput& output) {
+  const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  return {{"simulate", args.scene},
+          {"particles", args.particles},
+          {"frames", args.frames},
+          {"fps", args.fps},
+          {"iterations", args.iterations},
+          {"viscosity", args.viscosity},
+          {"vorticity", args.vorticity},
+          {"cube_size", output.surface.cube_size},
+          {"smoothing_length", output.surface.smoothing_length},
+          {"device", output.device},
+          {"threads", output.threads},
+          {"output", or_null(output.output)},
+          {"particles_out", or_null(args.particles_out)}};
+}
+
+void write_report(const SimulateArgs& args, const SimulateOutput& output, const simulation::Simulation& fluid,
+                  const Frames& frames) {
+  const Device& device = fluid.device();
+  const simulation::Scene& scene = fluid.scene();
+  Json json = {{"version", 1}, {"command", "fluid --simulate"}};
+  json["device"] = {{"kind", device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", device.name()}};
+  json["scene"] = {{"name", args.scene},
+                   {"particles", fluid.report().particles},
+                   {"spacing", scene.spacing},
+                   {"tank", {scene.tank.x, scene.tank.y, scene.tank.z}}};
+  json["options"] = options_json(args, output);
+  const std::string place = "frames go here";
+  json["frames"] = place;
+  json["ms"] = {{"simulate_median", spread_of(frames.step_ms()).median}};
+  if (!frames.surface_ms().empty()) json["ms"]["surface_median"] = spread_of(frames.surface_ms()).median;
+  json["memory"] = {{"host_peak_bytes", host_peak_bytes()}, {"device_peak_bytes", fluid.peak_bytes()}};
+  std::string text = json_text(json);
+  const std::string quoted = '"' + place + '"';
+  text.replace(text.find(quoted), quoted.size(), "[" + frames.lines() + "\n  ]");
+  write_file_atomically(output.report, text);
+}
+
+}  // namespace
+
+void define_simulation(CLI::App& command, SimulateArgs& args) {
+  const std::string group = "Simulation";
+  const auto value = [&](const char* name, auto& target, const char* type, const char* description) {
+    return command.add_option(name, target, description)->type_name(type)->group(group)->capture_default_str();
+  };
+  command
+      .add_option("--simulate", args.scene,
+                  "simulate dam-break, double-dam-break, drop, obstacle or stir instead of reading IN")
+      ->type_name("SCENE")
+      ->group(group);
+  value("--frames", args.frames, "N", "frames to write, the first at rest; {} in names: number");
+  value("--particles", args.particles, "N", "particles of the scene, 200 to 64000000");
+  value("--fps", args.fps, "F", "frames per simulated second");
+  value("--iterations", args.iterations, "N", "of the density constraint a substep, 1 to 100");
+  value("--viscosity", args.viscosity, "C", "of XSPH, no unit, 0 to 1");
+  value("--vorticity", args.vorticity, "E", "of vorticity confinement, no unit, 0: none");
+  command.add_option("--particles-out", args.particles_out, "particles of every frame: .ply with velocity_x, _y, _z")
+      ->type_name("OUT")
+      ->group(group);
+}
+
+int run_simulation(const SimulateArgs& args, const SimulateOutput& output) {
+  const simulation::SceneKind kind = check(args, output);
+  const simulation::SimulationOptions options = simulation_options(args);
+  const Device device = parse_device(output.device, output.threads);
+  on_interrupt(OnInterrupt::remember);
+  simulation::Simulation fluid(simulation::make_scene(kind, args.particles), options, device);
+  Frames frames(args, output, fluid);
+  {
+    ProgressLine progress(!output.quiet && stderr_is_terminal());
+    frames.run_all(progress);
+  }
+  if (!output.report.empty()) write_report(args, output, fluid, frames);
+  if (output.quiet) return 0;
+  const double step_ms = spread_of(frames.step_ms()).median;
+  std::string text = fmt::format("{}: {} particles, {} frames; simulation: median {:.1f} ms", args.scene,
+                                 fluid.report().particles, args.frames, step_ms);
+  if (!frames.surface_ms().empty())
+    text += fmt::format("; surface: median {:.1f} ms, last {} triangles", spread_of(frames.surface_ms()).median,
+                        frames.triangles());
+  print_note(text);
+  return 0;
+}
+
+}  // namespace pointskin::cli

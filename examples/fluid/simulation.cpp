@@ -1,0 +1,191 @@
+#include "simulation.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "engine.hpp"
+
+namespace pointskin::simulation {
+namespace {
+
+constexpr double kWaterDensity = 1000;  // kg / m^3
+/// Particles keep half their distance at rest from solids, times this.
+constexpr float kGapShare = 0.5F;
+
+[[noreturn]] void refuse(const std::string& story) { throw Error(ErrorCode::usage, story); }
+
+void check_range(const char* option, double value, double low, double high) {
+  if (!(value >= low && value <= high))
+    refuse(std::string(option) + ": " + std::to_string(value) + " is not in [" + std::to_string(low) + ", " +
+           std::to_string(high) + "]");
+}
+
+bool is_finite(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+double length_of(const Vec3f& v) {
+  const double x = v.x;
+  const double y = v.y;
+  const double z = v.z;
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+}  // namespace
+
+void validate(const SimulationOptions& options) {
+  constexpr double kMost = 1e6;
+  check_range("iterations", options.iterations, 1, 100);
+  check_range("relaxation", options.relaxation, 0, kMost);
+  check_range("warm start", options.warm_start, 0, 1);
+  check_range("artificial pressure", options.artificial_pressure, 0, 1);
+  check_range("viscosity", options.viscosity, 0, 1);
+  check_range("vorticity", options.vorticity, 0, kMost);
+  check_range("gravity", options.gravity, 0, kMost);
+  check_range("courant", options.courant, 0.05, 1);
+  check_range("most substeps", options.most_substeps, 1, 1000);
+  check_range("fewest substeps", options.fewest_substeps, 1, options.most_substeps);
+}
+
+class Simulation::Impl {
+ public:
+  Impl(Scene scene, const SimulationOptions& options, Device device)
+      : scene_(std::move(scene)), options_(options), device_(device) {
+    validate(options);
+    if (scene_.positions.empty() || !(scene_.spacing > 0)) refuse("a scene needs particles and a spacing");
+    radius_ = scene_.spacing / kRestSpacing;
+    engine_ = device.kind == DeviceKind::cuda ? make_cuda_engine(device.index) : make_cpu_engine(device.threads);
+    settings_.kernel = make_kernel_constants();
+    settings_.iterations = options.iterations;
+    settings_.relaxation = static_cast<float>(options.relaxation);
+    settings_.artificial_pressure = static_cast<float>(options.artificial_pressure);
+    settings_.viscosity = static_cast<float>(options.viscosity);
+    settings_.vorticity = static_cast<float>(options.vorticity);
+    settings_.gravity = static_cast<float>(options.gravity) / radius_;
+    settings_.solids.tank = 1 / radius_ * scene_.tank;
+    settings_.solids.gap = kGapShare * kRestSpacing / 2;
+    start();
+  }
+
+  void start() {
+    report_ = {};
+    settings_.seconds = 0;
+    report_.particles = static_cast<std::int64_t>(scene_.positions.size());
+    engine_->start(scene_, radius_);
+    describe();
+  }
+
+  void step(double seconds, const std::vector<Interaction>& interactions) {
+    const auto begin = std::chrono::steady_clock::now();
+    if (!(seconds > 0 && seconds <= 1)) refuse("a frame's seconds must be in (0, 1]");
+    set_forces(interactions);
+    const int substeps = substeps_for(seconds);
+    const double part = seconds / substeps;
+    // Multipliers are a pressure times seconds^2.
+    const double ratio = settings_.seconds > 0 ? part / double{settings_.seconds} : 1;
+    settings_.warm_start = static_cast<float>(options_.warm_start * ratio * ratio);
+    settings_.seconds = static_cast<float>(part);
+    for (int i = 1; i <= substeps; ++i) {
+      place_obstacle(report_.seconds + part * i);
+      engine_->substep(settings_);
+      settings_.warm_start = static_cast<float>(options_.warm_start);
+    }
+    report_.substeps = substeps;
+    report_.seconds += seconds;
+    ++report_.frame;
+    describe();
+    report_.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  void surface(FluidOptions options, Mesh& mesh) {
+    if (options.particle_radius == 0) options.particle_radius = 0.5 * double{scene_.spacing};
+    pointskin::validate(options);
+    engine_->surface(options, box_, mesh, surface_report_);
+  }
+
+  Scene scene_;
+  SimulationOptions options_;
+  Device device_;
+  SimulationReport report_;
+  FluidReport surface_report_;
+  std::unique_ptr<Engine> engine_;
+
+ private:
+  void set_forces(const std::vector<Interaction>& interactions) {
+    std::vector<Interaction> all = scene_.interactions_at(report_.seconds);
+    all.insert(all.end(), interactions.begin(), interactions.end());
+    if (all.size() > kMostInteractions) refuse("more than " + std::to_string(kMostInteractions) + " forces at once");
+    settings_.force_count = 0;
+    for (const Interaction& given : all) {
+      const double length = length_of(given.direction);
+      if (!is_finite(given.centre) || !std::isfinite(length) || !(length > 0) || !(given.radius > 0) ||
+          !std::isfinite(given.radius) || !std::isfinite(given.strength))
+        refuse("an interaction needs finite numbers, a direction and a radius above 0");
+      const auto scale = static_cast<float>(given.strength / (length * radius_));
+      settings_.forces[settings_.force_count++] = {1 / radius_ * given.centre, scale * given.direction,
+                                                   radius_ / given.radius, given.kind == Interaction::Kind::swirl};
+    }
+  }
+
+  /// In equal parts, none of which moves anything farther than `courant` kernel radii.
+  [[nodiscard]] int substeps_for(double seconds) const {
+    double speed = report_.max_speed;
+    const Vec3f here = scene_.obstacle_at(report_.seconds).centre;
+    const Vec3f next = scene_.obstacle_at(report_.seconds + seconds).centre;
+    speed = std::max(speed, length_of(next - here) / seconds);
+    const double way = seconds * (speed + options_.gravity * seconds) / radius_;
+    const double needed = std::ceil(way / options_.courant);
+    return static_cast<int>(
+        std::clamp(needed, double{1} * options_.fewest_substeps, double{1} * options_.most_substeps));
+  }
+
+  void place_obstacle(double seconds) {
+    const Obstacle obstacle = scene_.obstacle_at(seconds);
+    settings_.solids.centre = 1 / radius_ * obstacle.centre;
+    settings_.solids.radius = obstacle.radius / radius_;
+  }
+
+  void describe() {
+    const Totals totals = engine_->totals(settings_.solids);
+    const double n = static_cast<double>(report_.particles);
+    const double radius = radius_;
+    const double mass = kWaterDensity * double{scene_.spacing} * scene_.spacing * scene_.spacing;
+    box_ = totals.box;
+    report_.lost = totals.lost;
+    report_.crowded = totals.crowded;
+    report_.mean_density_error = totals.compression / n;
+    report_.max_density_error = totals.most_compression;
+    report_.kinetic_energy = 0.5 * mass * radius * radius * totals.squared_speed;
+    report_.potential_energy = mass * options_.gravity * radius * totals.height;
+    report_.max_speed = radius * std::sqrt(double{totals.fastest_squared});
+  }
+
+  float radius_ = 1;  ///< of the kernel, metres
+  StepSettings settings_;
+  Bounds box_;
+};
+
+Simulation::Simulation(Scene scene, const SimulationOptions& options, Device device)
+    : impl_(std::make_unique<Impl>(std::move(scene), options, device)) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+void Simulation::step(double seconds, const std::vector<Interaction>& interactions) {
+  impl_->step(seconds, interactions);
+}
+void Simulation::restart() { impl_->start(); }
+void Simulation::surface(const FluidOptions& options, Mesh& mesh) { impl_->surface(options, mesh); }
+ParticleStates Simulation::particles() const { return impl_->engine_->particles(); }
+const Scene& Simulation::scene() const { return impl_->scene_; }
+const SimulationOptions& Simulation::options() const { return impl_->options_; }
+const FluidReport& Simulation::surface_report() const { return impl_->surface_report_; }
+const SimulationReport& Simulation::report() const { return impl_->report_; }
+const Device& Simulation::device() const { return impl_->device_; }
+double Simulation::particle_radius() const { return 0.5 * double{impl_->scene_.spacing}; }
+std::int64_t Simulation::peak_bytes() const { return impl_->engine_->peak_bytes(); }
+
+}  // namespace pointskin::simulation

@@ -1,0 +1,103 @@
+// Position-based fluids on the CPU or on a GPU: a scene, moved on frame by frame.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <pointskin/device.hpp>
+#include <pointskin/fluid.hpp>
+#include <pointskin/mesh.hpp>
+#include <pointskin/vector.hpp>
+
+#include "scene.hpp"
+
+namespace pointskin::simulation {
+
+struct SimulationOptions {
+  int iterations = 4;       ///< of the density constraint, a substep; in [1, 100]
+  double relaxation = 0.5;  ///< epsilon of the constraint, in units of kernel radii, >= 0; more is softer
+  double warm_start = 0.5;  ///< part of the last substep's pressure that the next begins with, in [0, 1]; 0: none
+  double artificial_pressure = 2e-4;  ///< keeps particles apart where they are few, >= 0
+  double viscosity = 0.02;            ///< c of XSPH, in [0, 1]
+  double vorticity = 0;               ///< of vorticity confinement, >= 0; 0: none, and then it costs nothing
+  double gravity = 9.81;              ///< downwards, metres / second^2, >= 0
+  /// A frame is cut into as few equal substeps as keep the fastest particle's way below this many kernel radii.
+  double courant = 1;       ///< in [0.05, 1]
+  int fewest_substeps = 2;  ///< in [1, most_substeps]
+  int most_substeps = 64;   ///< at most 1000; what would still be faster than one radius a substep is slowed down
+};
+
+/// @throws Error usage, naming the option, if one is out of its range
+void validate(const SimulationOptions& options);
+
+/// What the last frame did. A particle's mass is 1000 kg / m^3 times spacing^3.
+struct SimulationReport {
+  std::int64_t frame = 0;  ///< frames since the start
+  double seconds = 0;      ///< since the start, of the simulated time
+  std::int64_t particles = 0;
+  std::int64_t lost = 0;          ///< outside of the tank or not finite; 0, or something is wrong
+  std::int64_t crowded = 0;       ///< particles with more neighbours than are looked at
+  double mean_density_error = 0;  ///< mean of max(0, density / density at rest - 1)
+  double max_density_error = 0;   ///< the largest
+  double kinetic_energy = 0;      ///< joules
+  double potential_energy = 0;    ///< joules, above the floor
+  double max_speed = 0;           ///< metres / second
+  int substeps = 0;
+  double ms = 0;  ///< wall clock of step(), results on the device included
+};
+
+/// Particles on the host, in the scene's order.
+struct ParticleStates {
+  std::vector<Vec3f> positions;   ///< shape (n), metres
+  std::vector<Vec3f> velocities;  ///< shape (n), metres / second
+};
+
+/// A scene on its device. The same steps give the same bytes, on CPU and GPU and for any number of threads. Not safe
+/// for two threads at once.
+class Simulation {
+ public:
+  /// @throws Error usage as validate(), device_unavailable, over_limit
+  explicit Simulation(Scene scene, const SimulationOptions& options = {}, Device device = Device::automatic());
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// Moves on by `seconds` under the scene's forces and `interactions`, which hold for the whole frame.
+  ///
+  /// Cuts the frame into k = ceil(seconds (v + g seconds) / (courant radius)) substeps, v the speed of the fastest
+  /// particle or of the obstacle, k within the limits of the options. A substep on a GPU takes 26 launches and one host
+  /// round trip with 4 iterations, a frame two round trips more. O(k n iterations); about 370 bytes a particle, 500 up to 2^18.
+  /// @param seconds  in (0, 1]
+  /// @throws Error usage if `seconds` or an interaction is out of its range, or there are more than 7 interactions
+  void step(double seconds, const std::vector<Interaction>& interactions = {});
+
+  /// Back to the scene's first frame. Every byte is as if it were new.
+  void restart();
+
+  /// Copies the particles to the host.
+  [[nodiscard]] ParticleStates particles() const;
+
+  /// The surface of the water as FluidSurfacer makes it, of the particles where they are on the device; with
+  /// `options.attributes` vertices have the velocity as velocity_x, velocity_y and velocity_z. A particle_radius of 0
+  /// means particle_radius(). The same bytes whenever the steps were the same; sums run in the simulation's order, so
+  /// last bits differ from those of FluidSurfacer.
+  /// @throws Error as FluidSurfacer::surface
+  void surface(const FluidOptions& options, Mesh& mesh);
+  [[nodiscard]] const FluidReport& surface_report() const;
+
+  [[nodiscard]] const Scene& scene() const;
+  [[nodiscard]] const SimulationOptions& options() const;
+  [[nodiscard]] const SimulationReport& report() const;
+  [[nodiscard]] const Device& device() const;
+  /// Half of the spacing at rest, metres: what surfaces take as the particles' radius.
+  [[nodiscard]] double particle_radius() const;
+  /// Highest sum of all arrays on the device so far.
+  [[nodiscard]] std::int64_t peak_bytes() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pointskin::simulation

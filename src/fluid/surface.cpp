@@ -1,0 +1,48 @@
+#include "fluid/surface.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "exec/cpu_primitives.hpp"
+#include "fluid/surface_impl.hpp"
+
+namespace pointskin::fluid {
+
+FluidFrame fit_frame(const Bounds& box, const FluidOptions& options) {
+  constexpr int kLeastDepth = 4;
+  const double cell = options.cube_size * options.particle_radius;
+  FluidFrame frame;
+  frame.kernel_radius = 2 * options.smoothing_length * options.particle_radius;
+  const double step = 4 * cell;
+  const double margin = frame.kernel_radius + 3 * step;
+  const double lower[3] = {box.lower.x, box.lower.y, box.lower.z};
+  const double upper[3] = {box.upper.x, box.upper.y, box.upper.z};
+  double side = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    frame.cube.lower[a] = std::floor((lower[a] - margin) / step) * step;
+    side = std::max(side, upper[a] + margin - frame.cube.lower[a]);
+  }
+  frame.depth = kLeastDepth;
+  while (frame.depth <= octree::kMaxDepth && std::ldexp(cell, frame.depth) < side) ++frame.depth;
+  if (frame.depth > octree::kMaxDepth)
+    throw Error(
+        ErrorCode::over_limit,
+        fmt::format("the particles reach over {:.3g} cells of the surface, more than 2^{} along an axis; choose "
+                    "larger cells, or leave far particles out",
+                    side / cell, octree::kMaxDepth));
+  frame.cube.size = std::ldexp(cell, frame.depth);
+  return frame;
+}
+
+double threshold_of(const FluidOptions& options) {
+  if (options.surface_threshold != 0) return options.surface_threshold;
+  return options.kernel == FluidKernel::anisotropic ? 0.2 : 1.0;
+}
+
+template FluidSurface make_surface(exec::Cpu&, const Particles&, const FluidOptions&, FluidReport&);
+
+}  // namespace pointskin::fluid

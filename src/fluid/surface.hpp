@@ -1,0 +1,61 @@
+// From particles in a space to the surface around them, in the same space.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pointskin/cloud.hpp>
+#include <pointskin/fluid.hpp>
+
+#include "core/array_view.hpp"
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+#include "octree/frame.hpp"
+#include "surface/extract.hpp"
+
+namespace pointskin::fluid {
+
+/// Values of the particles that the vertices are to get, in the order of the positions.
+struct ParticleValues {
+  std::string name;
+  AttributeType type = AttributeType::float32;
+  ArrayView<const float> values;  ///< (n)
+};
+
+/// Particles of one frame, in a space.
+struct Particles {
+  ArrayView<const Vec3f> positions;  ///< (n), world units, finite
+  std::vector<ParticleValues> values{};
+  std::optional<Bounds> bounds{};  ///< a box around all; unset: measured, one round trip
+  bool canonical = false;          ///< true: their order is the same whenever they are; false: it does not matter
+};
+
+/// The surface of a frame, in the space of its particles.
+struct FluidSurface {
+  surface::Surface mesh;                    ///< positions in world units
+  std::vector<exec::Buffer<float>> values;  ///< (vertices) each; whole numbers in 0..255 for uint8
+};
+
+/// Lengths of FluidOptions in the cube of one frame.
+struct FluidFrame {
+  octree::Frame cube;
+  int depth = 0;
+  double kernel_radius = 0;  ///< world units
+};
+
+/// The cube around particles: finest cells exactly as wide as asked, their borders at multiples of four cells in world
+/// coordinates, so that cells stay where they are from frame to frame.
+/// @throws Error over_limit if that takes more than 2^kMaxDepth cells along an axis
+FluidFrame fit_frame(const Bounds& box, const FluidOptions& options);
+
+/// FluidOptions::surface_threshold, or its default.
+double threshold_of(const FluidOptions& options);
+
+/// Makes the surface. Fills the counts and the times of `report` between upload and download, for which it waits.
+/// @throws Error as FluidSurfacer::surface
+template <exec::Space Exec>
+FluidSurface make_surface(Exec& ex, const Particles& particles, const FluidOptions& options, FluidReport& report);
+
+}  // namespace pointskin::fluid

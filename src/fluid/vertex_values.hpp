@@ -1,0 +1,44 @@
+// Means of particles' values at the vertices of a surface, with the kernel of the surface.
+#pragma once
+
+#include <cstdint>
+
+#include <pointskin/vector.hpp>
+
+#include "core/array_view.hpp"
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+#include "fluid/particle_tree.hpp"
+
+namespace pointskin::fluid {
+
+/// Particles in the order of the tree's keys, unit cube.
+struct ParticlesView {
+  ParticleTreeView tree;
+  ArrayView<const Vec3f> positions;
+  float radius = 0;  ///< of the kernel, unit cube
+};
+
+/// How many values share a pass over the particles.
+inline constexpr int kValuesAtOnce = 4;
+
+/// out[k][v] = sum k_j values[k][j] / sum k_j at vertex v, k_j = max(0, 1 - |x - p_j|^2 / R^2)^3, over the particles
+/// whose value is finite; NaN where there are none.
+struct VertexMeans {
+  int count = 0;                            ///< in [1, kValuesAtOnce]
+  const float* values[kValuesAtOnce] = {};  ///< (particles) in the order of the tree's keys
+  float* out[kValuesAtOnce] = {};           ///< (vertices)
+};
+template <exec::Space Exec>
+void average_at(Exec& ex, const ParticlesView& particles, ArrayView<const Vec3f> vertices, const VertexMeans& means);
+
+/// How crowded particles are: sum over the others of 1 - |p_i - p_j|^2 / R^2 within R. 13 in the bulk, where R is four
+/// particle radii. Source: as smooth() in fluid/mesh_graph.hpp.
+template <exec::Space Exec>
+exec::Buffer<float> crowding(Exec& ex, const ParticlesView& particles);
+
+/// Weights of smoothing out of the crowding at vertices: s^3 (6 s^2 - 15 s + 10), s = min(1, crowding / bulk).
+template <exec::Space Exec>
+void to_smoothing_weights(Exec& ex, float bulk, ArrayView<float> values);
+
+}  // namespace pointskin::fluid

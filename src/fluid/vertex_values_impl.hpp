@@ -1,0 +1,91 @@
+#pragma once
+
+#include <limits>
+
+#include "exec/algorithms.hpp"
+#include "fluid/vertex_values.hpp"
+
+namespace pointskin::fluid {
+namespace vertex_values {
+
+inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+struct AverageAtVertex {
+  ParticlesView particles;
+  ArrayView<const Vec3f> vertices;
+  VertexMeans means;
+  PSK_HD void operator()(std::int64_t v) const {
+    const Vec3f x = vertices[v];
+    const float inverse = 1 / particles.radius;
+    float sum[kValuesAtOnce] = {};
+    float weight[kValuesAtOnce] = {};
+    for_each_range_near(particles.tree, x, x, particles.radius, [&](std::int32_t first, std::int32_t last) {
+      for (std::int32_t j = first; j < last; ++j) {
+        const Vec3f p = particles.positions[j];
+        const float dx = (p.x - x.x) * inverse;
+        const float dy = (p.y - x.y) * inverse;
+        const float dz = (p.z - x.z) * inverse;
+        const float q = 1 - (dx * dx + dy * dy + dz * dz);
+        if (!(q > 0)) continue;
+        const float k = q * q * q;
+        for (int i = 0; i < means.count; ++i) {
+          const float value = means.values[i][j];
+          if (!(value - value == 0)) continue;
+          sum[i] += k * value;
+          weight[i] += k;
+        }
+      }
+    });
+    for (int i = 0; i < means.count; ++i) means.out[i][v] = weight[i] > 0 ? sum[i] / weight[i] : kNan;
+  }
+};
+
+struct CrowdingOf {
+  ParticlesView particles;
+  ArrayView<float> out;
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f x = particles.positions[i];
+    const float inverse = 1 / particles.radius;
+    float sum = 0;
+    for_each_neighbour(particles.tree, particles.tree.cell[i], [&](std::int32_t j) {
+      const Vec3f p = particles.positions[j];
+      const float dx = (p.x - x.x) * inverse;
+      const float dy = (p.y - x.y) * inverse;
+      const float dz = (p.z - x.z) * inverse;
+      const float q = 1 - (dx * dx + dy * dy + dz * dz);
+      if (q > 0 && j != i) sum += q;
+    });
+    out[i] = sum;
+  }
+};
+
+struct ToWeight {
+  float inverse_bulk;
+  ArrayView<float> values;
+  PSK_HD void operator()(std::int64_t v) const {
+    const float share = values[v] * inverse_bulk;
+    const float s = share < 1 ? share : 1.0F;
+    values[v] = s > 0 ? s * s * s * (s * (6 * s - 15) + 10) : 0.0F;
+  }
+};
+
+}  // namespace vertex_values
+
+template <exec::Space Exec>
+void average_at(Exec& ex, const ParticlesView& particles, ArrayView<const Vec3f> vertices, const VertexMeans& means) {
+  for_each(ex, "fluid.attributes", vertices.size, vertex_values::AverageAtVertex{particles, vertices, means});
+}
+
+template <exec::Space Exec>
+exec::Buffer<float> crowding(Exec& ex, const ParticlesView& particles) {
+  auto out = exec::make_buffer<float>(ex, particles.positions.size);
+  for_each(ex, "fluid.crowding", out.size(), vertex_values::CrowdingOf{particles, out.view()});
+  return out;
+}
+
+template <exec::Space Exec>
+void to_smoothing_weights(Exec& ex, float bulk, ArrayView<float> values) {
+  for_each(ex, "fluid.weights", values.size, vertex_values::ToWeight{1 / bulk, values});
+}
+
+}  // namespace pointskin::fluid

@@ -1,0 +1,77 @@
+// Surfaces of particles on the GPU against the CPU: the same bytes.
+#include <gtest/gtest.h>
+
+#include <pointskin/device.hpp>
+#include <pointskin/error.hpp>
+#include <pointskin/fluid.hpp>
+
+#include <optional>
+
+#include "parity/gpu_test.hpp"
+#include "property/reconstruction.hpp"
+#include "support/particles.hpp"
+#include "support/shapes.hpp"
+
+namespace pointskin {
+namespace {
+
+using test::expect_same_bytes;
+
+class FluidOnGpu : public test::GpuTest {
+ protected:
+  void expect_parity(const Cloud& cloud, const FluidOptions& options) {
+    FluidSurfacer on_cpu(Device::cpu());
+    FluidSurfacer on_gpu(gpu_);
+    Mesh expected;
+    try {
+      expected = on_cpu.surface(cloud, options);
+    } catch (const Error& error) {
+      EXPECT_EQ(test::error_of([&] { on_gpu.surface(cloud, options); }), error.code());
+      return;
+    }
+    for (int run = 0; run < 2; ++run) expect_same_bytes(on_gpu.surface(cloud, options), expected);
+    EXPECT_EQ(on_gpu.report().coarse_corners, on_cpu.report().coarse_corners);
+    EXPECT_EQ(on_gpu.report().fine_corners, on_cpu.report().fine_corners);
+    EXPECT_EQ(on_gpu.report().rounds, on_cpu.report().rounds);
+    EXPECT_EQ(on_gpu.report().removed_components, on_cpu.report().removed_components);
+  }
+};
+
+TEST_F(FluidOnGpu, GivesTheBytesOfTheCpuForAllFramesAndOptions) {
+  for (test::NamedParticles& frame : test::particle_frames(7)) {
+    frame.cloud.attributes.push_back({"vx", AttributeType::float32, {}});
+    frame.cloud.attributes.push_back({"red", AttributeType::uint8, {}});
+    for (const Vec3f& p : frame.cloud.positions) {
+      frame.cloud.attributes[0].values.push_back(p.x * p.y);
+      frame.cloud.attributes[1].values.push_back(p.z > 0 ? 200 : 20);
+    }
+    for (const FluidKernel kernel : {FluidKernel::isotropic, FluidKernel::anisotropic})
+      for (const double cube_size : {0.5, 1.0, 1.7})
+        for (const int smoothing : {0, 7}) {
+          SCOPED_TRACE(::testing::Message() << frame.name << ", cube size " << cube_size);
+          FluidOptions options;
+          options.particle_radius = 1;
+          options.kernel = kernel;
+          options.cube_size = cube_size;
+          options.smoothing_iterations = smoothing;
+          options.min_component = smoothing > 0 ? 3 : 0;
+          expect_parity(frame.cloud, options);
+        }
+  }
+}
+
+TEST_F(FluidOnGpu, GivesTheBytesOfTheCpuForASimulatedFrame) {
+  const std::optional<Cloud> frame = test::shared_cloud("fluid_dam_break_24389");
+  if (!frame) GTEST_SKIP() << "no fluid_dam_break_24389";
+  for (const FluidKernel kernel : {FluidKernel::isotropic, FluidKernel::anisotropic}) {
+    FluidOptions options;
+    options.particle_radius = 0.025;
+    options.kernel = kernel;
+    options.smoothing_iterations = 25;
+    options.min_component = 10;
+    expect_parity(*frame, options);
+  }
+}
+
+}  // namespace
+}  // namespace pointskin

@@ -53,8 +53,7 @@ FluidFrame fit_frame(const Bounds& box, const FluidOptions& options);
 /// FluidOptions::surface_threshold, or its default.
 double threshold_of(const FluidOptions& options);
 
-/// Makes the surface. Fills the counts and the times of `report` between upload and download; does not wait for the
-/// last steps.
+/// Makes the surface. Fills the counts and the times of `report` between upload and download, for which it waits.
 /// @throws Error as FluidSurfacer::surface
 template <exec::Space Exec>
 FluidSurface make_surface(Exec& ex, const Particles& particles, const FluidOptions& options, FluidReport& report);

@@ -16,6 +16,7 @@
 #include "console.hpp"
 #include "deform_script.hpp"
 #include "fit_args.hpp"
+#include "frame_files.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
@@ -39,20 +40,8 @@ struct DeformArgs : FitArgs, DeviceArgs {
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
-/// Name of a frame's file: {} becomes its number, with as many digits as the last one has.
-std::string frame_file(const DeformArgs& args, const std::string& pattern, int frame) {
-  const std::size_t place = pattern.find("{}");
-  if (!args.frames_given || place == std::string::npos) return pattern;
-  const std::size_t digits = std::to_string(args.frames - 1).size();
-  std::string number = std::to_string(frame);
-  number.insert(0, digits - number.size(), '0');
-  return pattern.substr(0, place) + number + pattern.substr(place + 2);
-}
-
-void check_pattern(const DeformArgs& args, const std::string& pattern, const char* option) {
-  if (pattern.empty() || !args.frames_given) return;
-  if (pattern.find("{}") == std::string::npos)
-    throw_usage(fmt::format("{}: {} needs {{}}, where the frame's number goes, because of --frames", option, pattern));
+std::string file_of(const DeformArgs& args, const std::string& pattern, int frame) {
+  return args.frames_given ? frame_file(pattern, frame, args.frames) : pattern;
 }
 
 /// Everything that can be found wrong before the input is opened.
@@ -60,19 +49,21 @@ void check_files(const DeformArgs& args) {
   if (args.output.empty() && args.cloud.empty()) throw_usage("no output; name a mesh with -o or a cloud with --cloud");
   if (args.frames_given && (args.frames < 2 || args.frames > 100'000))
     throw_usage(fmt::format("--frames: {} is not in [2, 100000]", args.frames));
-  check_pattern(args, args.output, "-o");
-  check_pattern(args, args.cloud, "--cloud");
+  if (args.frames_given) {
+    check_pattern(args.output, "-o", "--frames");
+    check_pattern(args.cloud, "--cloud", "--frames");
+  }
   std::vector<std::string> inputs = args.inputs;
   inputs.push_back(args.script);
   if (!args.envelope.empty()) inputs.push_back(args.envelope);
   std::vector<OutputFile> outputs = {{"-o", args.output}, {"--cloud", args.cloud}, {"--report", args.report}};
   if (args.output.empty()) outputs.erase(outputs.begin());  // stdout may carry the cloud then
   check_distinct(inputs, outputs);
-  if (!args.output.empty()) check_mesh_output(frame_file(args, args.output, 0));
+  if (!args.output.empty()) check_mesh_output(file_of(args, args.output, 0));
   if (!args.cloud.empty()) {
     if (args.cloud != "-" && !has_extension(args.cloud, ".ply"))
       throw_usage(fmt::format("--cloud: {}: clouds are written as .ply only", args.cloud));
-    check_mesh_output(frame_file(args, args.cloud, 0));
+    check_mesh_output(file_of(args, args.cloud, 0));
   }
   if (!args.report.empty()) check_replaceable(args.report);
 }
@@ -111,8 +102,9 @@ class Frames {
     frame_ms_.push_back(watch.ms());
     const Stopwatch writing;
     throw_if_interrupted();
-    if (!args_.output.empty()) write_mesh(frame_file(args_, args_.output, frame), mesh_, args_.threads);
-    if (!args_.cloud.empty()) write_cloud(frame_file(args_, args_.cloud, frame), deformer_.cloud(), args_.threads);
+    if (!args_.output.empty()) write_mesh(file_of(args_, args_.output, frame), mesh_, args_.threads);
+    if (!args_.cloud.empty()) write_cloud(file_of(args_, args_.cloud, frame), deformer_.cloud(), args_.threads);
+    if (args_.frames_given) frame_was_written();
     if (!args_.report.empty()) json_.push_back(describe(share, frame_ms_.back(), writing.ms()));
   }
 

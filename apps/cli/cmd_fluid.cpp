@@ -1,7 +1,6 @@
 // pointskin fluid: particles of a simulation, frame after frame, to meshes.
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -29,16 +28,12 @@
 #include "report.hpp"
 #include "signals.hpp"
 #include "statistics.hpp"
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
-double ms_since(const Clock::time_point& start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// One frame and what became of it.
 struct FluidFrameRecord {
@@ -77,13 +72,13 @@ class Worker {
 
   void run(FluidFrameRecord& frame) {
     throw_if_interrupted();
-    const Clock::time_point start = Clock::now();
+    const Stopwatch start;
     const Cloud cloud = read_cloud(frame.input.path, {.shift = parse_shift(args_.shift), .threads = threads_});
     frame.particles = cloud.size();
     frame.dropped = cloud.dropped;
-    frame.read_ms = ms_since(start);
+    frame.read_ms = start.ms();
     throw_if_interrupted();
-    const Clock::time_point made = Clock::now();
+    const Stopwatch made;
     try {
       surfacer_.surface(cloud, options_, mesh_);
     } catch (const Error& error) {
@@ -91,12 +86,13 @@ class Worker {
     }
     frame.run = surfacer_.report();
     frame.triangles = static_cast<std::int64_t>(mesh_.triangles.size());
-    frame.surface_ms = ms_since(made);
+    frame.surface_ms = made.ms();
     throw_if_interrupted();
-    const Clock::time_point writing = Clock::now();
+    const Stopwatch writing;
     write_mesh(frame.output, mesh_, threads_);
-    frame.write_ms = ms_since(writing);
-    frame.total_ms = ms_since(start);
+    frame.write_ms = writing.ms();
+    if (!frame.input.number.empty()) frame_was_written();
+    frame.total_ms = start.ms();
     if (!args_.report.empty()) frame.mesh = measure(mesh_, threads_);
   }
 
@@ -250,7 +246,7 @@ Json options_json(const FluidArgs& args, const FluidOptions& options) {
 void write_report(const FluidArgs& args, const FluidOptions& options, const Device& device,
                   const std::vector<FluidFrameRecord>& frames, int at_once, double total_ms) {
   Json json = {{"version", 1}, {"command", "fluid"}};
-  json["device"] = {{"kind", device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", device.name()}};
+  json["device"] = to_json(device);
   json["options"] = options_json(args, options);
   json["at_once"] = at_once;
   json["frames"] = Json::array();
@@ -282,16 +278,16 @@ void check_given(const FluidArgs& args) {
 }
 
 int run(const FluidArgs& args) {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch start;
   check_given(args);
   const FluidOptions options = library_options(args);
   if (!args.simulation.scene.empty())
-    return run_simulation(args.simulation, {args.output, args.report, args.device, args.threads, args.quiet, options});
+    return run_simulation(args.simulation, {args.output, args.report, args, args.quiet, options});
   parse_shift(args.shift);
   if (!args.max_memory.empty()) parse_bytes(args.max_memory);
   if (args.at_once < 0 || args.at_once > 4096)
     throw Error(ErrorCode::usage, fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
-  const Device device = parse_device(args.device, args.threads);
+  const Device device = args.chosen();
   std::vector<FluidFrameRecord> frames;
   for (FrameFile& file : find_frames(args.input, args.first, args.last)) {
     frames.emplace_back();
@@ -303,7 +299,7 @@ int run(const FluidArgs& args) {
   on_interrupt(OnInterrupt::remember);
   Sequence sequence(args, options, device, frames);
   sequence.run();
-  const double total_ms = ms_since(start);
+  const double total_ms = start.ms();
   if (!args.report.empty()) write_report(args, options, device, frames, sequence.at_once(), total_ms);
   if (args.quiet) return 0;
   std::vector<double> surface_ms;

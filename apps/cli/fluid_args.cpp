@@ -69,12 +69,8 @@ void define_fluid_options(CLI::App& command, FluidArgs& args) {
   define_surface(command, args);
   define_finish(command, args);
   define_simulation(command, args.simulation);
-  const std::string group = "Device and limits";
-  command.add_option("--device", args.device, "auto, cpu, cuda or cuda:N")
-      ->type_name("DEV")
-      ->group(group)
-      ->capture_default_str();
-  add_threads_option(command, args.threads, group);
+  define_device_options(command, args);
+  const std::string group = kDeviceGroup;
   command.add_option("--at-once", args.at_once, "frames worked on together on the CPU; 0: as threads and memory allow")
       ->type_name("N")
       ->group(group)

@@ -9,18 +9,19 @@
 
 #include <pointskin/fluid.hpp>
 
+#include "fit_args.hpp"
 #include "fluid_simulate.hpp"
 
 namespace pointskin::cli {
 
-struct FluidArgs {
+struct FluidArgs : DeviceArgs {
   std::string input, output, report;  ///< report empty: none
-  std::string kernel = "isotropic", device = "auto", shift = "auto";
+  std::string kernel = "isotropic", shift = "auto";
   std::string max_memory;  ///< empty: what the machine has left
   FluidOptions options;
   SimulateArgs simulation;  ///< with a scene: instead of `input`
   std::optional<std::int64_t> first, last;
-  int threads = 0, at_once = 0;
+  int at_once = 0;
   bool no_normals = false, no_attributes = false, no_weights = false, quiet = false;
 };
 

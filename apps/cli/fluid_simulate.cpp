@@ -1,6 +1,5 @@
 #include "fluid_simulate.hpp"
 
-#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -14,12 +13,14 @@
 #include "args.hpp"
 #include "console.hpp"
 #include "fluid/simulation.hpp"
+#include "frame_files.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "signals.hpp"
 #include "statistics.hpp"
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -27,22 +28,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
-
-/// Name of a frame's file: {} becomes its number, with as many digits as the last one has.
-std::string frame_file(const std::string& pattern, int frame, int frames) {
-  const std::size_t place = pattern.find("{}");
-  if (place == std::string::npos) return pattern;
-  const std::size_t digits = std::to_string(frames - 1).size();
-  std::string number = std::to_string(frame);
-  number.insert(0, digits - number.size(), '0');
-  return pattern.substr(0, place) + number + pattern.substr(place + 2);
-}
-
-void check_pattern(const std::string& pattern, const char* option) {
-  if (!pattern.empty() && pattern.find("{}") == std::string::npos)
-    throw_usage(
-        fmt::format("{}: {} needs {{}}, where the frame's number goes, because of --simulate", option, pattern));
-}
 
 /// Everything that can be found wrong before the first frame.
 simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& output) {
@@ -58,8 +43,8 @@ simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& outp
   if (!(args.fps >= 1 && args.fps <= 10'000)) throw_usage(fmt::format("--fps: {} is not in [1, 10000]", args.fps));
   if (output.output.empty() && args.particles_out.empty() && output.report.empty())
     throw_usage("no output; name meshes with -o, particles with --particles-out or a --report");
-  check_pattern(output.output, "-o");
-  check_pattern(args.particles_out, "--particles-out");
+  check_pattern(output.output, "-o", "--simulate");
+  check_pattern(args.particles_out, "--particles-out", "--simulate");
   if (!output.output.empty() && output.output == args.particles_out)
     throw_usage("-o and --particles-out name the same files");
   if (output.report == "-") throw_usage("--report: stdout carries data only; name a file");
@@ -96,10 +81,6 @@ Cloud cloud_of(simulation::ParticleStates particles) {
   return cloud;
 }
 
-double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// Steps, makes surfaces, writes and reports, one frame after another.
 class Frames {
  public:
@@ -127,17 +108,20 @@ class Frames {
     if (fluid_.report().lost > 0)
       throw Error(ErrorCode::internal,
                   fmt::format("frame {}: {} particles left the tank", frame, fluid_.report().lost));
-    const auto surfacing = std::chrono::steady_clock::now();
+    const Stopwatch surfacing;
     if (!output_.output.empty()) {
       fluid_.surface(output_.surface, mesh_);
-      surface_ms_.push_back(ms_since(surfacing));
+      surface_ms_.push_back(surfacing.ms());
     }
     throw_if_interrupted();
-    const auto writing = std::chrono::steady_clock::now();
-    if (!output_.output.empty()) write_mesh(frame_file(output_.output, frame, args_.frames), mesh_, output_.threads);
+    const Stopwatch writing;
+    if (!output_.output.empty())
+      write_mesh(frame_file(output_.output, frame, args_.frames), mesh_, output_.device.threads);
     if (!args_.particles_out.empty())
-      write_cloud(frame_file(args_.particles_out, frame, args_.frames), cloud_of(fluid_.particles()), output_.threads);
-    if (!output_.report.empty()) add_line(describe(ms_since(writing)));
+      write_cloud(frame_file(args_.particles_out, frame, args_.frames), cloud_of(fluid_.particles()),
+                  output_.device.threads);
+    frame_was_written();
+    if (!output_.report.empty()) add_line(describe(writing.ms()));
   }
 
   /// As text: many frames would make a tree of values that outgrows the simulation.
@@ -156,7 +140,7 @@ class Frames {
                  {"max_speed", r.max_speed},
                  {"crowded", r.crowded}};
     if (!output_.output.empty()) {
-      const MeshReport mesh = measure(mesh_, output_.threads);
+      const MeshReport mesh = measure(mesh_, output_.device.threads);
       json["mesh"] = {{"vertices", mesh.vertices},   {"triangles", mesh.triangles},   {"closed", mesh.closed()},
                       {"manifold", mesh.manifold()}, {"components", mesh.components}, {"watertight", mesh.watertight()},
                       {"volume", mesh.volume}};
@@ -187,8 +171,8 @@ Json options_json(const SimulateArgs& args, const SimulateOutput& output) {
           {"vorticity", args.vorticity},
           {"cube_size", output.surface.cube_size},
           {"smoothing_length", output.surface.smoothing_length},
-          {"device", output.device},
-          {"threads", output.threads},
+          {"device", output.device.device},
+          {"threads", output.device.threads},
           {"output", or_null(output.output)},
           {"particles_out", or_null(args.particles_out)}};
 }
@@ -198,7 +182,7 @@ void write_report(const SimulateArgs& args, const SimulateOutput& output, const 
   const Device& device = fluid.device();
   const simulation::Scene& scene = fluid.scene();
   Json json = {{"version", 1}, {"command", "fluid --simulate"}};
-  json["device"] = {{"kind", device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", device.name()}};
+  json["device"] = to_json(device);
   json["scene"] = {{"name", args.scene},
                    {"particles", fluid.report().particles},
                    {"spacing", scene.spacing},
@@ -241,7 +225,7 @@ void define_simulation(CLI::App& command, SimulateArgs& args) {
 int run_simulation(const SimulateArgs& args, const SimulateOutput& output) {
   const simulation::SceneKind kind = check(args, output);
   const simulation::SimulationOptions options = simulation_options(args);
-  const Device device = parse_device(output.device, output.threads);
+  const Device device = output.device.chosen();
   on_interrupt(OnInterrupt::remember);
   simulation::Simulation fluid(simulation::make_scene(kind, args.particles), options, device);
   Frames frames(args, output, fluid);

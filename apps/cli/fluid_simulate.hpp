@@ -8,6 +8,8 @@
 
 #include <pointskin/fluid.hpp>
 
+#include "fit_args.hpp"
+
 namespace pointskin::cli {
 
 /// What is simulated, and where the particles go.
@@ -25,8 +27,7 @@ struct SimulateArgs {
 struct SimulateOutput {
   std::string output;  ///< pattern of the meshes; empty: none
   std::string report;  ///< empty: none
-  std::string device = "auto";
-  int threads = 0;
+  DeviceArgs device;
   bool quiet = false;
   FluidOptions surface;  ///< particle_radius 0: half the scene's spacing
 };

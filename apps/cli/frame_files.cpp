@@ -38,6 +38,19 @@ std::string with_number(const std::string& pattern, const std::string& number) {
   return place == std::string::npos ? pattern : pattern.substr(0, place) + number + pattern.substr(place + 2);
 }
 
+std::string frame_file(const std::string& pattern, int frame, int frames) {
+  const std::size_t digits = std::to_string(frames - 1).size();
+  std::string number = std::to_string(frame);
+  number.insert(0, digits - number.size(), '0');
+  return with_number(pattern, number);
+}
+
+void check_pattern(const std::string& pattern, const char* option, const char* because) {
+  if (pattern.empty() || is_pattern(pattern)) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("{}: {} needs {{}}, where the frame's number goes, because of {}", option, pattern, because));
+}
+
 std::vector<FrameFile> find_frames(const std::string& pattern, std::optional<std::int64_t> first,
                                    std::optional<std::int64_t> last) {
   if (!is_pattern(pattern)) {

@@ -20,6 +20,14 @@ bool is_pattern(const std::string& name);
 /// `pattern` with `number` in place of {}.
 std::string with_number(const std::string& pattern, const std::string& number);
 
+/// The file of frame `frame` of `frames`: its number has as many digits as that of the last one.
+std::string frame_file(const std::string& pattern, int frame, int frames);
+
+/// Checks that the name of an output says where the frame's number goes. An empty one passes.
+/// @param option, because  for the story: of the output, and what makes several files of it
+/// @throws Error usage
+void check_pattern(const std::string& pattern, const char* option, const char* because);
+
 /// The files that `pattern` stands for, in the order of their numbers (of equal ones, that with fewer digits first);
 /// `pattern` itself if it has no {}.
 /// @param first, last  only frames with these numbers and those between

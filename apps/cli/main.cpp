@@ -80,7 +80,7 @@ int guarded_main(const std::vector<std::string>& args) {
     return run(program, join_optional_values(args), job);
   } catch (const Error& error) {
     // The library tells in which phase it was cancelled; people care about their file.
-    print_error(error.code() == ErrorCode::interrupted ? "interrupted; nothing was written" : error.what());
+    print_error(error.code() == ErrorCode::interrupted ? interrupted_text() : error.what());
     return static_cast<int>(error.code());
   } catch (const std::bad_alloc&) {
     print_error("out of memory; use a smaller --depth or fewer points");

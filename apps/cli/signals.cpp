@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdint>
+#include <string>
 
 #include <pointskin/error.hpp>
 
@@ -12,6 +14,7 @@ namespace {
 
 std::atomic<bool> remember_only{false};
 std::atomic<bool> signal_came{false};
+std::atomic<std::int64_t> written_frames{0};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not take a lock");
 
 void handle(int /*signal*/) {
@@ -45,7 +48,15 @@ void on_interrupt(OnInterrupt what) { remember_only.store(what == OnInterrupt::r
 bool interrupted() noexcept { return signal_came.load(); }
 
 void throw_if_interrupted() {
-  if (interrupted()) throw Error(ErrorCode::interrupted, "interrupted; nothing was written");
+  if (interrupted()) throw Error(ErrorCode::interrupted, interrupted_text());
+}
+
+void frame_was_written() noexcept { ++written_frames; }
+
+std::string interrupted_text() {
+  const std::int64_t frames = written_frames.load();
+  if (frames == 0) return "interrupted; nothing was written";
+  return "interrupted; " + std::to_string(frames) + (frames == 1 ? " frame was" : " frames were") + " written before";
 }
 
 }  // namespace pointskin::cli

@@ -1,6 +1,8 @@
 // SIGINT, SIGTERM and SIGPIPE.
 #pragma once
 
+#include <string>
+
 namespace pointskin::cli {
 
 /// What the first SIGINT or SIGTERM does. A second one always kills.
@@ -14,6 +16,12 @@ enum class OnInterrupt {
 void install_signal_handlers();
 
 void on_interrupt(OnInterrupt what);
+
+/// Counts a frame of a sequence, for interrupted_text().
+void frame_was_written() noexcept;
+
+/// What to tell people: that nothing was written, or how many frames of a sequence were.
+std::string interrupted_text();
 
 /// True once a signal has been remembered.
 bool interrupted() noexcept;

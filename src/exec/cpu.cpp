@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <exception>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "exec/cpu_pool.hpp"
 
 #ifdef POINTSKIN_STD_THREAD
 #include <atomic>
-#include <mutex>
 #include <thread>
 #else
 #include <oneapi/tbb/blocked_range.h>
@@ -60,14 +63,54 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
 
 static int available_threads() { return tbb::info::default_concurrency(); }
 
+using Arena = std::unique_ptr<tbb::task_arena>;
+using Arenas = std::vector<Arena>;
+
+/// Arenas that no space uses now. oneTBB 2021 keeps 7 KB for every arena that ever was, so they are used again.
+class IdleArenas {
+ public:
+  /// Never destroyed: spaces may outlive statics.
+  static IdleArenas& instance() {
+    static IdleArenas& arenas = *new IdleArenas;
+    return arenas;
+  }
+
+  Arena take(int threads) {
+    {
+      const std::lock_guard lock(mutex_);
+      Arenas& idle = idle_[threads];
+      if (!idle.empty()) {
+        Arena arena = std::move(idle.back());
+        idle.pop_back();
+        return arena;
+      }
+    }
+    return std::make_unique<tbb::task_arena>(threads);
+  }
+
+  void put_back(int threads, Arena arena) {
+    const std::lock_guard lock(mutex_);
+    idle_[threads].push_back(std::move(arena));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<int, Arenas> idle_;  // by number of threads
+};
+
 struct Cpu::Workers {
-  explicit Workers(int count) : arena(count) {
+  explicit Workers(int count) : threads(count), arena(IdleArenas::instance().take(count)) {
     // oneTBB would ignore, and complain on stderr about, more threads than cores. The smallest of all living limits
     // counts, so limits are only ever raised: no space slows another one down.
     if (count > available_threads()) more_threads.emplace(tbb::global_control::max_allowed_parallelism, count);
   }
+  ~Workers() { IdleArenas::instance().put_back(threads, std::move(arena)); }
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  int threads;
   std::optional<tbb::global_control> more_threads;
-  tbb::task_arena arena;
+  Arena arena;
 };
 
 void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block) {
@@ -75,7 +118,7 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
     for (std::int64_t i = 0; i < count; ++i) block(i);
     return;
   }
-  workers_->arena.execute([&] {
+  workers_->arena->execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::int64_t>(0, count, 1),
         [&](const tbb::blocked_range<std::int64_t>& range) {

@@ -233,6 +233,24 @@ std::int64_t resident_bytes() {
   return resident * sysconf(_SC_PAGESIZE);
 }
 
+TEST(SpacesOfACpu, LeaveNothingBehindWhenTheyGo) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers keep memory for a while";
+#endif
+  const auto make_some = [] {
+    for (int i = 0; i < 1000; ++i) {
+      exec::Cpu ex(2);
+      std::atomic<std::int64_t> sum{0};
+      ex.run_blocks(64, [&](std::int64_t block) { sum += block; });
+      ASSERT_EQ(sum, 64 * 63 / 2);
+    }
+  };
+  make_some();
+  const std::int64_t before = resident_bytes();
+  make_some();
+  EXPECT_LT(resident_bytes(), before + (std::int64_t{1} << 20));
+}
+
 TEST(PoolOfACpu, GivesUpWhatItCachesForVectorsOfTheHost) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer watches blocks of malloc, which are not given up one by one";

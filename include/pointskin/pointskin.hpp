@@ -11,6 +11,7 @@
 #include <pointskin/field.hpp>
 #include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/normals.hpp>
 #include <pointskin/octree.hpp>
 #include <pointskin/problems.hpp>
 #include <pointskin/reconstruct.hpp>

@@ -27,6 +27,7 @@ LAYERS = {
     "edit": PARTS | {"pipeline", "edit"},
     "deform": PARTS | {"pipeline", "deform"},
     "boolean": PARTS | {"pipeline", "boolean"},
+    "normals": PARTS | {"pipeline", "normals"},
     "render": {"core", "exec", "mesh", "render"},
 }
 SOURCES = {".hpp", ".cpp", ".cuh", ".cu", ".h"}

@@ -110,6 +110,58 @@ PSK_HD Plane fit_plane_robustly(const Neighbourhood<kMost>& points, double (&wei
   return plane;
 }
 
+/// A plane near the point that some of its neighbours lie on, and the others far from: one of two sheets, or one side of
+/// an edge. Planes through the point and two of its nearest are tried.
+/// @param weight  receives those of the sheet's points
+/// @returns false if the scatter has no such sheet
+template <int kMost>
+PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, double (&weight)[kMost + 1],
+                       Plane& plane) {
+  constexpr int kTried = 8;
+  constexpr double kNear = 0.12 * 0.12;  // of the radius, squared
+  constexpr double kLeastShare = 0.35;   // of the weight
+  constexpr double kClearer = 0.08;      // variance in the sheet / variance of all
+  double best = 0;
+  Double3 best_normal{};
+  for (int a = 1; a <= kTried && a < points.count; ++a) {
+    for (int b = a + 1; b <= kTried && b < points.count; ++b) {
+      const Double3 n = cross(points.at[a], points.at[b]);
+      const double squared = dot(n, n);
+      if (!(squared > 0.05 * dot(points.at[a], points.at[a]) * dot(points.at[b], points.at[b]))) continue;
+      double score = 0;
+      for (int j = 0; j < points.count; ++j) {
+        const double along = dot(n, points.at[j]);
+        const double share = along * along / (squared * kNear);
+        if (share < 1) score += points.weight[j] * (1 - share);
+      }
+      if (score <= best) continue;
+      best = score;
+      best_normal = n * (1 / std::sqrt(squared));
+    }
+  }
+  double total = 0;
+  for (int j = 0; j < points.count; ++j) total += points.weight[j];
+  if (!(best > kLeastShare * total)) return false;
+  plane.axes.vectors[0] = best_normal;
+  plane.centre = {};
+  double limit = 2 * kNear;
+  for (int round = 0; round < 2; ++round) {
+    double squares = 0;
+    double sum = 0;
+    for (int j = 0; j < points.count; ++j) {
+      const double along = dot(plane.axes.vectors[0], points.at[j] - plane.centre);
+      const double share = along * along / limit;
+      weight[j] = share < 1 ? points.weight[j] * (1 - share) * (1 - share) : 0.0;
+      squares += weight[j] * along * along;
+      sum += weight[j];
+    }
+    plane.variance = squares / sum;
+    fit_plane(points, weight, plane);
+    limit = kNear;
+  }
+  return plane.variance < kClearer * variance && plane.axes.values[1] > 0.02;
+}
+
 /// z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over the tangent plane.
 struct Quadric {
   double c[6];
@@ -190,7 +242,12 @@ struct Line {
   float curvature = 0;
   float roughness = 0;      // scatter across the plane / radius
   double scatter_unit = 0;  // in the unit cube
+  bool is_sheet = false;    // what scatters is another sheet
 };
+
+/// Above this scatter, per radius, another sheet or more points may help. A plane's 16 samples without noise are far
+/// below.
+inline constexpr float kRough = 0.06F;
 
 /// A quadric is taken where it explains this share of what a plane leaves.
 inline constexpr double kBetter = 0.5;
@@ -202,13 +259,22 @@ PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std
   gather(positions, i, ids, count, points);
   if (!(points.radius > 0) || count < 2) return line;
   double weight[kMost + 1];
-  const Plane plane = fit_plane_robustly(points, weight);
+  Plane plane = fit_plane_robustly(points, weight);
+  line.scatter_unit = std::sqrt(plane.variance) * points.radius;
+  line.roughness = static_cast<float>(std::sqrt(plane.variance));
+  if (line.roughness > kRough) {
+    double sheet_weight[kMost + 1];
+    Plane sheet;
+    line.is_sheet = find_sheet(points, plane.axes.values[0], sheet_weight, sheet);
+    if (line.is_sheet) {
+      plane = sheet;
+      for (int j = 0; j < points.count; ++j) weight[j] = sheet_weight[j];
+    }
+  }
   Double3 normal = plane.axes.vectors[0];
   const double middle = plane.axes.values[1];
   const double flatness = middle > 0 ? 1 - plane.axes.values[0] / middle : 0.0;
   line.flatness = static_cast<float>(flatness > 0 ? flatness : 0.0);
-  line.scatter_unit = std::sqrt(plane.variance) * points.radius;
-  line.roughness = static_cast<float>(std::sqrt(plane.variance));
   double bend = 0;
   if (count >= 8) {
     const Quadric q = fit_quadric(points, plane, weight);
@@ -252,12 +318,9 @@ struct FitNear {
     while (count < kNeighbours && ids[count] >= 0) ++count;
     const Line line = fit_line<kNeighbours>(positions, i, ids, count);
     out.write(i, line);
-    roughness[i] = line.roughness;
+    roughness[i] = line.is_sheet ? 0.0F : line.roughness;
   }
 };
-
-/// Above this scatter, per radius, more points may help. A plane's 16 samples without noise are far below.
-inline constexpr float kRough = 0.06F;
 
 struct IsRough {
   ArrayView<const float> roughness;

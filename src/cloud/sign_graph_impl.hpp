@@ -24,8 +24,12 @@ inline constexpr std::int64_t kLeastVote = kFullVote / 32;
 
 PSK_HD inline std::int64_t size_of(std::int64_t vote) { return vote < 0 ? -vote : vote; }
 
+/// How far the two ends may be from a common circle, as the sum of their normals' slopes along the link.
+inline constexpr double kSkew = 0.35;
+
 /// The vote of a link for the product of its ends' signs: the agreement of one normal with the mirror image of the
-/// other in the plane between them, less where the link runs along the normals: it may join two sheets, or be noise.
+/// other in the plane between them. Less where the link runs along the normals: it may be noise; and where no circle
+/// has these normals at these places: it may join two sheets.
 PSK_HD inline std::int64_t vote_of(const LinkedLines& lines, std::int64_t i, std::int32_t j) {
   const Double3 a = to_double(lines.normals[i]);
   const Double3 b = to_double(lines.normals[j]);
@@ -38,7 +42,9 @@ PSK_HD inline std::int64_t vote_of(const LinkedLines& lines, std::int64_t i, std
     const double along_b = dot(b, d);
     agreement -= 2 * along_a * along_b / squared;
     const double steepest = along_a * along_a > along_b * along_b ? along_a * along_a : along_b * along_b;
-    level = 1 - steepest / squared;
+    const double skew = along_a + (agreement < 0 ? -along_b : along_b);
+    const double share = skew * skew / (squared * kSkew * kSkew);
+    level = (1 - steepest / squared) / (1 + share * share);
     if (level < 0) level = 0;
   }
   const double trust = static_cast<double>(lines.flatness[i]) * static_cast<double>(lines.flatness[j]);

@@ -42,6 +42,36 @@ double Couplings::relative(std::size_t a, std::size_t b) const {
   return std::abs(share) < kNone ? 0 : share;
 }
 
+void choose_sides(const std::vector<double>& means, const std::vector<double>& areas, const std::vector<bool>& fixed,
+                  std::vector<int>& signs) {
+  const std::size_t count = areas.size();
+  std::vector<std::size_t> free;
+  for (std::size_t a = 0; a < count; ++a)
+    if (!fixed[a]) free.push_back(a);
+  const auto cost_of = [&](const std::vector<int>& now) {
+    double cost = 0;
+    for (std::size_t b = 0; b < count; ++b) {
+      double field = 0;
+      for (std::size_t a = 0; a < count; ++a) field += now[a] * means[a * count + b];
+      cost += areas[b] * (field - 0.5) * (field - 0.5);
+    }
+    return cost;
+  };
+  if (free.size() > kMostTried) free.resize(kMostTried);
+  double best = cost_of(signs);
+  std::vector<int> now = signs;
+  for (std::uint32_t code = 1; code < (1U << free.size()); ++code) {
+    std::size_t changed = 0;
+    while ((code >> changed & 1U) == 0) ++changed;
+    now[free[changed]] = -now[free[changed]];
+    const double cost = cost_of(now);
+    if (cost < best * (1 - 1e-9)) {
+      best = cost;
+      signs = now;
+    }
+  }
+}
+
 void choose_signs(const Couplings& couplings, const std::vector<bool>& fixed, std::vector<int>& signs) {
   std::vector<std::size_t> free;
   for (std::size_t a = 0; a < couplings.count; ++a)

@@ -198,6 +198,8 @@ class SignSolver {
     std::vector<std::int32_t> sets(patch_signs_.size(), -1);
     for (std::size_t a = 0; a < large.size(); ++a) sets[large[a]] = static_cast<std::int32_t>(a);
     Couplings couplings{large.size(), std::vector<double>(large.size() * large.size())};
+    std::vector<double> fields(large.size() * large.size());
+    std::vector<double> areas(large.size());
     auto all = exec::make_buffer<std::int32_t>(ex_, signs_.size());
     for_each(ex_, "normals.compose", signs_.size(), with_signs(std::vector<int>(patch_signs_.size(), 1), all));
     for (std::size_t a = 0; a < large.size(); ++a) {
@@ -207,9 +209,45 @@ class SignSolver {
       compose(alone);
       trial.solve(signs_.cview());
       const std::vector<SetSums> sums = measure(trial, all.cview(), sets, large.size());
-      for (std::size_t b = 0; b < large.size(); ++b) couplings.values[a * large.size() + b] = sums[b].along;
+      for (std::size_t b = 0; b < large.size(); ++b) {
+        couplings.values[a * large.size() + b] = sums[b].along;
+        fields[a * large.size() + b] = sums[b].field;
+        areas[b] = sums[b].area;
+      }
     }
     apply(couplings, large);
+    choose_sides_of(large, fields, areas);
+  }
+
+  /// Sets of patches that hang together, by where their fields put each other.
+  void choose_sides_of(const std::vector<std::size_t>& large, const std::vector<double>& fields,
+                       const std::vector<double>& areas) {
+    std::vector<std::size_t> roots;
+    std::vector<std::size_t> set_of(large.size());
+    for (std::size_t a = 0; a < large.size(); ++a) {
+      const auto at = std::find(roots.begin(), roots.end(), root(large[a]));
+      set_of[a] = static_cast<std::size_t>(at - roots.begin());
+      if (at == roots.end()) roots.push_back(root(large[a]));
+    }
+    const std::size_t count = roots.size();
+    std::vector<double> means(count * count);
+    std::vector<double> set_areas(count);
+    std::vector<bool> fixed(count, false);
+    for (std::size_t a = 0; a < large.size(); ++a) {
+      set_areas[set_of[a]] += areas[a];
+      if (fixed_[large[a]]) fixed[set_of[a]] = true;
+      for (std::size_t b = 0; b < large.size(); ++b)
+        means[set_of[a] * count + set_of[b]] += patch_signs_[large[a]] * fields[a * large.size() + b];
+    }
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = 0; b < count; ++b) means[a * count + b] /= std::max(set_areas[b], 1e-9);
+    std::vector<int> signs(count, 1);
+    choose_sides(means, set_areas, fixed, signs);
+    for (std::size_t c = 0; c < patch_signs_.size(); ++c) {
+      const auto at = std::find(roots.begin(), roots.end(), root(c));
+      if (at != roots.end() && !fixed_[c]) patch_signs_[c] *= signs[static_cast<std::size_t>(at - roots.begin())];
+    }
+    report_.turned += std::count(signs.begin(), signs.end(), -1);
   }
 
   signs::ComposeSigns with_signs(const std::vector<int>& patch_signs, exec::Buffer<std::int32_t>& out) {

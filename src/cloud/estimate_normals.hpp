@@ -22,6 +22,8 @@ struct NormalLines {
   exec::Buffer<float> flatness;   ///< 1 - smallest / middle eigenvalue, in [0, 1]: how much of a plane the points are
   exec::Buffer<float> curvature;  ///< mean curvature for this sign, > 0 where the surface bends away from the normal,
                                   ///< per side of the cube
+  exec::Buffer<float> noise;      ///< scatter of the positions across the surface, in the unit cube; 0 where what
+                                  ///< scatters is shape, or another sheet
 };
 
 /// Most points of a neighbourhood.

@@ -119,7 +119,8 @@ PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, doub
                        Plane& plane) {
   constexpr int kTried = 8;
   constexpr double kNear = 0.12 * 0.12;  // of the radius, squared
-  constexpr double kLeastShare = 0.35;   // of the weight
+  constexpr double kLeastShare = 0.4;    // of the weight
+  constexpr double kFlat = 0.025 * 0.025;  // largest variance in the sheet, which noise alone does not come below
   constexpr double kClearer = 0.08;      // variance in the sheet / variance of all
   double best = 0;
   Double3 best_normal{};
@@ -159,7 +160,24 @@ PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, doub
     fit_plane(points, weight, plane);
     limit = kNear;
   }
-  return plane.variance < kClearer * variance && plane.axes.values[1] > 0.02;
+  return plane.variance < kClearer * variance && plane.variance < kFlat && plane.axes.values[1] > 0.02;
+}
+
+/// True if the points lie on two sides of the plane rather than scatter around it: the kurtosis of their distances is
+/// 1 for two sheets, 1.8 for the flattest noise.
+template <int kMost>
+PSK_HD bool are_two_sheets(const Neighbourhood<kMost>& points, const Plane& plane) {
+  constexpr double kTwoSheets = 1.4;
+  double second = 0;
+  double fourth = 0;
+  double sum = 0;
+  for (int j = 0; j < points.count; ++j) {
+    const double r = dot(plane.axes.vectors[0], points.at[j] - plane.centre);
+    second += points.weight[j] * r * r;
+    fourth += points.weight[j] * r * r * r * r;
+    sum += points.weight[j];
+  }
+  return fourth * sum < kTwoSheets * second * second;
 }
 
 /// z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over the tangent plane.
@@ -252,8 +270,10 @@ inline constexpr float kRough = 0.06F;
 /// A quadric is taken where it explains this share of what a plane leaves.
 inline constexpr double kBetter = 0.5;
 
+/// @param look_for_sheet  whether the scatter may be another sheet
 template <int kMost>
-PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count) {
+PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count,
+                     bool look_for_sheet) {
   Line line;
   Neighbourhood<kMost> points;
   gather(positions, i, ids, count, points);
@@ -262,7 +282,8 @@ PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std
   Plane plane = fit_plane_robustly(points, weight);
   line.scatter_unit = std::sqrt(plane.variance) * points.radius;
   line.roughness = static_cast<float>(std::sqrt(plane.variance));
-  if (line.roughness > kRough) {
+  if (count > kNeighbours) line.is_sheet = are_two_sheets(points, plane);
+  if (look_for_sheet) {
     double sheet_weight[kMost + 1];
     Plane sheet;
     line.is_sheet = find_sheet(points, plane.axes.values[0], sheet_weight, sheet);
@@ -299,11 +320,12 @@ PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std
 
 struct Out {
   ArrayView<Vec3f> normals;
-  ArrayView<float> flatness, curvature;
+  ArrayView<float> flatness, curvature, noise;
   PSK_HD void write(std::int64_t i, const Line& line) const {
     normals[i] = line.normal;
     flatness[i] = line.flatness;
     curvature[i] = line.curvature;
+    noise[i] = line.is_sheet ? 0.0F : static_cast<float>(line.scatter_unit);
   }
 };
 
@@ -316,9 +338,9 @@ struct FitNear {
     const std::int32_t* ids = neighbours.data + i * kNeighbours;
     int count = 0;
     while (count < kNeighbours && ids[count] >= 0) ++count;
-    const Line line = fit_line<kNeighbours>(positions, i, ids, count);
+    const Line line = fit_line<kNeighbours>(positions, i, ids, count, false);
     out.write(i, line);
-    roughness[i] = line.is_sheet ? 0.0F : line.roughness;
+    roughness[i] = line.roughness;
   }
 };
 
@@ -334,21 +356,33 @@ struct FitFar {
   ArrayView<const float> roughness;
   Out out;
   PSK_HD void operator()(std::int64_t r) const {
-    constexpr double kGrowth = 1.35;  // curvature's scatter doubles with the area, an edge's grows by 1.4
+    constexpr double kGrowth = 1.5;  // with the radius doubled an edge's scatter doubles, curvature's grows fourfold
+    constexpr double kGrowthToHalf = 1.2;
     const std::int32_t i = rough[r];
     NearestList<kMostNeighbours> list;
     search(i, list);
     if (list.count <= kNeighbours) return;
     const Vec3f* const at = search.points.positions.data;
     const ArrayView<const Vec3f> positions = search.points.positions;
-    double scatter = static_cast<double>(roughness[i]) *
-                     std::sqrt(static_cast<double>(octree::search::squared_distance(at[i], at[list.ids[kNeighbours - 1]])));
-    for (int count = 2 * kNeighbours; count <= kMostNeighbours && count <= list.count; count *= 2) {
-      const Line line = fit_line<kMostNeighbours>(positions, i, list.ids, count);
-      if (line.scatter_unit > kGrowth * scatter) return;
+    const double radius = std::sqrt(static_cast<double>(octree::search::squared_distance(at[i], at[list.ids[kNeighbours - 1]])));
+    const double scatter = static_cast<double>(roughness[i]) * radius;
+    for (int count = kMostNeighbours; count >= 2 * kNeighbours; count /= 2) {
+      const int used = count < list.count ? count : list.count;
+      const Line line = fit_line<kMostNeighbours>(positions, i, list.ids, used, false);
+      if (line.scatter_unit > (count == kMostNeighbours ? kGrowth : kGrowthToHalf) * scatter) continue;
       out.write(i, line);
-      scatter = line.scatter_unit;
+      return;
     }
+    take_sheet(i, list);
+  }
+
+  /// Scatter that grows with the distance is shape: an edge, or another sheet.
+  PSK_HD void take_sheet(std::int32_t i, const NearestList<kMostNeighbours>& list) const {
+    const Line line = fit_line<kMostNeighbours>(search.points.positions, i, list.ids, kNeighbours, true);
+    if (line.is_sheet)
+      out.write(i, line);
+    else
+      out.noise[i] = 0;
   }
 };
 
@@ -358,9 +392,10 @@ template <exec::Space Exec>
 NormalLines estimate_lines(Exec& ex, const octree::SearchView& points, ArrayView<const std::int32_t> neighbours) {
   const std::int64_t n = points.positions.size;
   NormalLines result{exec::make_buffer<Vec3f>(ex, n), exec::make_buffer<float>(ex, n),
-                     exec::make_buffer<float>(ex, n)};
+                     exec::make_buffer<float>(ex, n), exec::make_buffer<float>(ex, n)};
   auto roughness = exec::make_buffer<float>(ex, n);
-  const lines::Out out{result.normals.view(), result.flatness.view(), result.curvature.view()};
+  const lines::Out out{result.normals.view(), result.flatness.view(), result.curvature.view(),
+                       result.noise.view()};
   for_each(ex, "normals.fit", n, lines::FitNear{points.positions, neighbours, out, roughness.view()});
   const exec::Buffer<std::int32_t> rough = select(ex, "normals.rough", n, lines::IsRough{roughness.cview()});
   for_each(ex, "normals.fit_far", rough.size(),

@@ -26,6 +26,7 @@ struct LinkedLines {
   ArrayView<const Vec3f> positions;   ///< in the unit cube
   ArrayView<const Vec3f> normals;     ///< unit length, of any sign
   ArrayView<const float> flatness;    ///< NormalLines::flatness
+  ArrayView<const float> noise;       ///< NormalLines::noise
   ArrayView<const std::int32_t> ids;  ///< (n, kNeighbours)
 };
 

@@ -27,6 +27,15 @@ PSK_HD inline std::int64_t size_of(std::int64_t vote) { return vote < 0 ? -vote 
 /// How far the two ends may be from a common circle, as the sum of their normals' slopes along the link.
 inline constexpr double kSkew = 0.35;
 
+/// Standard deviations of a sample that count as noise between two.
+inline constexpr double kNoise = 2;
+
+/// What is left of a distance across the surface beyond what noise makes of it.
+PSK_HD inline double beyond_noise(double along, double noise) {
+  if (along > noise) return along - noise;
+  return along < -noise ? along + noise : 0.0;
+}
+
 /// The vote of a link for the product of its ends' signs: the agreement of one normal with the mirror image of the
 /// other in the plane between them. Less where the link runs along the normals: it may be noise; and where no circle
 /// has these normals at these places: it may join two sheets.
@@ -38,8 +47,10 @@ PSK_HD inline std::int64_t vote_of(const LinkedLines& lines, std::int64_t i, std
   double agreement = dot(a, b);
   double level = 1;
   if (squared > 0) {
-    const double along_a = dot(a, d);
-    const double along_b = dot(b, d);
+    const float more = lines.noise[i] > lines.noise[j] ? lines.noise[i] : lines.noise[j];
+    const double noise = kNoise * static_cast<double>(more);
+    const double along_a = beyond_noise(dot(a, d), noise);
+    const double along_b = beyond_noise(dot(b, d), noise);
     agreement -= 2 * along_a * along_b / squared;
     const double steepest = along_a * along_a > along_b * along_b ? along_a * along_a : along_b * along_b;
     const double skew = along_a + (agreement < 0 ? -along_b : along_b);

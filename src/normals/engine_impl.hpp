@@ -138,7 +138,7 @@ class NormalsOn final : public NormalEngine {
     announce(options, "propagate", 0.3);
     const exec::Buffer<std::int32_t> evidence = find_evidence(points, lines, views, options);
     const cloud::LinkedLines linked{points.positions.cview(), lines.normals.cview(), lines.flatness.cview(),
-                                    neighbours.cview()};
+                                    lines.noise.cview(), neighbours.cview()};
     SignSolver<Exec> solver(*ex_, linked, points.tree, evidence.cview(), options, report);
     solver.propagate();
     clock.lap(report.propagate_ms);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "cloud/double3.hpp"
 #include "cloud/eigen3.hpp"
@@ -47,7 +48,8 @@ PSK_HD void gather(ArrayView<const Vec3f> positions, std::int64_t i, const std::
 struct Plane {
   Eigen3 axes;  // the normal is axes.vectors[0]; values: mean squares
   Double3 centre;
-  double variance = 0;  // of the residuals, robust, per radius^2
+  double variance = 0;        // of the residuals, robust, per radius^2
+  double whole_variance = 0;  // the same with nothing left out
 };
 
 /// Weighted principal components.
@@ -97,6 +99,8 @@ PSK_HD Plane fit_plane_robustly(const Neighbourhood<kMost>& points, double (&wei
   double squares[kMost + 1];
   for (int j = 0; j < points.count; ++j) weight[j] = points.weight[j];
   fit_plane(points, weight, plane);
+  const double whole = plane.axes.values[0];
+  plane.whole_variance = whole > 0 ? whole : 0;
   for (int round = 0; round < kRobustRounds; ++round) {
     constexpr double kCutoff = 4.685 * 4.685 * 2.2;  // Tukey's constant for a variance from the median square
     const double limit = kCutoff * median_square(points, plane, squares) + 1e-12;
@@ -163,21 +167,28 @@ PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, doub
   return plane.variance < kClearer * variance && plane.variance < kFlat && plane.axes.values[1] > 0.02;
 }
 
-/// True if the points lie on two sides of the plane rather than scatter around it: the kurtosis of their distances is
-/// 1 for two sheets, 1.8 for the flattest noise.
+/// True if the points lie on two sides of the plane rather than scatter around it. Kurtosis less squared skewness is 1
+/// for any two values (Pearson), 1.8 for the flattest noise, 3 for a normal distribution.
 template <int kMost>
 PSK_HD bool are_two_sheets(const Neighbourhood<kMost>& points, const Plane& plane) {
-  constexpr double kTwoSheets = 1.4;
-  double second = 0;
-  double fourth = 0;
+  constexpr double kTwoSheets = 1.5;
   double sum = 0;
+  double mean = 0;
   for (int j = 0; j < points.count; ++j) {
-    const double r = dot(plane.axes.vectors[0], points.at[j] - plane.centre);
-    second += points.weight[j] * r * r;
-    fourth += points.weight[j] * r * r * r * r;
+    mean += points.weight[j] * dot(plane.axes.vectors[0], points.at[j] - plane.centre);
     sum += points.weight[j];
   }
-  return fourth * sum < kTwoSheets * second * second;
+  mean /= sum;
+  double second = 0;
+  double third = 0;
+  double fourth = 0;
+  for (int j = 0; j < points.count; ++j) {
+    const double r = dot(plane.axes.vectors[0], points.at[j] - plane.centre) - mean;
+    second += points.weight[j] * r * r;
+    third += points.weight[j] * r * r * r;
+    fourth += points.weight[j] * r * r * r * r;
+  }
+  return fourth * sum * second - third * third * sum < kTwoSheets * second * second * second;
 }
 
 /// z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over the tangent plane.
@@ -260,6 +271,7 @@ struct Line {
   float curvature = 0;
   float roughness = 0;      // scatter across the plane / radius
   double scatter_unit = 0;  // in the unit cube
+  double noise_unit = 0;    // the same, without outliers
   bool is_sheet = false;    // what scatters is another sheet
 };
 
@@ -267,8 +279,8 @@ struct Line {
 /// below.
 inline constexpr float kRough = 0.06F;
 
-/// A quadric is taken where it explains this share of what a plane leaves.
-inline constexpr double kBetter = 0.5;
+/// A quadric is taken where it leaves less than this share of what a plane leaves: few points always fit better.
+PSK_HD inline double better_share(int count) { return count > kNeighbours ? 0.5 : 0.15; }
 
 /// @param look_for_sheet  whether the scatter may be another sheet
 template <int kMost>
@@ -280,8 +292,9 @@ PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std
   if (!(points.radius > 0) || count < 2) return line;
   double weight[kMost + 1];
   Plane plane = fit_plane_robustly(points, weight);
-  line.scatter_unit = std::sqrt(plane.variance) * points.radius;
-  line.roughness = static_cast<float>(std::sqrt(plane.variance));
+  line.noise_unit = std::sqrt(plane.variance) * points.radius;
+  line.scatter_unit = std::sqrt(plane.whole_variance) * points.radius;
+  line.roughness = static_cast<float>(std::sqrt(plane.whole_variance));
   if (count > kNeighbours) line.is_sheet = are_two_sheets(points, plane);
   if (look_for_sheet) {
     double sheet_weight[kMost + 1];
@@ -305,7 +318,7 @@ PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std
       const double root = std::sqrt(1 + tilt);
       bend = -((1 + q.c[2] * q.c[2]) * q.c[3] - q.c[1] * q.c[2] * q.c[4] + (1 + q.c[1] * q.c[1]) * q.c[5]) /
              (root * root * root);
-      if (q.variance < kBetter * q.plane_variance) {
+      if (q.variance < better_share(count) * q.plane_variance) {
         normal = normal - plane.axes.vectors[2] * q.c[1] - plane.axes.vectors[1] * q.c[2];
         normal = normal * (1 / root);
       }
@@ -325,7 +338,7 @@ struct Out {
     normals[i] = line.normal;
     flatness[i] = line.flatness;
     curvature[i] = line.curvature;
-    noise[i] = line.is_sheet ? 0.0F : static_cast<float>(line.scatter_unit);
+    noise[i] = line.is_sheet ? 0.0F : static_cast<float>(line.noise_unit);
   }
 };
 
@@ -386,6 +399,28 @@ struct FitFar {
   }
 };
 
+/// Noise is everywhere, what looks like it at a rim or an edge is not: the median of the neighbours'.
+struct ConfirmNoise {
+  ArrayView<const std::int32_t> neighbours;
+  ArrayView<const float> noise;
+  ArrayView<float> out;
+  PSK_HD void operator()(std::int64_t i) const {
+    constexpr int kRank = kNeighbours / 2;
+    float least[kRank];
+    int count = 0;
+    for (int j = 0; j < kNeighbours; ++j) {
+      const std::int32_t id = neighbours[i * kNeighbours + j];
+      if (id < 0) break;
+      const float value = noise[id];
+      if (count == kRank && value >= least[kRank - 1]) continue;
+      int place = count == kRank ? kRank - 1 : count++;
+      for (; place > 0 && value < least[place - 1]; --place) least[place] = least[place - 1];
+      least[place] = value;
+    }
+    out[i] = count == kRank ? least[kRank - 1] : 0.0F;
+  }
+};
+
 }  // namespace lines
 
 template <exec::Space Exec>
@@ -400,6 +435,8 @@ NormalLines estimate_lines(Exec& ex, const octree::SearchView& points, ArrayView
   const exec::Buffer<std::int32_t> rough = select(ex, "normals.rough", n, lines::IsRough{roughness.cview()});
   for_each(ex, "normals.fit_far", rough.size(),
            lines::FitFar{{points}, rough.cview(), roughness.cview(), out});
+  for_each(ex, "normals.noise", n, lines::ConfirmNoise{neighbours, result.noise.cview(), roughness.view()});
+  result.noise = std::move(roughness);
   return result;
 }
 

@@ -114,6 +114,9 @@ PSK_HD Plane fit_plane_robustly(const Neighbourhood<kMost>& points, double (&wei
   return plane;
 }
 
+/// What is on a sheet, of the radius, squared.
+inline constexpr double kSheetNear = 0.12 * 0.12;
+
 /// A plane near the point that some of its neighbours lie on, and the others far from: one of two sheets, or one side of
 /// an edge. Planes through the point and two of its nearest are tried.
 /// @param weight  receives those of the sheet's points
@@ -122,7 +125,7 @@ template <int kMost>
 PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, double (&weight)[kMost + 1],
                        Plane& plane) {
   constexpr int kTried = 8;
-  constexpr double kNear = 0.12 * 0.12;  // of the radius, squared
+  constexpr double kNear = kSheetNear;
   constexpr double kLeastShare = 0.4;    // of the weight
   constexpr double kFlat = 0.025 * 0.025;  // largest variance in the sheet, which noise alone does not come below
   constexpr double kClearer = 0.08;      // variance in the sheet / variance of all
@@ -280,45 +283,24 @@ struct Line {
 inline constexpr float kRough = 0.06F;
 
 /// A quadric is taken where it leaves less than this share of what a plane leaves: few points always fit better.
-PSK_HD inline double better_share(int count) { return count > kNeighbours ? 0.5 : 0.15; }
+PSK_HD inline double better_share(int count) { return count > kNeighbours + 1 ? 0.5 : 0.15; }
 
-/// @param look_for_sheet  whether the scatter may be another sheet
+/// Line and curvature, once the plane is there. @param weight  those of the plane
 template <int kMost>
-PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count,
-                     bool look_for_sheet) {
-  Line line;
-  Neighbourhood<kMost> points;
-  gather(positions, i, ids, count, points);
-  if (!(points.radius > 0) || count < 2) return line;
-  double weight[kMost + 1];
-  Plane plane = fit_plane_robustly(points, weight);
-  line.noise_unit = std::sqrt(plane.variance) * points.radius;
-  line.scatter_unit = std::sqrt(plane.whole_variance) * points.radius;
-  line.roughness = static_cast<float>(std::sqrt(plane.whole_variance));
-  if (count > kNeighbours) line.is_sheet = are_two_sheets(points, plane);
-  if (look_for_sheet) {
-    double sheet_weight[kMost + 1];
-    Plane sheet;
-    line.is_sheet = find_sheet(points, plane.axes.values[0], sheet_weight, sheet);
-    if (line.is_sheet) {
-      plane = sheet;
-      for (int j = 0; j < points.count; ++j) weight[j] = sheet_weight[j];
-    }
-  }
+PSK_HD void describe(const Neighbourhood<kMost>& points, const Plane& plane, const double* weight, Line& line) {
   Double3 normal = plane.axes.vectors[0];
   const double middle = plane.axes.values[1];
   const double flatness = middle > 0 ? 1 - plane.axes.values[0] / middle : 0.0;
   line.flatness = static_cast<float>(flatness > 0 ? flatness : 0.0);
   double bend = 0;
-  if (count >= 8) {
+  if (points.count > 8) {
     const Quadric q = fit_quadric(points, plane, weight);
     const double tilt = q.c[1] * q.c[1] + q.c[2] * q.c[2];
     if (q.solved && tilt < 1) {
-      // Mean curvature of a graph with slopes c1, c2.
-      const double root = std::sqrt(1 + tilt);
+      const double root = std::sqrt(1 + tilt);  // mean curvature of a graph with slopes c1, c2
       bend = -((1 + q.c[2] * q.c[2]) * q.c[3] - q.c[1] * q.c[2] * q.c[4] + (1 + q.c[1] * q.c[1]) * q.c[5]) /
              (root * root * root);
-      if (q.variance < better_share(count) * q.plane_variance) {
+      if (q.variance < better_share(points.count) * q.plane_variance) {
         normal = normal - plane.axes.vectors[2] * q.c[1] - plane.axes.vectors[1] * q.c[2];
         normal = normal * (1 / root);
       }
@@ -328,6 +310,43 @@ PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std
   const double sign = dot(canonical, normal) < 0 ? -1 : 1;
   line.normal = to_float(canonical);
   line.curvature = static_cast<float>(sign * bend / points.radius);
+}
+
+template <int kMost>
+PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count) {
+  Line line;
+  Neighbourhood<kMost> points;
+  gather(positions, i, ids, count, points);
+  if (!(points.radius > 0) || count < 2) return line;
+  double weight[kMost + 1];
+  const Plane plane = fit_plane_robustly(points, weight);
+  line.noise_unit = std::sqrt(plane.variance) * points.radius;
+  line.scatter_unit = std::sqrt(plane.whole_variance) * points.radius;
+  line.roughness = static_cast<float>(std::sqrt(plane.whole_variance));
+  if (count > kNeighbours) line.is_sheet = are_two_sheets(points, plane);
+  describe(points, plane, weight, line);
+  return line;
+}
+
+/// The sheet among the nearest points, if it goes on among the others: noise has none that does.
+template <int kMost>
+PSK_HD Line fit_sheet(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count) {
+  constexpr double kLeastShare = 0.3;
+  Line line;
+  Neighbourhood<kMost> points;
+  gather(positions, i, ids, kNeighbours, points);
+  if (!(points.radius > 0)) return line;
+  double weight[kMost + 1];
+  Plane plane = fit_plane_robustly(points, weight);
+  if (!find_sheet(points, plane.whole_variance, weight, plane)) return line;
+  int on_it = 0;
+  for (int j = 0; j < count; ++j) {
+    const Double3 d = (to_double(positions[ids[j]]) - to_double(positions[i])) * (1 / points.radius) - plane.centre;
+    const double along = dot(plane.axes.vectors[0], d);
+    if (along * along < kSheetNear) ++on_it;
+  }
+  line.is_sheet = on_it > kLeastShare * count;
+  describe(points, plane, weight, line);
   return line;
 }
 
@@ -351,7 +370,7 @@ struct FitNear {
     const std::int32_t* ids = neighbours.data + i * kNeighbours;
     int count = 0;
     while (count < kNeighbours && ids[count] >= 0) ++count;
-    const Line line = fit_line<kNeighbours>(positions, i, ids, count, false);
+    const Line line = fit_line<kNeighbours>(positions, i, ids, count);
     out.write(i, line);
     roughness[i] = line.roughness;
   }
@@ -362,40 +381,33 @@ struct IsRough {
   PSK_HD bool operator()(std::int64_t i) const { return roughness[i] > kRough; }
 };
 
-/// Grows the neighbourhood while the scatter does not grow with it: then it is noise and not shape.
+/// Grows the neighbourhood where the scatter does not grow with it: then it is noise and not shape.
 struct FitFar {
   neighbours::Search search;
   ArrayView<const std::int32_t> rough;
-  ArrayView<const float> roughness;
   Out out;
+
   PSK_HD void operator()(std::int64_t r) const {
-    constexpr double kGrowth = 1.5;  // with the radius doubled an edge's scatter doubles, curvature's grows fourfold
-    constexpr double kGrowthToHalf = 1.2;
+    // With the area doubled, an edge's scatter grows by 1.41 and curvature's by 2; noise's by 1, or by more where even
+    // the larger neighbourhood is hardly wider than the noise.
+    constexpr double kGrowth = 1.28;
+    constexpr double kGrowthOfFour = 1.5;
+    constexpr float kBall = 0.5F;  // flatness of neighbourhoods that lie in the noise
     const std::int32_t i = rough[r];
     NearestList<kMostNeighbours> list;
     search(i, list);
-    if (list.count <= kNeighbours) return;
-    const Vec3f* const at = search.points.positions.data;
+    if (list.count <= 2 * kNeighbours) return;
     const ArrayView<const Vec3f> positions = search.points.positions;
-    const double radius = std::sqrt(static_cast<double>(octree::search::squared_distance(at[i], at[list.ids[kNeighbours - 1]])));
-    const double scatter = static_cast<double>(roughness[i]) * radius;
-    for (int count = kMostNeighbours; count >= 2 * kNeighbours; count /= 2) {
-      const int used = count < list.count ? count : list.count;
-      const Line line = fit_line<kMostNeighbours>(positions, i, list.ids, used, false);
-      if (line.scatter_unit > (count == kMostNeighbours ? kGrowth : kGrowthToHalf) * scatter) continue;
-      out.write(i, line);
-      return;
-    }
-    take_sheet(i, list);
-  }
-
-  /// Scatter that grows with the distance is shape: an edge, or another sheet.
-  PSK_HD void take_sheet(std::int32_t i, const NearestList<kMostNeighbours>& list) const {
-    const Line line = fit_line<kMostNeighbours>(search.points.positions, i, list.ids, kNeighbours, true);
-    if (line.is_sheet)
-      out.write(i, line);
-    else
-      out.noise[i] = 0;
+    const Line near = fit_line<kMostNeighbours>(positions, i, list.ids, kNeighbours);
+    const Line middle = fit_line<kMostNeighbours>(positions, i, list.ids, 2 * kNeighbours);
+    const Line far = fit_line<kMostNeighbours>(positions, i, list.ids, list.count);
+    if (far.scatter_unit <= kGrowth * middle.scatter_unit || far.scatter_unit <= kGrowthOfFour * near.scatter_unit)
+      return out.write(i, far);
+    if (middle.scatter_unit <= kGrowth * near.scatter_unit) return out.write(i, middle);
+    const Line sheet = fit_sheet<kMostNeighbours>(positions, i, list.ids, list.count);
+    if (sheet.is_sheet) return out.write(i, sheet);
+    if (near.flatness < kBall) return out.write(i, far);
+    out.noise[i] = 0;  // some shape
   }
 };
 
@@ -434,7 +446,7 @@ NormalLines estimate_lines(Exec& ex, const octree::SearchView& points, ArrayView
   for_each(ex, "normals.fit", n, lines::FitNear{points.positions, neighbours, out, roughness.view()});
   const exec::Buffer<std::int32_t> rough = select(ex, "normals.rough", n, lines::IsRough{roughness.cview()});
   for_each(ex, "normals.fit_far", rough.size(),
-           lines::FitFar{{points}, rough.cview(), roughness.cview(), out});
+           lines::FitFar{{points}, rough.cview(), out});
   for_each(ex, "normals.noise", n, lines::ConfirmNoise{neighbours, result.noise.cview(), roughness.view()});
   result.noise = std::move(roughness);
   return result;

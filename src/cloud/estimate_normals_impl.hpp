@@ -398,14 +398,14 @@ struct FitFar {
     search(i, list);
     if (list.count <= 2 * kNeighbours) return;
     const ArrayView<const Vec3f> positions = search.points.positions;
+    const Line sheet = fit_sheet<kMostNeighbours>(positions, i, list.ids, list.count);
+    if (sheet.is_sheet) return out.write(i, sheet);
     const Line near = fit_line<kMostNeighbours>(positions, i, list.ids, kNeighbours);
     const Line middle = fit_line<kMostNeighbours>(positions, i, list.ids, 2 * kNeighbours);
     const Line far = fit_line<kMostNeighbours>(positions, i, list.ids, list.count);
     if (far.scatter_unit <= kGrowth * middle.scatter_unit || far.scatter_unit <= kGrowthOfFour * near.scatter_unit)
       return out.write(i, far);
     if (middle.scatter_unit <= kGrowth * near.scatter_unit) return out.write(i, middle);
-    const Line sheet = fit_sheet<kMostNeighbours>(positions, i, list.ids, list.count);
-    if (sheet.is_sheet) return out.write(i, sheet);
     if (near.flatness < kBall) return out.write(i, far);
     out.noise[i] = 0;  // some shape
   }

@@ -39,6 +39,7 @@ void define_program(CLI::App& program, Job& job) {
   add_compare(program, job);
   add_convert(program, job);
   add_deform(program, job);
+  add_orient(program, job);
   add_problems(program, job);
   add_render(program, job);
   add_boolean(program, job);

@@ -35,12 +35,12 @@ struct NormalOptions {
   /// > 0: no further trial reconstruction is begun after so many seconds. The result then depends on the machine's
   /// speed; 0: no limit.
   double time_limit_s = 0;
-  /// With `repair`: a given normal stays, byte for byte or with its sign changed, if it is within this angle of the line
-  /// that the neighbours give; else it is replaced. Degrees, in [0, 90].
+  /// With `repair`: a given normal stays, byte for byte or with its sign changed, if it is within this angle of the
+  /// line that the neighbours give; else it is replaced. Degrees, in [0, 90].
   double keep_within_degrees = 75;
   bool confidence = true;  ///< true: the cloud gets the attribute "confidence", in [0, 1]
-  bool curvature = false;  ///< true: the cloud gets the attribute "curvature": mean curvature, 1 / world unit, > 0 where
-                           ///< the surface is convex
+  bool curvature = false;  ///< true: the cloud gets the attribute "curvature": mean curvature, 1 / world unit, > 0
+                           ///< where the surface is convex
   /// Called a few times from the calling thread with phases "estimate", "propagate", "iterate"; false cancels.
   std::function<bool(const Progress&)> progress{};
 };
@@ -48,7 +48,7 @@ struct NormalOptions {
 /// What was done.
 struct NormalReport {
   NormalMethod method = NormalMethod::propagate;  ///< the one that was used, never automatic
-  std::string assumed;          ///< what could not be known and was assumed, a sentence for people
+  std::string assumed;                            ///< what could not be known and was assumed, a sentence for people
   std::int64_t points = 0;
   std::int64_t given = 0;       ///< points that came with a normal
   std::int64_t kept = 0;        ///< of them, byte for byte
@@ -60,8 +60,8 @@ struct NormalReport {
   std::int64_t turned = 0;      ///< patches or components whose sign a trial reconstruction has changed
   int rounds = 0;               ///< trial reconstructions
   bool settled = true;          ///< false: rounds or time ran out before the signs stopped changing
-  double enclosing = 0;         ///< mean of the trial field at the points, 1/2 for a closed surface with right signs; near
-                                ///< 0 where inside and outside are a guess
+  double enclosing = 0;  ///< mean of the trial field at the points, 1/2 for a closed surface with right signs; near
+                         ///< 0 where inside and outside are a guess
   double estimate_ms = 0, propagate_ms = 0, iterate_ms = 0, total_ms = 0;
   std::int64_t device_peak_bytes = 0;
 };
@@ -77,10 +77,9 @@ class NormalEstimator {
 
   /// Gives `cloud` outward unit normals; positions and other attributes stay. Given normals that are kept stay as they
   /// are. Every point gets one, strays too. About 350 bytes of the device's memory a point and those of an octree.
-  /// Sources: docs/algorithm.md, section 19. Deterministic: the same bytes for any thread count, any order of the points
-  /// (points alike in position and normal may be exchanged), CPU or GPU, unless NormalOptions::time_limit_s cuts it
-  /// short.
-  /// O(n log n), and about 4 solves as Reconstructor's at a depth of log4(n / 3).
+  /// Sources: docs/algorithm.md, section 19. Deterministic: the same bytes for any thread count, any order of the
+  /// points (points alike in position and normal may be exchanged), CPU or GPU, unless NormalOptions::time_limit_s cuts
+  /// it short. O(n log n), and about 4 solves as Reconstructor's at a depth of log4(n / 3).
   /// @throws Error usage (an option out of range; sensor without one), no_normals (repair without normals),
   ///         invalid_input (points or normals that are not finite), empty_result (fewer than 3 points, or all at one
   ///         place), over_limit, interrupted

@@ -29,8 +29,8 @@ struct NormalLines {
 /// Most points of a neighbourhood.
 inline constexpr int kMostNeighbours = 64;
 
-/// Fits a plane and, where that is better, a quadric to the nearest points of every point: 16 of them, or 32 or 64 where
-/// noise dominates.
+/// Fits a plane and, where that is better, a quadric to the nearest points of every point: 16 of them, or 32 or 64
+/// where noise dominates.
 /// @param points      positions in key order
 /// @param neighbours  of find_neighbours
 /// O(n) fits of 16, and a search for 64 where points scatter. Deterministic; double, with + - * / and roots alone.

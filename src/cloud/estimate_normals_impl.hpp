@@ -117,18 +117,17 @@ PSK_HD Plane fit_plane_robustly(const Neighbourhood<kMost>& points, double (&wei
 /// What is on a sheet, of the radius, squared.
 inline constexpr double kSheetNear = 0.12 * 0.12;
 
-/// A plane near the point that some of its neighbours lie on, and the others far from: one of two sheets, or one side of
-/// an edge. Planes through the point and two of its nearest are tried.
+/// A plane near the point that some of its neighbours lie on, and the others far from: one of two sheets, or one side
+/// of an edge. Planes through the point and two of its nearest are tried.
 /// @param weight  receives those of the sheet's points
 /// @returns false if the scatter has no such sheet
 template <int kMost>
-PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, double (&weight)[kMost + 1],
-                       Plane& plane) {
+PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, double (&weight)[kMost + 1], Plane& plane) {
   constexpr int kTried = 8;
   constexpr double kNear = kSheetNear;
-  constexpr double kLeastShare = 0.4;    // of the weight
+  constexpr double kLeastShare = 0.4;      // of the weight
   constexpr double kFlat = 0.025 * 0.025;  // largest variance in the sheet, which noise alone does not come below
-  constexpr double kClearer = 0.08;      // variance in the sheet / variance of all
+  constexpr double kClearer = 0.08;        // variance in the sheet / variance of all
   double best = 0;
   Double3 best_normal{};
   for (int a = 1; a <= kTried && a < points.count; ++a) {
@@ -438,15 +437,13 @@ struct ConfirmNoise {
 template <exec::Space Exec>
 NormalLines estimate_lines(Exec& ex, const octree::SearchView& points, ArrayView<const std::int32_t> neighbours) {
   const std::int64_t n = points.positions.size;
-  NormalLines result{exec::make_buffer<Vec3f>(ex, n), exec::make_buffer<float>(ex, n),
-                     exec::make_buffer<float>(ex, n), exec::make_buffer<float>(ex, n)};
+  NormalLines result{exec::make_buffer<Vec3f>(ex, n), exec::make_buffer<float>(ex, n), exec::make_buffer<float>(ex, n),
+                     exec::make_buffer<float>(ex, n)};
   auto roughness = exec::make_buffer<float>(ex, n);
-  const lines::Out out{result.normals.view(), result.flatness.view(), result.curvature.view(),
-                       result.noise.view()};
+  const lines::Out out{result.normals.view(), result.flatness.view(), result.curvature.view(), result.noise.view()};
   for_each(ex, "normals.fit", n, lines::FitNear{points.positions, neighbours, out, roughness.view()});
   const exec::Buffer<std::int32_t> rough = select(ex, "normals.rough", n, lines::IsRough{roughness.cview()});
-  for_each(ex, "normals.fit_far", rough.size(),
-           lines::FitFar{{points}, rough.cview(), out});
+  for_each(ex, "normals.fit_far", rough.size(), lines::FitFar{{points}, rough.cview(), out});
   for_each(ex, "normals.noise", n, lines::ConfirmNoise{neighbours, result.noise.cview(), roughness.view()});
   result.noise = std::move(roughness);
   return result;

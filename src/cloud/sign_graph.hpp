@@ -2,10 +2,10 @@
 // votes to the least sure.
 // Sources: Hoppe et al. 1992, section 3.2 (propagation along a spanning tree); Xie, Wang, Hua, Qin & Kaufman,
 // "Piecewise C1 continuous surface reconstruction of noisy point clouds via local implicit quadric regression", IEEE
-// Visualization 2003 (a neighbour's normal is the mirror image, so sharp edges do not turn it over); Schertler, Savchynskyy
-// & Gumhold, "Towards globally optimal normal orientations for large point clouds", CGF 36, 2017 (signed graphs over
-// patches); Boruvka, 1926. Differs: votes between two patches are summed before the next round, so that no single link
-// decides; all sums are integers (docs/decisions/0026-normals.md).
+// Visualization 2003 (a neighbour's normal is the mirror image, so sharp edges do not turn it over); Schertler,
+// Savchynskyy & Gumhold, "Towards globally optimal normal orientations for large point clouds", CGF 36, 2017 (signed
+// graphs over patches); Boruvka, 1926. Differs: votes between two patches are summed before the next round, so that no
+// single link decides; all sums are integers (docs/decisions/0026-normals.md).
 #pragma once
 
 #include <cstdint>
@@ -39,11 +39,11 @@ struct PatchVotes {
 /// Points in patches: within one, signs are relative to each other.
 struct SignPatches {
   std::int32_t count = 0;
-  exec::Buffer<std::int32_t> labels;   ///< (n) in [0, count), by the smallest point of each
-  exec::Buffer<std::int32_t> signs;    ///< (n) 1 or -1: times the normals, equal signs within a patch
-  exec::Buffer<std::uint64_t> sizes;   ///< (count) points
-  exec::Buffer<std::uint64_t> pairs;   ///< (m) lower label << 32 | higher label of linked patches, ascending
-  exec::Buffer<PatchVotes> votes;      ///< (m)
+  exec::Buffer<std::int32_t> labels;  ///< (n) in [0, count), by the smallest point of each
+  exec::Buffer<std::int32_t> signs;   ///< (n) 1 or -1: times the normals, equal signs within a patch
+  exec::Buffer<std::uint64_t> sizes;  ///< (count) points
+  exec::Buffer<std::uint64_t> pairs;  ///< (m) lower label << 32 | higher label of linked patches, ascending
+  exec::Buffer<PatchVotes> votes;     ///< (m)
 };
 
 /// Which patches may become one.

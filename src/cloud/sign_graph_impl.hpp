@@ -260,9 +260,9 @@ void sum_pairs(Exec& ex, std::int32_t count, exec::Buffer<std::uint64_t>& pairs,
   const exec::Buffer<std::int32_t> starts = exec::run_starts(ex, "normals.pairs", keys.cview());
   auto pairs_out = exec::make_buffer<std::uint64_t>(ex, starts.size());
   auto votes_out = exec::make_buffer<PatchVotes>(ex, starts.size());
-  for_each(ex, "normals.pairs", starts.size(),
-           SumRuns{bits, keys.cview(), starts.cview(), order.cview(), votes.cview(), pairs_out.view(),
-                   votes_out.view()});
+  for_each(
+      ex, "normals.pairs", starts.size(),
+      SumRuns{bits, keys.cview(), starts.cview(), order.cview(), votes.cview(), pairs_out.view(), votes_out.view()});
   pairs = std::move(pairs_out);
   votes = std::move(votes_out);
 }

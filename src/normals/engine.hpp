@@ -11,8 +11,8 @@ namespace pointskin::detail {
 
 /// What the input says of where points were seen from, relative to the cloud's origin.
 struct Views {
-  std::vector<Vec3d> sensors;        ///< relative to the cloud's origin
-  std::vector<Vec3f> towards;        ///< (n) or none: from the point towards its sensor, any length
+  std::vector<Vec3d> sensors;  ///< relative to the cloud's origin
+  std::vector<Vec3f> towards;  ///< (n) or none: from the point towards its sensor, any length
   [[nodiscard]] bool empty() const { return sensors.empty() && towards.empty(); }
 };
 

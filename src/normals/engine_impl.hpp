@@ -111,7 +111,8 @@ inline std::string assumption(const NormalReport& report) {
   }
   if (report.enclosing > kClosed) return "the points surround solids: normals point away from what they enclose";
   if (report.enclosing > kFlat)
-    return "the scan is open: normals point to the convex side, as if it bounded a solid; give the sensor's position if "
+    return "the scan is open: normals point to the convex side, as if it bounded a solid; give the sensor's position "
+           "if "
            "it was inside";
   return "the points enclose nothing: which side is outside is a guess; give the sensor's position";
 }
@@ -196,12 +197,11 @@ class NormalsOn final : public NormalEngine {
     report.replaced = counts.of[normals::replaced];
     report.given = report.kept + report.flipped + report.replaced;
     report.doubtful = counts.doubtful;
-    if (options.confidence)
-      normals::set_attribute(cloud, "confidence", scattered(points, solver.confidence(), {}, 1));
+    if (options.confidence) normals::set_attribute(cloud, "confidence", scattered(points, solver.confidence(), {}, 1));
     if (options.curvature)
-      normals::set_attribute(cloud, "curvature",
-                             scattered(points, lines.curvature, solver.signs().cview(),
-                                       static_cast<float>(1 / points.frame.size)));
+      normals::set_attribute(
+          cloud, "curvature",
+          scattered(points, lines.curvature, solver.signs().cview(), static_cast<float>(1 / points.frame.size)));
     download_array(*ex_, out, cloud.normals);
   }
 

@@ -17,16 +17,16 @@ struct Couplings {
   [[nodiscard]] double relative(std::size_t a, std::size_t b) const;
 };
 
-/// Signs that bring the field at every patch nearest to 1/2: they minimise sum_b area_b (sum_a signs[a] m(a, b) - 1/2)^2
-/// with m(a, b) the mean over patch b of the field of set a alone. So what lies inside of a solid is a cavity, and what
-/// lies in a cavity a solid.
+/// Signs that bring the field at every patch nearest to 1/2: they minimise sum_b area_b (sum_a signs[a] m(a, b) -
+/// 1/2)^2 with m(a, b) the mean over patch b of the field of set a alone. So what lies inside of a solid is a cavity,
+/// and what lies in a cavity a solid.
 /// @param means  (sets, sets), row a for the field of set a
 /// @param signs  in: where to start; out: the best; those that are fixed stay
 void choose_sides(const std::vector<double>& means, const std::vector<double>& areas, const std::vector<bool>& fixed,
                   std::vector<int>& signs);
 
-/// Signs that maximise sum_ab signs[a] signs[b] c(a, b), the part of the normals' field that is a gradient: the signs of
-/// a closed surface leave nothing else. All combinations are tried up to 14 free patches, else single changes are
+/// Signs that maximise sum_ab signs[a] signs[b] c(a, b), the part of the normals' field that is a gradient: the signs
+/// of a closed surface leave nothing else. All combinations are tried up to 14 free patches, else single changes are
 /// made as long as one helps.
 /// @param signs  in: where to start, 1 or -1; out: the best. Of two equal ones the first stays
 /// @param fixed  patches whose sign stays

@@ -21,9 +21,8 @@ struct ViewNames {
   std::array<const char*, 3> names;
   bool is_position;
 };
-constexpr ViewNames kViewNames[] = {{{"view_x", "view_y", "view_z"}, false},
-                                    {{"vx", "vy", "vz"}, false},
-                                    {{"sensor_x", "sensor_y", "sensor_z"}, true}};
+constexpr ViewNames kViewNames[] = {
+    {{"view_x", "view_y", "view_z"}, false}, {{"vx", "vy", "vz"}, false}, {{"sensor_x", "sensor_y", "sensor_z"}, true}};
 
 const Attribute* find(const Cloud& cloud, const std::string& name) {
   const auto at = std::find_if(cloud.attributes.begin(), cloud.attributes.end(), [&](const Attribute& a) {
@@ -44,8 +43,7 @@ const ViewNames* find_views(const Cloud& cloud, std::array<const Attribute*, 3>&
 detail::Views find_views(const Cloud& cloud, const NormalOptions& options) {
   detail::Views views;
   for (const Vec3d& sensor : options.sensors)
-    views.sensors.push_back(
-        {sensor[0] - cloud.origin[0], sensor[1] - cloud.origin[1], sensor[2] - cloud.origin[2]});
+    views.sensors.push_back({sensor[0] - cloud.origin[0], sensor[1] - cloud.origin[1], sensor[2] - cloud.origin[2]});
   if (!views.sensors.empty()) return views;
   std::array<const Attribute*, 3> values{};
   const ViewNames* const triple = find_views(cloud, values);

@@ -17,7 +17,9 @@ inline constexpr double kFraction = 65536;
 PSK_HD inline std::uint64_t fixed_point(double value) {
   return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * kFraction + (value < 0 ? -0.5 : 0.5)));
 }
-inline double from_fixed_point(std::uint64_t sum) { return static_cast<double>(static_cast<std::int64_t>(sum)) / kFraction; }
+inline double from_fixed_point(std::uint64_t sum) {
+  return static_cast<double>(static_cast<std::int64_t>(sum)) / kFraction;
+}
 
 /// sign[i] = that within its patch times that of the patch; 0 for patches of another set.
 struct ComposeSigns {

@@ -104,7 +104,8 @@ class SignSolver {
   }
 
   void compose(const std::vector<int>& patch_signs) {
-    const exec::Buffer<std::int32_t> on_device = to_device(std::vector<std::int32_t>(patch_signs.begin(), patch_signs.end()));
+    const exec::Buffer<std::int32_t> on_device =
+        to_device(std::vector<std::int32_t>(patch_signs.begin(), patch_signs.end()));
     for_each(ex_, "normals.compose", signs_.size(),
              signs::ComposeSigns{patches_.labels.cview(), patches_.signs.cview(), on_device.cview(), signs_.view()});
   }
@@ -113,7 +114,8 @@ class SignSolver {
     std::int64_t net = 0, gross = 0;
     [[nodiscard]] bool decide(double share) const {
       const auto size = static_cast<double>(std::abs(net));
-      return gross > 0 && size >= share * static_cast<double>(gross) && size >= 3 * std::sqrt(static_cast<double>(gross));
+      return gross > 0 && size >= share * static_cast<double>(gross) &&
+             size >= 3 * std::sqrt(static_cast<double>(gross));
     }
   };
   /// Of samples, for the sign within their patch.
@@ -403,8 +405,8 @@ class SignSolver {
   std::vector<std::int32_t> components_;  // of patches
   std::vector<int> patch_signs_;
   std::vector<std::uint64_t> sizes_;
-  std::vector<bool> fixed_;               // patches whose sign the input decides
-  std::vector<std::int32_t> sets_;        // union-find over patches
+  std::vector<bool> fixed_;         // patches whose sign the input decides
+  std::vector<std::int32_t> sets_;  // union-find over patches
   exec::Buffer<std::int32_t> kept_signs_;
   exec::Buffer<std::int32_t> signs_;
   exec::Buffer<float> confidence_;

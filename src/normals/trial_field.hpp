@@ -1,8 +1,8 @@
 // Trial reconstructions: the unscreened Poisson field of the samples with some signs, again and again on one octree.
 // Source: Hou, Wang, Wang, Qin, Qian & He, "Iterative Poisson surface reconstruction (iPSR) for unoriented points", ACM
-// TOG 41(4), 2022. Differs: lines of normals are estimated once and only signs are iterated; the field's gradient at the
-// samples takes the place of the faces near them; the field is 0 on the cube, so that a sample on the right side of a
-// closed surface is at 1/2 and one on the wrong side at -1/2.
+// TOG 41(4), 2022. Differs: lines of normals are estimated once and only signs are iterated; the field's gradient at
+// the samples takes the place of the faces near them; the field is 0 on the cube, so that a sample on the right side of
+// a closed surface is at 1/2 and one on the wrong side at -1/2.
 #pragma once
 
 #include <cmath>

@@ -101,8 +101,7 @@ void add_orient(CLI::App& program, Job& job) {
       ->group("Files")
       ->capture_default_str();
   command
-      ->add_option("--method", args->normals.method,
-                   "auto, sensor, propagate, iterate or repair (auto: sensor or repair if the input allows it)")
+      ->add_option("--method", args->normals.method, "auto (what fits the input), sensor, propagate, iterate or repair")
       ->type_name("METHOD")
       ->group(kNormalGroup)
       ->capture_default_str();

@@ -30,9 +30,8 @@ void define_files(CLI::App& command, ReconstructArgs& args) {
 
 void define_normals(CLI::App& command, ReconstructArgs& args) {
   command
-      .add_flag(
-          "--estimate-normals{auto}", args.estimate_normals,
-          "make normals, or correct given ones: =sensor, =propagate, =iterate, =repair; alone: what fits the input")
+      .add_flag("--estimate-normals{auto}", args.estimate_normals,
+                "make or correct normals; =METHOD: auto, sensor, propagate, iterate, repair")
       ->group(kNormalGroup);
   define_normal_options(command, args.normals);
 }

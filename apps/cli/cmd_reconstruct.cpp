@@ -36,21 +36,43 @@ void check_files(const ReconstructArgs& args) {
   if (!args.report.empty()) check_replaceable(args.report);
 }
 
+/// @throws Error usage
+NormalOptions normal_options_of(const ReconstructArgs& args) {
+  NormalArgs normals = args.normals;
+  normals.method = args.estimate_normals;
+  return normal_options(normals, "--estimate-normals");
+}
+
 void warn_about_options(const ReconstructArgs& args) {
   if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
+}
+
+/// Normals for the cloud; its attributes stay as they are.
+NormalReport make_normals(const ReconstructArgs& args, const Record& record, Cloud& cloud) {
+  NormalOptions options = normal_options_of(args);
+  options.confidence = false;
+  on_interrupt(OnInterrupt::remember);
+  return estimate_normals(cloud, options, record.device, args.quiet);
 }
 
 /// Reads, merges and cleans the input; fills in the counts.
 Cloud read_input(const ReconstructArgs& args, Record& record) {
   const Stopwatch watch;
-  Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
-  drop_unusable(cloud);
+  const bool estimated = !args.estimate_normals.empty();
+  Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads},
+                            estimated ? MissingNormals::allowed : MissingNormals::refused);
+  if (!estimated) {
+    drop_unusable(cloud);
+  } else if (cloud.dropped > 0) {
+    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
+  }
+  record.read_ms = watch.ms();
+  if (estimated && !args.dry_run) record.normals = make_normals(args, record, cloud);
   if (!args.options.attributes && !args.colors) cloud.attributes.clear();
   if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
     print_warning("--colors: the points have no red, green or blue");
   record.dropped = cloud.dropped;
   record.points = cloud.size() + cloud.dropped;
-  record.read_ms = watch.ms();
   return cloud;
 }
 
@@ -125,6 +147,7 @@ void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Recor
 nlohmann::ordered_json other_options(const ReconstructArgs& args) {
   nlohmann::ordered_json json = {{"device", args.device}, {"threads", args.threads}, {"shift", args.shift}};
   json["envelope"] = or_null(args.envelope);
+  if (!args.estimate_normals.empty()) json["estimate_normals"] = to_json(normal_options_of(args));
   json["repeat"] = args.repeat;
   json["inputs"] = args.inputs;
   json["output"] = or_null(args.output);
@@ -177,6 +200,7 @@ int run(const ReconstructArgs& given) {
   Record record;
   if (args.problems) record.command = "problems";
   record.options = library_options(args);
+  if (!args.estimate_normals.empty()) normal_options_of(args);
   parse_shift(args.shift);
   check_files(args);
   record.device = args.chosen();

@@ -19,6 +19,7 @@ void add_compare(CLI::App& program, Job& job);
 void add_convert(CLI::App& program, Job& job);
 void add_deform(CLI::App& program, Job& job);
 void add_fluid(CLI::App& program, Job& job);
+void add_orient(CLI::App& program, Job& job);
 void add_problems(CLI::App& program, Job& job);
 void add_render(CLI::App& program, Job& job);
 void add_boolean(CLI::App& program, Job& job);

@@ -109,14 +109,18 @@ void append(Cloud& to, Cloud&& from) {
   to.dropped += from.dropped;
 }
 
-Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options) {
+Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options, MissingNormals missing) {
   Cloud merged;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     Cloud cloud = read_cloud(paths[i], options);
     const std::string name = paths[i] == "-" ? "stdin" : paths[i];
     check_not_empty(cloud, name);
-    if (!cloud.has_normals()) {
-      throw Error(ErrorCode::no_normals, fmt::format("{}: has no normals; it needs outward normals nx, ny, nz", name));
+    if (missing == MissingNormals::refused && !cloud.has_normals()) {
+      throw Error(
+          ErrorCode::no_normals,
+          fmt::format("{}: has no normals; it needs outward normals nx, ny, nz; 'pointskin orient' and reconstruct's "
+                      "--estimate-normals make them",
+                      name));
     }
     if (i == 0) {
       merged = std::move(cloud);

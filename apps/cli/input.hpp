@@ -18,9 +18,14 @@ namespace pointskin::cli {
 /// have it so. Normals that only one has are left out; dropped points add up.
 void append(Cloud& to, Cloud&& from);
 
+/// Whether clouds may come without normals. If some do, the merged cloud has none.
+enum class MissingNormals { refused, allowed };
+
 /// Reads and merges `paths`. O(points).
-/// @throws Error as read_cloud; empty_result if a merged cloud would have no points, invalid_input if all were dropped
-Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options);
+/// @throws Error as read_cloud; no_normals if that is refused; empty_result if a merged cloud would have no points,
+/// invalid_input if all were dropped
+Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options,
+                  MissingNormals missing = MissingNormals::refused);
 
 /// Removes points whose normal has zero length and counts them in Cloud::dropped.
 /// @returns how many

@@ -40,6 +40,7 @@ void define_program(CLI::App& program, Job& job) {
   add_convert(program, job);
   add_deform(program, job);
   add_fluid(program, job);
+  add_orient(program, job);
   add_problems(program, job);
   add_render(program, job);
   add_boolean(program, job);

@@ -28,6 +28,14 @@ void define_files(CLI::App& command, ReconstructArgs& args) {
       ->capture_default_str();
 }
 
+void define_normals(CLI::App& command, ReconstructArgs& args) {
+  command
+      .add_flag("--estimate-normals{auto}", args.estimate_normals,
+                "make or correct normals; =METHOD: auto, sensor, propagate, iterate, repair")
+      ->group(kNormalGroup);
+  define_normal_options(command, args.normals);
+}
+
 void define_limits(CLI::App& command, ReconstructArgs& args) {
   const std::string group = kDeviceGroup;
   command
@@ -76,6 +84,7 @@ void define_poisson_recon_names(CLI::App& command, ReconstructArgs& args) {
 void define_reconstruct_options(CLI::App& command, ReconstructArgs& args) {
   define_files(command, args);
   define_fit_options(command, args);
+  define_normals(command, args);
   define_device_options(command, args);
   define_limits(command, args);
   define_messages(command, args);

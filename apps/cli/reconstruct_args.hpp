@@ -9,6 +9,7 @@
 #include <pointskin/reconstruct.hpp>
 
 #include "fit_args.hpp"
+#include "normal_args.hpp"
 
 namespace pointskin::cli {
 
@@ -18,9 +19,11 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   std::string output;                     ///< empty: none
   std::string report;                     ///< empty: none
   std::string shift = "auto";
-  std::string max_memory;  ///< empty: no limit
-  int boundary_type = 0;   ///< PoissonRecon's number of the boundary; 0: none
-  double width_world = 0;  ///< > 0: chooses the depth
+  NormalArgs normals;
+  std::string estimate_normals;  ///< method; empty: the points have normals
+  std::string max_memory;        ///< empty: no limit
+  int boundary_type = 0;         ///< PoissonRecon's number of the boundary; 0: none
+  double width_world = 0;        ///< > 0: chooses the depth
   int repeat = 0;
   bool width_given = false, repeat_given = false;
   bool problems = false;  ///< list regions whose topology is doubtful; a mesh is not needed then

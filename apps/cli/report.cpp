@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "normal_args.hpp"
 #include "statistics.hpp"
 
 namespace pointskin::cli {
@@ -153,6 +154,7 @@ Json to_json(const Record& record) {
   json["device"] = to_json(record.device);
   json["input"] = input_json(record);
   json["options"] = options_json(record);
+  if (record.normals) json["normals"] = to_json(*record.normals);
   json["octree"] = octree_json(record.run);
   json["solve"] = solve_json(record);
   json["isovalue"] = record.run.isovalue;

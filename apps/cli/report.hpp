@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 #include <pointskin/device.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/normals.hpp>
 #include <pointskin/problems.hpp>
 #include <pointskin/reconstruct.hpp>
 
@@ -22,6 +24,7 @@ struct Record {
   std::int64_t dropped = 0;              ///< of them, left out: not finite, or a normal of zero length
   Options options;                       ///< after defaults
   nlohmann::ordered_json other_options;  ///< what Options does not hold
+  std::optional<NormalReport> normals;   ///< with --estimate-normals
   RunReport run;
   MeshReport mesh;
   std::string command = "reconstruct";

@@ -12,6 +12,7 @@
 #include <pointskin/fluid.hpp>
 #include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/normals.hpp>
 #include <pointskin/octree.hpp>
 #include <pointskin/problems.hpp>
 #include <pointskin/reconstruct.hpp>

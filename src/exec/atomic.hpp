@@ -27,6 +27,19 @@ PSK_HD inline void add(std::uint64_t* word, std::uint64_t value) {
 #endif
 }
 
+/// Raises a word to `value` if it holds less; other threads may raise it, too.
+PSK_HD inline void raise_to(std::uint64_t* word, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  if (*static_cast<volatile std::uint64_t*>(word) >= value) return;
+  atomicMax(reinterpret_cast<unsigned long long*>(word), static_cast<unsigned long long>(value));
+#else
+  const std::atomic_ref<std::uint64_t> shared(*word);
+  std::uint64_t held = shared.load(std::memory_order_relaxed);
+  while (held < value && !shared.compare_exchange_weak(held, value, std::memory_order_relaxed)) {
+  }
+#endif
+}
+
 /// What is in a word that other threads may be changing.
 PSK_HD inline std::int32_t load(const std::int32_t* word) {
 #ifdef __CUDA_ARCH__

@@ -28,6 +28,7 @@ LAYERS = {
     "deform": PARTS | {"pipeline", "deform"},
     "boolean": PARTS | {"pipeline", "boolean"},
     "fluid": {"core", "exec", "octree", "field", "surface", "pipeline", "mesh", "fluid"},
+    "normals": PARTS | {"pipeline", "normals"},
     "render": {"core", "exec", "mesh", "render"},
 }
 SOURCES = {".hpp", ".cpp", ".cuh", ".cu", ".h"}

@@ -1,0 +1,452 @@
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "cloud/double3.hpp"
+#include "cloud/eigen3.hpp"
+#include "cloud/estimate_normals.hpp"
+#include "cloud/neighbours_impl.hpp"
+#include "exec/algorithms.hpp"
+
+namespace pointskin::cloud {
+namespace lines {
+
+/// Points relative to the one in question, in units of the farthest one's distance.
+template <int kMost>
+struct Neighbourhood {
+  int count = 0;
+  double radius = 0;  // in the unit cube; 0: all are at one place
+  Double3 at[kMost + 1];
+  double weight[kMost + 1];  // by distance alone
+};
+
+template <int kMost>
+PSK_HD void gather(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count,
+                   Neighbourhood<kMost>& out) {
+  const Double3 centre = to_double(positions[i]);
+  out.count = 1;
+  out.at[0] = {};
+  double farthest = 0;
+  for (int j = 0; j < count; ++j) {
+    const Double3 d = to_double(positions[ids[j]]) - centre;
+    out.at[out.count++] = d;
+    const double squared = dot(d, d);
+    if (squared > farthest) farthest = squared;
+  }
+  out.radius = std::sqrt(farthest);
+  if (!(out.radius > 0)) return;
+  const double scale = 1 / out.radius;
+  for (int j = 0; j < out.count; ++j) {
+    out.at[j] = out.at[j] * scale;
+    const double share = 1 - 0.75 * dot(out.at[j], out.at[j]);
+    out.weight[j] = share * share;
+  }
+}
+
+/// A plane with what its points say of it.
+struct Plane {
+  Eigen3 axes;  // the normal is axes.vectors[0]; values: mean squares
+  Double3 centre;
+  double variance = 0;        // of the residuals, robust, per radius^2
+  double whole_variance = 0;  // the same with nothing left out
+};
+
+/// Weighted principal components.
+template <int kMost>
+PSK_HD void fit_plane(const Neighbourhood<kMost>& points, const double* weight, Plane& plane) {
+  double sum = 0;
+  Double3 centre{};
+  for (int j = 0; j < points.count; ++j) {
+    sum += weight[j];
+    centre = centre + points.at[j] * weight[j];
+  }
+  plane.centre = centre * (1 / sum);
+  Symmetric3 m;
+  for (int j = 0; j < points.count; ++j) {
+    const Double3 d = points.at[j] - plane.centre;
+    const double w = weight[j] / sum;
+    m.xx += w * d.x * d.x;
+    m.yy += w * d.y * d.y;
+    m.zz += w * d.z * d.z;
+    m.yz += w * d.y * d.z;
+    m.xz += w * d.x * d.z;
+    m.xy += w * d.x * d.y;
+  }
+  plane.axes = eigen_of(m);
+}
+
+/// Median of squared residuals.
+template <int kMost>
+PSK_HD double median_square(const Neighbourhood<kMost>& points, const Plane& plane, double (&squares)[kMost + 1]) {
+  double sorted[kMost + 1];
+  for (int j = 0; j < points.count; ++j) {
+    const double r = dot(plane.axes.vectors[0], points.at[j] - plane.centre);
+    squares[j] = r * r;
+    int place = j;
+    for (; place > 0 && squares[j] < sorted[place - 1]; --place) sorted[place] = sorted[place - 1];
+    sorted[place] = squares[j];
+  }
+  return sorted[points.count / 2];
+}
+
+inline constexpr int kRobustRounds = 2;
+
+/// Principal components with Tukey's weights. @param weight  receives the weights of the last round
+template <int kMost>
+PSK_HD Plane fit_plane_robustly(const Neighbourhood<kMost>& points, double (&weight)[kMost + 1]) {
+  Plane plane;
+  double squares[kMost + 1];
+  for (int j = 0; j < points.count; ++j) weight[j] = points.weight[j];
+  fit_plane(points, weight, plane);
+  const double whole = plane.axes.values[0];
+  plane.whole_variance = whole > 0 ? whole : 0;
+  for (int round = 0; round < kRobustRounds; ++round) {
+    constexpr double kCutoff = 4.685 * 4.685 * 2.2;  // Tukey's constant for a variance from the median square
+    const double limit = kCutoff * median_square(points, plane, squares) + 1e-12;
+    for (int j = 0; j < points.count; ++j) {
+      const double share = squares[j] < limit ? 1 - squares[j] / limit : 0.0;
+      weight[j] = points.weight[j] * share * share;
+    }
+    fit_plane(points, weight, plane);
+  }
+  plane.variance = 2.2 * median_square(points, plane, squares);
+  return plane;
+}
+
+/// What is on a sheet, of the radius, squared.
+inline constexpr double kSheetNear = 0.12 * 0.12;
+
+/// A plane near the point that some of its neighbours lie on, and the others far from: one of two sheets, or one side
+/// of an edge. Planes through the point and two of its nearest are tried.
+/// @param weight  receives those of the sheet's points
+/// @returns false if the scatter has no such sheet
+template <int kMost>
+PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, double (&weight)[kMost + 1], Plane& plane) {
+  constexpr int kTried = 8;
+  constexpr double kNear = kSheetNear;
+  constexpr double kLeastShare = 0.4;      // of the weight
+  constexpr double kFlat = 0.025 * 0.025;  // largest variance in the sheet, which noise alone does not come below
+  constexpr double kClearer = 0.08;        // variance in the sheet / variance of all
+  double best = 0;
+  Double3 best_normal{};
+  for (int a = 1; a <= kTried && a < points.count; ++a) {
+    for (int b = a + 1; b <= kTried && b < points.count; ++b) {
+      const Double3 n = cross(points.at[a], points.at[b]);
+      const double squared = dot(n, n);
+      if (!(squared > 0.05 * dot(points.at[a], points.at[a]) * dot(points.at[b], points.at[b]))) continue;
+      double score = 0;
+      for (int j = 0; j < points.count; ++j) {
+        const double along = dot(n, points.at[j]);
+        const double share = along * along / (squared * kNear);
+        if (share < 1) score += points.weight[j] * (1 - share);
+      }
+      if (score <= best) continue;
+      best = score;
+      best_normal = n * (1 / std::sqrt(squared));
+    }
+  }
+  double total = 0;
+  for (int j = 0; j < points.count; ++j) total += points.weight[j];
+  if (!(best > kLeastShare * total)) return false;
+  plane.axes.vectors[0] = best_normal;
+  plane.centre = {};
+  double limit = 2 * kNear;
+  for (int round = 0; round < 2; ++round) {
+    double squares = 0;
+    double sum = 0;
+    for (int j = 0; j < points.count; ++j) {
+      const double along = dot(plane.axes.vectors[0], points.at[j] - plane.centre);
+      const double share = along * along / limit;
+      weight[j] = share < 1 ? points.weight[j] * (1 - share) * (1 - share) : 0.0;
+      squares += weight[j] * along * along;
+      sum += weight[j];
+    }
+    plane.variance = squares / sum;
+    fit_plane(points, weight, plane);
+    limit = kNear;
+  }
+  return plane.variance < kClearer * variance && plane.variance < kFlat && plane.axes.values[1] > 0.02;
+}
+
+/// True if the points lie on two sides of the plane rather than scatter around it. Kurtosis less squared skewness is 1
+/// for any two values (Pearson), 1.8 for the flattest noise, 3 for a normal distribution.
+template <int kMost>
+PSK_HD bool are_two_sheets(const Neighbourhood<kMost>& points, const Plane& plane) {
+  constexpr double kTwoSheets = 1.5;
+  double sum = 0;
+  double mean = 0;
+  for (int j = 0; j < points.count; ++j) {
+    mean += points.weight[j] * dot(plane.axes.vectors[0], points.at[j] - plane.centre);
+    sum += points.weight[j];
+  }
+  mean /= sum;
+  double second = 0;
+  double third = 0;
+  double fourth = 0;
+  for (int j = 0; j < points.count; ++j) {
+    const double r = dot(plane.axes.vectors[0], points.at[j] - plane.centre) - mean;
+    second += points.weight[j] * r * r;
+    third += points.weight[j] * r * r * r;
+    fourth += points.weight[j] * r * r * r * r;
+  }
+  return fourth * sum * second - third * third * sum < kTwoSheets * second * second * second;
+}
+
+/// z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over the tangent plane.
+struct Quadric {
+  double c[6];
+  double variance = 0;  // of the residuals, weighted, per radius^2
+  double plane_variance = 0;
+  bool solved = false;
+};
+
+PSK_HD inline bool solve_cholesky(double (&a)[6][6], double (&b)[6]) {
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = a[i][j];
+      for (int k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
+      if (i == j) {
+        if (!(sum > 1e-10)) return false;
+        a[i][i] = std::sqrt(sum);
+      } else {
+        a[i][j] = sum / a[j][j];
+      }
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
+    b[i] /= a[i][i];
+  }
+  for (int i = 5; i >= 0; --i) {
+    for (int k = i + 1; k < 6; ++k) b[i] -= a[k][i] * b[k];
+    b[i] /= a[i][i];
+  }
+  return true;
+}
+
+template <int kMost>
+PSK_HD Quadric fit_quadric(const Neighbourhood<kMost>& points, const Plane& plane, const double* weight) {
+  Quadric out;
+  double a[6][6] = {};
+  double b[6] = {};
+  double sum = 0;
+  double squares = 0;
+  for (int j = 0; j < points.count; ++j) {
+    const Double3 d = points.at[j];
+    const double x = dot(plane.axes.vectors[2], d);
+    const double y = dot(plane.axes.vectors[1], d);
+    const double z = dot(plane.axes.vectors[0], d - plane.centre);
+    const double row[6] = {1, x, y, x * x, x * y, y * y};
+    for (int r = 0; r < 6; ++r) {
+      for (int s = 0; s <= r; ++s) a[r][s] += weight[j] * row[r] * row[s];
+      b[r] += weight[j] * row[r] * z;
+    }
+    sum += weight[j];
+    squares += weight[j] * z * z;
+  }
+  double right[6];
+  for (int r = 0; r < 6; ++r) {
+    right[r] = b[r];
+    out.c[r] = b[r];
+  }
+  out.solved = solve_cholesky(a, out.c);
+  double explained = 0;
+  for (int r = 0; r < 6; ++r) explained += out.c[r] * right[r];
+  out.variance = (squares - explained) / sum;
+  out.plane_variance = squares / sum;
+  return out;
+}
+
+PSK_HD inline Double3 with_largest_positive(const Double3& n) {
+  const double x = n.x < 0 ? -n.x : n.x;
+  const double y = n.y < 0 ? -n.y : n.y;
+  const double z = n.z < 0 ? -n.z : n.z;
+  const double largest = x >= y && x >= z ? n.x : (y >= z ? n.y : n.z);
+  return largest < 0 ? n * -1.0 : n;
+}
+
+/// What is found at one point.
+struct Line {
+  Vec3f normal{0, 0, 1};
+  float flatness = 0;
+  float curvature = 0;
+  float roughness = 0;      // scatter across the plane / radius
+  double scatter_unit = 0;  // in the unit cube
+  double noise_unit = 0;    // the same, without outliers
+  bool is_sheet = false;    // what scatters is another sheet
+};
+
+/// Above this scatter, per radius, another sheet or more points may help. A plane's 16 samples without noise are far
+/// below.
+inline constexpr float kRough = 0.06F;
+
+/// A quadric is taken where it leaves less than this share of what a plane leaves: few points always fit better.
+PSK_HD inline double better_share(int count) { return count > kNeighbours + 1 ? 0.5 : 0.15; }
+
+/// Line and curvature, once the plane is there. @param weight  those of the plane
+template <int kMost>
+PSK_HD void describe(const Neighbourhood<kMost>& points, const Plane& plane, const double* weight, Line& line) {
+  Double3 normal = plane.axes.vectors[0];
+  const double middle = plane.axes.values[1];
+  const double flatness = middle > 0 ? 1 - plane.axes.values[0] / middle : 0.0;
+  line.flatness = static_cast<float>(flatness > 0 ? flatness : 0.0);
+  double bend = 0;
+  if (points.count > 8) {
+    const Quadric q = fit_quadric(points, plane, weight);
+    const double tilt = q.c[1] * q.c[1] + q.c[2] * q.c[2];
+    if (q.solved && tilt < 1) {
+      const double root = std::sqrt(1 + tilt);  // mean curvature of a graph with slopes c1, c2
+      bend = -((1 + q.c[2] * q.c[2]) * q.c[3] - q.c[1] * q.c[2] * q.c[4] + (1 + q.c[1] * q.c[1]) * q.c[5]) /
+             (root * root * root);
+      if (q.variance < better_share(points.count) * q.plane_variance) {
+        normal = normal - plane.axes.vectors[2] * q.c[1] - plane.axes.vectors[1] * q.c[2];
+        normal = normal * (1 / root);
+      }
+    }
+  }
+  const Double3 canonical = with_largest_positive(normal);
+  const double sign = dot(canonical, normal) < 0 ? -1 : 1;
+  line.normal = to_float(canonical);
+  line.curvature = static_cast<float>(sign * bend / points.radius);
+}
+
+template <int kMost>
+PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count) {
+  Line line;
+  Neighbourhood<kMost> points;
+  gather(positions, i, ids, count, points);
+  if (!(points.radius > 0) || count < 2) return line;
+  double weight[kMost + 1];
+  const Plane plane = fit_plane_robustly(points, weight);
+  line.noise_unit = std::sqrt(plane.variance) * points.radius;
+  line.scatter_unit = std::sqrt(plane.whole_variance) * points.radius;
+  line.roughness = static_cast<float>(std::sqrt(plane.whole_variance));
+  if (count > kNeighbours) line.is_sheet = are_two_sheets(points, plane);
+  describe(points, plane, weight, line);
+  return line;
+}
+
+/// The sheet among the nearest points, if it goes on among the others: noise has none that does.
+template <int kMost>
+PSK_HD Line fit_sheet(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count) {
+  constexpr double kLeastShare = 0.3;
+  Line line;
+  Neighbourhood<kMost> points;
+  gather(positions, i, ids, kNeighbours, points);
+  if (!(points.radius > 0)) return line;
+  double weight[kMost + 1];
+  Plane plane = fit_plane_robustly(points, weight);
+  if (!find_sheet(points, plane.whole_variance, weight, plane)) return line;
+  int on_it = 0;
+  for (int j = 0; j < count; ++j) {
+    const Double3 d = (to_double(positions[ids[j]]) - to_double(positions[i])) * (1 / points.radius) - plane.centre;
+    const double along = dot(plane.axes.vectors[0], d);
+    if (along * along < kSheetNear) ++on_it;
+  }
+  line.is_sheet = on_it > kLeastShare * count;
+  describe(points, plane, weight, line);
+  return line;
+}
+
+struct Out {
+  ArrayView<Vec3f> normals;
+  ArrayView<float> flatness, curvature, noise;
+  PSK_HD void write(std::int64_t i, const Line& line) const {
+    normals[i] = line.normal;
+    flatness[i] = line.flatness;
+    curvature[i] = line.curvature;
+    noise[i] = line.is_sheet ? 0.0F : static_cast<float>(line.noise_unit);
+  }
+};
+
+struct FitNear {
+  ArrayView<const Vec3f> positions;
+  ArrayView<const std::int32_t> neighbours;
+  Out out;
+  ArrayView<float> roughness;
+  PSK_HD void operator()(std::int64_t i) const {
+    const std::int32_t* ids = neighbours.data + i * kNeighbours;
+    int count = 0;
+    while (count < kNeighbours && ids[count] >= 0) ++count;
+    const Line line = fit_line<kNeighbours>(positions, i, ids, count);
+    out.write(i, line);
+    roughness[i] = line.roughness;
+  }
+};
+
+struct IsRough {
+  ArrayView<const float> roughness;
+  PSK_HD bool operator()(std::int64_t i) const { return roughness[i] > kRough; }
+};
+
+/// Grows the neighbourhood where the scatter does not grow with it: then it is noise and not shape.
+struct FitFar {
+  neighbours::Search search;
+  ArrayView<const std::int32_t> rough;
+  Out out;
+
+  PSK_HD void operator()(std::int64_t r) const {
+    // With the area doubled, an edge's scatter grows by 1.41 and curvature's by 2; noise's by 1, or by more where even
+    // the larger neighbourhood is hardly wider than the noise.
+    constexpr double kGrowth = 1.28;
+    constexpr double kGrowthOfFour = 1.5;
+    constexpr float kBall = 0.5F;  // flatness of neighbourhoods that lie in the noise
+    const std::int32_t i = rough[r];
+    NearestList<kMostNeighbours> list;
+    search(i, list);
+    if (list.count <= 2 * kNeighbours) return;
+    const ArrayView<const Vec3f> positions = search.points.positions;
+    const Line sheet = fit_sheet<kMostNeighbours>(positions, i, list.ids, list.count);
+    if (sheet.is_sheet) return out.write(i, sheet);
+    const Line near = fit_line<kMostNeighbours>(positions, i, list.ids, kNeighbours);
+    const Line middle = fit_line<kMostNeighbours>(positions, i, list.ids, 2 * kNeighbours);
+    const Line far = fit_line<kMostNeighbours>(positions, i, list.ids, list.count);
+    if (far.scatter_unit <= kGrowth * middle.scatter_unit || far.scatter_unit <= kGrowthOfFour * near.scatter_unit)
+      return out.write(i, far);
+    if (middle.scatter_unit <= kGrowth * near.scatter_unit) return out.write(i, middle);
+    if (near.flatness < kBall) return out.write(i, far);
+    out.noise[i] = 0;  // some shape
+  }
+};
+
+/// Noise is everywhere, what looks like it at a rim or an edge is not: the median of the neighbours'.
+struct ConfirmNoise {
+  ArrayView<const std::int32_t> neighbours;
+  ArrayView<const float> noise;
+  ArrayView<float> out;
+  PSK_HD void operator()(std::int64_t i) const {
+    constexpr int kRank = kNeighbours / 2;
+    float least[kRank];
+    int count = 0;
+    for (int j = 0; j < kNeighbours; ++j) {
+      const std::int32_t id = neighbours[i * kNeighbours + j];
+      if (id < 0) break;
+      const float value = noise[id];
+      if (count == kRank && value >= least[kRank - 1]) continue;
+      int place = count == kRank ? kRank - 1 : count++;
+      for (; place > 0 && value < least[place - 1]; --place) least[place] = least[place - 1];
+      least[place] = value;
+    }
+    out[i] = count == kRank ? least[kRank - 1] : 0.0F;
+  }
+};
+
+}  // namespace lines
+
+template <exec::Space Exec>
+NormalLines estimate_lines(Exec& ex, const octree::SearchView& points, ArrayView<const std::int32_t> neighbours) {
+  const std::int64_t n = points.positions.size;
+  NormalLines result{exec::make_buffer<Vec3f>(ex, n), exec::make_buffer<float>(ex, n), exec::make_buffer<float>(ex, n),
+                     exec::make_buffer<float>(ex, n)};
+  auto roughness = exec::make_buffer<float>(ex, n);
+  const lines::Out out{result.normals.view(), result.flatness.view(), result.curvature.view(), result.noise.view()};
+  for_each(ex, "normals.fit", n, lines::FitNear{points.positions, neighbours, out, roughness.view()});
+  const exec::Buffer<std::int32_t> rough = select(ex, "normals.rough", n, lines::IsRough{roughness.cview()});
+  for_each(ex, "normals.fit_far", rough.size(), lines::FitFar{{points}, rough.cview(), out});
+  for_each(ex, "normals.noise", n, lines::ConfirmNoise{neighbours, result.noise.cview(), roughness.view()});
+  result.noise = std::move(roughness);
+  return result;
+}
+
+}  // namespace pointskin::cloud

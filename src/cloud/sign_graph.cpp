@@ -1,0 +1,10 @@
+#include "cloud/sign_graph_impl.hpp"
+#include "exec/cpu_primitives.hpp"
+
+namespace pointskin::cloud {
+
+template SignPatches start_patches(exec::Cpu&, const LinkedLines&);
+template void merge_patches(exec::Cpu&, const MergeRule&, SignPatches&);
+template void measure_agreement(exec::Cpu&, const LinkedLines&, ArrayView<const std::int32_t>, ArrayView<float>);
+
+}  // namespace pointskin::cloud

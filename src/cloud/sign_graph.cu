@@ -1,0 +1,10 @@
+#include "cloud/sign_graph_impl.hpp"
+#include "exec/cuda_primitives.cuh"
+
+namespace pointskin::cloud {
+
+template SignPatches start_patches(exec::Cuda&, const LinkedLines&);
+template void merge_patches(exec::Cuda&, const MergeRule&, SignPatches&);
+template void measure_agreement(exec::Cuda&, const LinkedLines&, ArrayView<const std::int32_t>, ArrayView<float>);
+
+}  // namespace pointskin::cloud

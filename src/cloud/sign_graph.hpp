@@ -1,0 +1,69 @@
+// Relative signs of normals: a graph of neighbours whose links vote for equal or opposite signs, merged from the surest
+// votes to the least sure.
+// Sources: Hoppe et al. 1992, section 3.2 (propagation along a spanning tree); Xie, Wang, Hua, Qin & Kaufman,
+// "Piecewise C1 continuous surface reconstruction of noisy point clouds via local implicit quadric regression", IEEE
+// Visualization 2003 (a neighbour's normal is the mirror image, so sharp edges do not turn it over); Schertler,
+// Savchynskyy & Gumhold, "Towards globally optimal normal orientations for large point clouds", CGF 36, 2017 (signed
+// graphs over patches); Boruvka, 1926. Differs: votes between two patches are summed before the next round, so that no
+// single link decides; all sums are integers (docs/decisions/0026-normals.md).
+#pragma once
+
+#include <cstdint>
+
+#include <pointskin/vector.hpp>
+
+#include "core/array_view.hpp"
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+
+namespace pointskin::cloud {
+
+/// A vote of full weight.
+inline constexpr std::int64_t kFullVote = 1024;
+
+/// Samples in the order of the tree, and their neighbours (find_neighbours).
+struct LinkedLines {
+  ArrayView<const Vec3f> positions;   ///< in the unit cube
+  ArrayView<const Vec3f> normals;     ///< unit length, of any sign
+  ArrayView<const float> flatness;    ///< NormalLines::flatness
+  ArrayView<const float> noise;       ///< NormalLines::noise
+  ArrayView<const std::int32_t> ids;  ///< (n, kNeighbours)
+};
+
+/// Votes between two patches, of all links between them.
+struct PatchVotes {
+  std::int64_t net = 0;    ///< for equal signs minus for opposite ones
+  std::int64_t gross = 0;  ///< for either
+};
+
+/// Points in patches: within one, signs are relative to each other.
+struct SignPatches {
+  std::int32_t count = 0;
+  exec::Buffer<std::int32_t> labels;  ///< (n) in [0, count), by the smallest point of each
+  exec::Buffer<std::int32_t> signs;   ///< (n) 1 or -1: times the normals, equal signs within a patch
+  exec::Buffer<std::uint64_t> sizes;  ///< (count) points
+  exec::Buffer<std::uint64_t> pairs;  ///< (m) lower label << 32 | higher label of linked patches, ascending
+  exec::Buffer<PatchVotes> votes;     ///< (m)
+};
+
+/// Which patches may become one.
+struct MergeRule {
+  double agreement = 0;    ///< least |net| / gross, in [0, 1]
+  std::int64_t small = 0;  ///< patches of fewer points merge whatever the agreement
+};
+
+/// Every point a patch of its own, merged along its surest link.
+/// @throws Error over_limit beyond 2^31 / kNeighbours points
+template <exec::Space Exec>
+SignPatches start_patches(Exec& ex, const LinkedLines& lines);
+
+/// Boruvka's rounds: every patch takes the best of its allowed pairs, with the largest |net| |net| / gross, until none
+/// is left. About log n rounds of a sort of the pairs that are left. Deterministic.
+template <exec::Space Exec>
+void merge_patches(Exec& ex, const MergeRule& rule, SignPatches& patches);
+
+/// share[i]: votes of the links of point i that agree with `signs`, of all its votes, in [0, 1]; 1/2 if it has none.
+template <exec::Space Exec>
+void measure_agreement(Exec& ex, const LinkedLines& lines, ArrayView<const std::int32_t> signs, ArrayView<float> share);
+
+}  // namespace pointskin::cloud

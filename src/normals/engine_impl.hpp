@@ -1,0 +1,221 @@
+// What a NormalEstimator delegates to, once for every space.
+#pragma once
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cloud/estimate_normals.hpp"
+#include "cloud/neighbours.hpp"
+#include "exec/algorithms.hpp"
+#include "normals/engine.hpp"
+#include "normals/prepared_cloud.hpp"
+#include "normals/sign_solver.hpp"
+#include "pipeline/phase_clock.hpp"
+
+namespace pointskin::detail {
+namespace normals {
+
+enum Fate : std::int32_t { estimated, kept, flipped, replaced };
+
+/// Normals in the cloud's order. Given ones that lie near enough to the line stay, with the sign that was found.
+struct WriteNormals {
+  ArrayView<const std::int32_t> order, signs;
+  ArrayView<const Vec3f> lines, given;  // given: empty or (n)
+  double least_cosine_squared;
+  ArrayView<Vec3f> out;
+  ArrayView<std::int32_t> fates;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const auto s = static_cast<float>(signs[i]);
+    const Vec3f n = lines[i];
+    Vec3f result{s * n.x, s * n.y, s * n.z};
+    Fate fate = estimated;
+    if (!given.empty()) {
+      const Vec3f g = given[i];
+      const cloud::Double3 exact = cloud::to_double(g);
+      const double squared = cloud::dot(exact, exact);
+      const double along = cloud::dot(exact, cloud::to_double(result));
+      fate = replaced;
+      if (squared > 0 && along * along >= least_cosine_squared * squared) {
+        fate = along < 0 ? flipped : kept;
+        result = along < 0 ? Vec3f{-g.x, -g.y, -g.z} : g;
+      } else if (squared == 0) {
+        fate = estimated;
+      }
+    }
+    out[order[i]] = result;
+    fates[i] = fate;
+  }
+};
+
+struct FateCounts {
+  std::int64_t of[4] = {};
+  std::int64_t doubtful = 0;
+};
+struct CountFates {
+  ArrayView<const std::int32_t> fates;
+  ArrayView<const float> confidence;
+  PSK_HD FateCounts operator()(std::int64_t i) const {
+    FateCounts counts;
+    counts.of[fates[i]] = 1;
+    counts.doubtful = confidence[i] < 0.5F ? 1 : 0;
+    return counts;
+  }
+};
+struct AddFates {
+  PSK_HD FateCounts operator()(FateCounts a, const FateCounts& b) const {
+    for (int f = 0; f < 4; ++f) a.of[f] += b.of[f];
+    a.doubtful += b.doubtful;
+    return a;
+  }
+};
+
+/// A value of each sample to the cloud's order, times a factor and, if there are signs, the sign.
+struct Scatter {
+  ArrayView<const std::int32_t> order, signs;
+  ArrayView<const float> in;
+  float factor;
+  ArrayView<float> out;
+  PSK_HD void operator()(std::int64_t i) const {
+    out[order[i]] = factor * in[i] * (signs.empty() ? 1.0F : static_cast<float>(signs[i]));
+  }
+};
+
+inline void set_attribute(Cloud& cloud, const char* name, std::vector<float> values) {
+  const auto at = std::find_if(cloud.attributes.begin(), cloud.attributes.end(),
+                               [&](const Attribute& a) { return a.name == name; });
+  Attribute attribute{name, AttributeType::float32, std::move(values)};
+  if (at == cloud.attributes.end())
+    cloud.attributes.push_back(std::move(attribute));
+  else
+    *at = std::move(attribute);
+}
+
+/// What is a guess, in a sentence.
+inline std::string assumption(const NormalReport& report) {
+  constexpr double kClosed = 0.3;
+  constexpr double kFlat = 0.03;
+  switch (report.method) {
+    case NormalMethod::sensor:
+      return "every point was seen from its sensor";
+    case NormalMethod::repair:
+      return "most given normals of a connected part are right, where they say anything";
+    default:
+      break;
+  }
+  if (report.enclosing > kClosed) return "the points surround solids: normals point away from what they enclose";
+  if (report.enclosing > kFlat)
+    return "the scan is open: normals point to the convex side, as if it bounded a solid; give the sensor's position "
+           "if "
+           "it was inside";
+  return "the points enclose nothing: which side is outside is a guess; give the sensor's position";
+}
+
+}  // namespace normals
+
+template <exec::Space Exec>
+class NormalsOn final : public NormalEngine {
+ public:
+  explicit NormalsOn(std::shared_ptr<Exec> ex) : ex_(std::move(ex)) {}
+
+  void orient(Cloud& cloud, const Views& views, const NormalOptions& options, NormalReport& report) override {
+    ex_->activate();
+    ex_->pool()->reset_peak();
+    report.points = cloud.size();
+    announce(options, "estimate", 0);
+    PhaseClock clock(*ex_);
+    const PreparedCloud points = prepare_cloud(*ex_, cloud);
+    const octree::SearchView search{points.tree.view(), points.positions.cview(), {}};
+    const exec::Buffer<std::int32_t> neighbours = cloud::find_neighbours(*ex_, search);
+    const cloud::NormalLines lines = cloud::estimate_lines(*ex_, search, neighbours.cview());
+    clock.lap(report.estimate_ms);
+
+    announce(options, "propagate", 0.3);
+    const exec::Buffer<std::int32_t> evidence = find_evidence(points, lines, views, options);
+    const cloud::LinkedLines linked{points.positions.cview(), lines.normals.cview(), lines.flatness.cview(),
+                                    lines.noise.cview(), neighbours.cview()};
+    SignSolver<Exec> solver(*ex_, linked, points.tree, evidence.cview(), options, report);
+    solver.propagate();
+    clock.lap(report.propagate_ms);
+    announce(options, "iterate", 0.5);
+    solver.judge();
+    clock.lap(report.iterate_ms);
+    write(points, lines, solver, options, cloud, report);
+    clock.read();
+    report.assumed = normals::assumption(report);
+    report.device_peak_bytes = ex_->pool()->peak_bytes();
+  }
+
+ private:
+  static void announce(const NormalOptions& options, const char* phase, double fraction) {
+    if (options.progress && !options.progress({phase, fraction}))
+      throw Error(ErrorCode::interrupted, std::string("cancelled before the phase \"") + phase + "\"");
+  }
+
+  exec::Buffer<std::int32_t> find_evidence(const PreparedCloud& points, const cloud::NormalLines& lines,
+                                           const Views& views, const NormalOptions& options) {
+    exec::Buffer<std::int32_t> evidence;
+    const std::int64_t n = points.positions.size();
+    if (options.method == NormalMethod::repair) {
+      evidence = exec::make_buffer<std::int32_t>(*ex_, n);
+      for_each(*ex_, "normals.given", n,
+               prepare::GivenSide{points.given.cview(), lines.normals.cview(), evidence.view()});
+    } else if (options.method == NormalMethod::sensor) {
+      evidence = exec::make_buffer<std::int32_t>(*ex_, n);
+      auto sensors = exec::make_buffer<Vec3d>(*ex_, static_cast<std::int64_t>(views.sensors.size()));
+      copy_to_device(*ex_, views.sensors.data(), sensors.view());
+      auto towards = exec::make_buffer<Vec3f>(*ex_, static_cast<std::int64_t>(views.towards.size()));
+      copy_to_device(*ex_, views.towards.data(), towards.view());
+      for_each(*ex_, "normals.seen", n,
+               prepare::SeenFrom{points.frame, points.positions.cview(), lines.normals.cview(), points.order.cview(),
+                                 sensors.cview(), towards.cview(), evidence.view()});
+    }
+    return evidence;
+  }
+
+  void write(const PreparedCloud& points, const cloud::NormalLines& lines, const SignSolver<Exec>& solver,
+             const NormalOptions& options, Cloud& cloud, NormalReport& report) {
+    const std::int64_t n = points.positions.size();
+    auto out = exec::make_buffer<Vec3f>(*ex_, n);
+    auto fates = exec::make_buffer<std::int32_t>(*ex_, n);
+    const double cosine = std::cos(options.keep_within_degrees * 3.14159265358979323846 / 180);
+    const bool keep = options.method == NormalMethod::repair;
+    for_each(*ex_, "normals.write", n,
+             normals::WriteNormals{points.order.cview(), solver.signs().cview(), lines.normals.cview(),
+                                   keep ? points.given.cview() : ArrayView<const Vec3f>{}, cosine * cosine, out.view(),
+                                   fates.view()});
+    const auto counts = exec::reduce<normals::FateCounts>(
+        *ex_, "normals.count", n, normals::CountFates{fates.cview(), solver.confidence().cview()}, normals::AddFates{});
+    report.kept = counts.of[normals::kept];
+    report.flipped = counts.of[normals::flipped];
+    report.replaced = counts.of[normals::replaced];
+    report.given = report.kept + report.flipped + report.replaced;
+    report.doubtful = counts.doubtful;
+    if (options.confidence) normals::set_attribute(cloud, "confidence", scattered(points, solver.confidence(), {}, 1));
+    if (options.curvature)
+      normals::set_attribute(
+          cloud, "curvature",
+          scattered(points, lines.curvature, solver.signs().cview(), static_cast<float>(1 / points.frame.size)));
+    download_array(*ex_, out, cloud.normals);
+  }
+
+  std::vector<float> scattered(const PreparedCloud& points, const exec::Buffer<float>& values,
+                               ArrayView<const std::int32_t> signs, float factor) {
+    auto out = exec::make_buffer<float>(*ex_, values.size());
+    for_each(*ex_, "normals.scatter", values.size(),
+             normals::Scatter{points.order.cview(), signs, values.cview(), factor, out.view()});
+    std::vector<float> host;
+    download_array(*ex_, out, host);
+    return host;
+  }
+
+  std::shared_ptr<Exec> ex_;
+};
+
+}  // namespace pointskin::detail

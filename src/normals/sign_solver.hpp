@@ -1,0 +1,415 @@
+// Signs of all normals: patches of neighbours that agree, then trial reconstructions that decide on the patches.
+#pragma once
+
+#include <pointskin/error.hpp>
+#include <pointskin/normals.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "cloud/sign_graph.hpp"
+#include "exec/algorithms.hpp"
+#include "normals/judge.hpp"
+#include "normals/sign_kernels.hpp"
+#include "normals/trial_field.hpp"
+
+namespace pointskin::detail {
+
+/// Links whose votes agree at least so far join patches; the rest is for trial fields to decide.
+inline constexpr double kSureAgreement = 0.6;
+
+/// Patches whose couplings are measured: a solve each.
+inline constexpr std::size_t kJudgedPatches = 14;
+
+/// Signs of samples that the field or the neighbours turn are settled when fewer than this share change in a round.
+inline constexpr double kSettled = 0.001;
+
+template <exec::Space Exec>
+class SignSolver {
+ public:
+  /// @param evidence  (n) 1, -1 or 0: which sign of the line the input speaks for; empty: nothing is known
+  SignSolver(Exec& ex, const cloud::LinkedLines& lines, const octree::OctreeData& tree,
+             ArrayView<const std::int32_t> evidence, const NormalOptions& options, NormalReport& report)
+      : ex_(ex), lines_(lines), tree_(tree), evidence_(evidence), options_(options), report_(report) {}
+
+  /// Neighbours alone.
+  void propagate() {
+    const std::int64_t n = lines_.positions.size;
+    patches_ = cloud::start_patches(ex_, lines_);
+    cloud::merge_patches(ex_, {kSureAgreement, std::max<std::int64_t>(32, n / 2000)}, patches_);
+    report_.patches = patches_.count;
+    join_patches();
+    signs_ = exec::make_buffer<std::int32_t>(ex_, n);
+    fixed_.assign(patch_signs_.size(), false);
+    if (!evidence_.empty()) follow_evidence();
+    compose(patch_signs_);
+  }
+
+  /// Trial reconstructions.
+  void judge() {
+    TrialField<Exec> trial(ex_, tree_, lines_.positions, lines_.normals);
+    if (options_.method == NormalMethod::iterate) iterate(trial);
+    judge_patches(trial);
+    judge_sides(trial);
+    compose(patch_signs_);
+    if (options_.method == NormalMethod::iterate) keep_iterated();
+    clean_up(trial);
+  }
+
+  /// (n) signs of the lines.
+  [[nodiscard]] const exec::Buffer<std::int32_t>& signs() const { return signs_; }
+  /// (n) in [0, 1]; after judge().
+  [[nodiscard]] const exec::Buffer<float>& confidence() const { return confidence_; }
+
+ private:
+  template <class T>
+  std::vector<T> to_host(const exec::Buffer<T>& buffer) {
+    std::vector<T> out(static_cast<std::size_t>(buffer.size()));
+    copy_to_host(ex_, buffer.cview(), out.data());
+    return out;
+  }
+  template <class T>
+  exec::Buffer<T> to_device(const std::vector<T>& values) {
+    auto out = exec::make_buffer<T>(ex_, static_cast<std::int64_t>(values.size()));
+    copy_to_device(ex_, values.data(), out.view());
+    return out;
+  }
+  exec::Buffer<std::uint64_t> zeros(std::int64_t n) {
+    auto out = exec::make_buffer<std::uint64_t>(ex_, n);
+    exec::fill(ex_, out.view(), std::uint64_t{0});
+    return out;
+  }
+
+  /// Components of patches, with the less sure votes.
+  void join_patches() {
+    cloud::SignPatches upper;
+    upper.count = patches_.count;
+    upper.labels = exec::iota(ex_, patches_.count);
+    upper.signs = exec::make_buffer<std::int32_t>(ex_, patches_.count);
+    exec::fill(ex_, upper.signs.view(), std::int32_t{1});
+    upper.sizes = exec::make_buffer<std::uint64_t>(ex_, patches_.count);
+    copy(ex_, patches_.sizes.cview(), upper.sizes.view());
+    upper.pairs = std::move(patches_.pairs);
+    upper.votes = std::move(patches_.votes);
+    cloud::merge_patches(ex_, {0, 0}, upper);
+    report_.components = upper.count;
+    components_ = to_host(upper.labels);
+    const std::vector<std::int32_t> signs = to_host(upper.signs);
+    patch_signs_.assign(signs.begin(), signs.end());
+    sizes_ = to_host(patches_.sizes);
+  }
+
+  void compose(const std::vector<int>& patch_signs) {
+    const exec::Buffer<std::int32_t> on_device =
+        to_device(std::vector<std::int32_t>(patch_signs.begin(), patch_signs.end()));
+    for_each(ex_, "normals.compose", signs_.size(),
+             signs::ComposeSigns{patches_.labels.cview(), patches_.signs.cview(), on_device.cview(), signs_.view()});
+  }
+
+  struct Votes {
+    std::int64_t net = 0, gross = 0;
+    [[nodiscard]] bool decide(double share) const {
+      const auto size = static_cast<double>(std::abs(net));
+      return gross > 0 && size >= share * static_cast<double>(gross) &&
+             size >= 3 * std::sqrt(static_cast<double>(gross));
+    }
+  };
+  /// Of samples, for the sign within their patch.
+  std::vector<Votes> votes_of_patches(ArrayView<const std::int32_t> votes) {
+    const exec::Buffer<std::uint64_t> net = zeros(patches_.count);
+    const exec::Buffer<std::uint64_t> gross = zeros(patches_.count);
+    for_each(ex_, "normals.votes", votes.size,
+             signs::CountVotes{patches_.labels.cview(), patches_.signs.cview(), votes, net.data(), gross.data()});
+    const std::vector<std::uint64_t> nets = to_host(net);
+    const std::vector<std::uint64_t> all = to_host(gross);
+    std::vector<Votes> out(nets.size());
+    for (std::size_t c = 0; c < out.size(); ++c)
+      out[c] = {static_cast<std::int64_t>(nets[c]), static_cast<std::int64_t>(all[c])};
+    return out;
+  }
+
+  /// Patches, then components, whose samples mostly say the same: most normals are right, or most are wrong.
+  void follow_evidence() {
+    constexpr double kPatchShare = 0.2;  // 60 : 40
+    constexpr double kComponentShare = 0.1;
+    const std::vector<Votes> votes = votes_of_patches(evidence_);
+    std::vector<Votes> of_components(votes.size());
+    for (std::size_t c = 0; c < votes.size(); ++c) {
+      Votes& all = of_components[static_cast<std::size_t>(components_[c])];
+      all.net += patch_signs_[c] * votes[c].net;
+      all.gross += votes[c].gross;
+    }
+    for (std::size_t c = 0; c < votes.size(); ++c) {
+      const Votes& all = of_components[static_cast<std::size_t>(components_[c])];
+      if (votes[c].decide(kPatchShare)) {
+        patch_signs_[c] = votes[c].net < 0 ? -1 : 1;
+        fixed_[c] = true;
+      } else if (all.decide(kComponentShare)) {
+        patch_signs_[c] *= all.net < 0 ? -1 : 1;
+        fixed_[c] = true;
+      }
+    }
+  }
+
+  /// False if there is no time or round left for another solve; else it is counted.
+  bool may_solve() {
+    if (options_.progress &&
+        !options_.progress({"iterate", 0.5 + 0.45 * report_.rounds / std::max(1, options_.max_rounds)}))
+      throw Error(ErrorCode::interrupted, "cancelled while signs were decided");
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (report_.rounds >= options_.max_rounds || (options_.time_limit_s > 0 && seconds > options_.time_limit_s)) {
+      report_.settled = false;
+      return false;
+    }
+    ++report_.rounds;
+    return true;
+  }
+
+  struct SetSums {
+    double area = 0, field = 0, along = 0;
+    [[nodiscard]] double mean() const { return area > 0 ? field / area : 0; }
+  };
+  /// @param sets  (patches) which sum a patch adds to, or -1
+  std::vector<SetSums> measure(const TrialField<Exec>& trial, ArrayView<const std::int32_t> signs,
+                               const std::vector<std::int32_t>& sets, std::size_t count) {
+    constexpr int kSums = signs::MeasureSets::kSums;
+    const exec::Buffer<std::int32_t> on_device = to_device(sets);
+    const exec::Buffer<std::uint64_t> sums = zeros(kSums * static_cast<std::int64_t>(count));
+    for_each(ex_, "normals.measure", signs.size,
+             signs::MeasureSets{trial.view(), lines_.positions, lines_.normals, trial.areas(), signs,
+                                patches_.labels.cview(), on_device.cview(), sums.data()});
+    const std::vector<std::uint64_t> all = to_host(sums);
+    std::vector<SetSums> out(count);
+    for (std::size_t s = 0; s < count; ++s)
+      out[s] = {signs::from_fixed_point(all[kSums * s]), signs::from_fixed_point(all[kSums * s + 1]),
+                signs::from_fixed_point(all[kSums * s + 2])};
+    return out;
+  }
+
+  /// The largest patches, by how their fields act on each other, if there are several.
+  void judge_patches(TrialField<Exec>& trial) {
+    std::vector<std::size_t> large = largest_patches();
+    sets_.assign(patch_signs_.size(), 0);
+    std::iota(sets_.begin(), sets_.end(), 0);
+    unite_components();
+    if (large.size() < 2 || std::all_of(large.begin(), large.end(), [&](std::size_t c) { return fixed_[c]; })) return;
+    std::vector<std::int32_t> sets(patch_signs_.size(), -1);
+    for (std::size_t a = 0; a < large.size(); ++a) sets[large[a]] = static_cast<std::int32_t>(a);
+    Couplings couplings{large.size(), std::vector<double>(large.size() * large.size())};
+    std::vector<double> fields(large.size() * large.size());
+    std::vector<double> areas(large.size());
+    auto all = exec::make_buffer<std::int32_t>(ex_, signs_.size());
+    for_each(ex_, "normals.compose", signs_.size(), with_signs(std::vector<int>(patch_signs_.size(), 1), all));
+    for (std::size_t a = 0; a < large.size(); ++a) {
+      if (!may_solve()) return;
+      std::vector<int> alone(patch_signs_.size(), 0);
+      alone[large[a]] = 1;
+      compose(alone);
+      trial.solve(signs_.cview());
+      const std::vector<SetSums> sums = measure(trial, all.cview(), sets, large.size());
+      for (std::size_t b = 0; b < large.size(); ++b) {
+        couplings.values[a * large.size() + b] = sums[b].along;
+        fields[a * large.size() + b] = sums[b].field;
+        areas[b] = sums[b].area;
+      }
+    }
+    apply(couplings, large);
+    choose_sides_of(large, fields, areas);
+  }
+
+  /// Sets of patches that hang together, by where their fields put each other.
+  void choose_sides_of(const std::vector<std::size_t>& large, const std::vector<double>& fields,
+                       const std::vector<double>& areas) {
+    std::vector<std::size_t> roots;
+    std::vector<std::size_t> set_of(large.size());
+    for (std::size_t a = 0; a < large.size(); ++a) {
+      const auto at = std::find(roots.begin(), roots.end(), root(large[a]));
+      set_of[a] = static_cast<std::size_t>(at - roots.begin());
+      if (at == roots.end()) roots.push_back(root(large[a]));
+    }
+    const std::size_t count = roots.size();
+    std::vector<double> means(count * count);
+    std::vector<double> set_areas(count);
+    std::vector<bool> fixed(count, false);
+    for (std::size_t a = 0; a < large.size(); ++a) {
+      set_areas[set_of[a]] += areas[a];
+      if (fixed_[large[a]]) fixed[set_of[a]] = true;
+      for (std::size_t b = 0; b < large.size(); ++b)
+        means[set_of[a] * count + set_of[b]] += patch_signs_[large[a]] * fields[a * large.size() + b];
+    }
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = 0; b < count; ++b) means[a * count + b] /= std::max(set_areas[b], 1e-9);
+    std::vector<int> signs(count, 1);
+    choose_sides(means, set_areas, fixed, signs);
+    for (std::size_t c = 0; c < patch_signs_.size(); ++c) {
+      const auto at = std::find(roots.begin(), roots.end(), root(c));
+      if (at != roots.end() && !fixed_[c]) patch_signs_[c] *= signs[static_cast<std::size_t>(at - roots.begin())];
+    }
+    report_.turned += std::count(signs.begin(), signs.end(), -1);
+  }
+
+  signs::ComposeSigns with_signs(const std::vector<int>& patch_signs, exec::Buffer<std::int32_t>& out) {
+    kept_signs_ = to_device(std::vector<std::int32_t>(patch_signs.begin(), patch_signs.end()));
+    return {patches_.labels.cview(), patches_.signs.cview(), kept_signs_.cview(), out.view()};
+  }
+
+  std::vector<std::size_t> largest_patches() const {
+    std::vector<std::size_t> order(sizes_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes_[a] > sizes_[b]; });
+    const auto least = static_cast<std::uint64_t>(std::max<std::int64_t>(32, lines_.positions.size / 2000));
+    std::size_t count = 0;
+    while (count < std::min(order.size(), kJudgedPatches) && sizes_[order[count]] >= least) ++count;
+    order.resize(count);
+    return order;
+  }
+
+  void apply(const Couplings& couplings, const std::vector<std::size_t>& large) {
+    std::vector<int> chosen;
+    std::vector<bool> fixed;
+    for (const std::size_t c : large) {
+      chosen.push_back(patch_signs_[c]);
+      fixed.push_back(fixed_[c]);
+    }
+    choose_signs(couplings, fixed, chosen);
+    for (std::size_t a = 0; a < large.size(); ++a) {
+      if (patch_signs_[large[a]] != chosen[a]) ++report_.turned;
+      patch_signs_[large[a]] = chosen[a];
+      for (std::size_t b = 0; b < a; ++b)
+        if (couplings.relative(a, b) != 0) unite(large[a], large[b]);
+    }
+  }
+
+  // Sets of patches whose signs hang together: all of a set are turned at once. Small, on the host.
+  std::size_t root(std::size_t c) {
+    while (sets_[c] != static_cast<std::int32_t>(c)) c = static_cast<std::size_t>(sets_[c]);
+    return c;
+  }
+  void unite(std::size_t a, std::size_t b) {
+    a = root(a);
+    b = root(b);
+    sets_[std::max(a, b)] = static_cast<std::int32_t>(std::min(a, b));
+  }
+  void unite_components() {
+    std::vector<std::int64_t> first(patch_signs_.size(), -1);
+    for (std::size_t c = 0; c < patch_signs_.size(); ++c) {
+      std::int64_t& of = first[static_cast<std::size_t>(components_[c])];
+      if (of < 0) of = static_cast<std::int64_t>(c);
+      sets_[c] = static_cast<std::int32_t>(of);
+    }
+  }
+
+  /// Turns whole sets whose samples are at -1/2 or 3/2 instead of 1/2. From the outermost ones inwards: what they
+  /// enclose changes with them.
+  void judge_sides(TrialField<Exec>& trial) {
+    constexpr int kRounds = 6;
+    std::vector<std::int32_t> index(patch_signs_.size());
+    std::vector<std::size_t> roots;
+    for (std::size_t c = 0; c < index.size(); ++c) {
+      if (root(c) == c) roots.push_back(c);
+    }
+    std::vector<std::int32_t> of_root(index.size(), -1);
+    for (std::size_t r = 0; r < roots.size(); ++r) of_root[roots[r]] = static_cast<std::int32_t>(r);
+    std::vector<bool> fixed(roots.size(), false);
+    for (std::size_t c = 0; c < index.size(); ++c) {
+      index[c] = of_root[root(c)];
+      if (fixed_[c]) fixed[static_cast<std::size_t>(index[c])] = true;
+    }
+    std::vector<int> turns(roots.size(), 0);
+    for (int round = 0; round < kRounds && may_solve(); ++round) {
+      compose(patch_signs_);
+      trial.solve(signs_.cview());
+      const std::vector<SetSums> sums = measure(trial, signs_.cview(), index, roots.size());
+      SetSums total;
+      std::vector<bool> turn(roots.size(), false);
+      bool any = false;
+      for (std::size_t r = 0; r < roots.size(); ++r) {
+        total.area += sums[r].area;
+        total.field += sums[r].field;
+        turn[r] = !fixed[r] && turns[r] < 2 && (sums[r].mean() < -0.01 || sums[r].mean() > 1);
+        if (turn[r]) ++turns[r];
+        any = any || turn[r];
+      }
+      report_.enclosing = total.mean();
+      if (!any) return;
+      for (std::size_t c = 0; c < index.size(); ++c)
+        if (turn[static_cast<std::size_t>(index[c])]) patch_signs_[c] = -patch_signs_[c];
+      report_.turned += std::count(turn.begin(), turn.end(), true);
+    }
+  }
+
+  /// iPSR: signs follow the field until they stay; then every patch takes what most of its samples say.
+  void iterate(TrialField<Exec>& trial) {
+    if (options_.random_start)
+      for_each(ex_, "normals.random", signs_.size(), signs::RandomSigns{options_.seed, signs_.view()});
+    constexpr int kRounds = 25;
+    auto changed = exec::make_buffer<std::int32_t>(ex_, signs_.size());
+    const auto follow = [&](TrialField<Exec>& field, int rounds) {
+      for (int round = 0; round < rounds && may_solve(); ++round) {
+        field.solve(signs_.cview());
+        for_each(ex_, "normals.follow", signs_.size(),
+                 signs::FollowField{field.view(), lines_.positions, lines_.normals, signs_.view(), changed.view()});
+        if (is_settled(changed)) break;
+      }
+    };
+    follow(trial, kRounds);
+    const std::vector<Votes> votes = votes_of_patches(signs_.cview());
+    for (std::size_t c = 0; c < votes.size(); ++c)
+      if (votes[c].decide(0.1) && !fixed_[c]) patch_signs_[c] = votes[c].net < 0 ? -1 : 1;
+  }
+  void keep_iterated() {}
+
+  bool is_settled(const exec::Buffer<std::int32_t>& changed) {
+    const std::int64_t count = exec::sum_counts(ex_, "normals.changed", changed.cview());
+    return static_cast<double>(count) <= kSettled * static_cast<double>(changed.size());
+  }
+
+  /// Single samples that neighbours and field contradict; confidence.
+  void clean_up(TrialField<Exec>& trial) {
+    constexpr int kRounds = 3;
+    const std::int64_t n = signs_.size();
+    auto agreement = exec::make_buffer<float>(ex_, n);
+    auto changed = exec::make_buffer<std::int32_t>(ex_, n);
+    for (int round = 0; round < kRounds; ++round) {
+      trial.solve(signs_.cview());
+      cloud::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
+      for_each(ex_, "normals.clean", n,
+               signs::CleanUp{trial.view(), lines_.positions, lines_.normals, agreement.cview(), signs_.view(),
+                              changed.view()});
+      if (is_settled(changed) || !may_solve()) break;
+    }
+    cloud::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
+    const double sides = options_.method == NormalMethod::sensor || options_.method == NormalMethod::repair
+                             ? 1.0
+                             : std::clamp(5 * std::abs(report_.enclosing), 0.5, 1.0);
+    confidence_ = exec::make_buffer<float>(ex_, n);
+    for_each(ex_, "normals.confidence", n,
+             signs::Confidence{trial.view(), lines_.positions, lines_.normals, agreement.cview(), lines_.flatness,
+                               signs_.cview(), static_cast<float>(sides), confidence_.view()});
+  }
+
+  using Clock = std::chrono::steady_clock;
+  Exec& ex_;
+  cloud::LinkedLines lines_;
+  const octree::OctreeData& tree_;
+  ArrayView<const std::int32_t> evidence_;
+  const NormalOptions& options_;
+  NormalReport& report_;
+  Clock::time_point start_ = Clock::now();
+
+  cloud::SignPatches patches_;
+  std::vector<std::int32_t> components_;  // of patches
+  std::vector<int> patch_signs_;
+  std::vector<std::uint64_t> sizes_;
+  std::vector<bool> fixed_;         // patches whose sign the input decides
+  std::vector<std::int32_t> sets_;  // union-find over patches
+  exec::Buffer<std::int32_t> kept_signs_;
+  exec::Buffer<std::int32_t> signs_;
+  exec::Buffer<float> confidence_;
+};
+
+}  // namespace pointskin::detail

@@ -1,0 +1,83 @@
+// Choices of signs against all combinations.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "normals/judge.hpp"
+#include "support/shapes.hpp"
+
+namespace pointskin::detail {
+namespace {
+
+double sum_of(const Couplings& c, const std::vector<int>& signs) {
+  double sum = 0;
+  for (std::size_t a = 0; a < c.count; ++a)
+    for (std::size_t b = 0; b < c.count; ++b)
+      if (a != b) sum += signs[a] * signs[b] * (c(a, b) + c(b, a)) / 2;
+  return sum;
+}
+
+Couplings random_couplings(std::size_t count, std::uint64_t seed) {
+  test::Random random(seed);
+  Couplings c{count, std::vector<double>(count * count)};
+  for (std::size_t a = 0; a < count; ++a)
+    for (std::size_t b = 0; b < count; ++b) c.values[a * count + b] = a == b ? 1 : random.in(-0.5, 0.5);
+  return c;
+}
+
+TEST(ChooseSigns, FindsTheBestOfAllCombinations) {
+  constexpr std::size_t kCount = 6;
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    Couplings c = random_couplings(kCount, seed);
+    for (double& value : c.values)
+      if (value > -0.05 && value < 0.05) value = 0.05;  // none are taken for none
+    for (std::size_t a = 0; a < kCount; ++a)
+      for (std::size_t b = 0; b < a; ++b) c.values[a * kCount + b] = c.values[b * kCount + a];
+    std::vector<int> signs(kCount, 1);
+    choose_signs(c, std::vector<bool>(kCount, false), signs);
+    double best = -1e9;
+    for (std::uint32_t code = 0; code < 1U << kCount; ++code) {
+      std::vector<int> other(kCount);
+      for (std::size_t a = 0; a < kCount; ++a) other[a] = (code >> a & 1) != 0 ? -1 : 1;
+      best = std::max(best, sum_of(c, other));
+    }
+    EXPECT_NEAR(sum_of(c, signs), best, 1e-9);
+  }
+}
+
+TEST(ChooseSigns, LeavesFixedOnesAndWhatDoesNotInteract) {
+  Couplings c{3, {1, -0.5, 0.001, -0.5, 1, 0, 0.001, 0, 1}};
+  std::vector<int> signs = {1, 1, -1};
+  choose_signs(c, {true, false, false}, signs);
+  EXPECT_EQ(signs, (std::vector<int>{1, -1, -1}));
+}
+
+TEST(ChooseSigns, ImprovesManyStepByStep) {
+  const Couplings c = random_couplings(20, 42);
+  std::vector<int> signs(20, 1);
+  const double before = sum_of(c, signs);
+  choose_signs(c, std::vector<bool>(20, false), signs);
+  EXPECT_GT(sum_of(c, signs), before);
+}
+
+TEST(ChooseSides, TurnsCavitiesInsideSolids) {
+  // Sphere in sphere in sphere: outside of itself a sphere's field is 0, inside 1, on it 1/2.
+  const std::vector<double> means = {0.5, 1, 1, 0, 0.5, 1, 0, 0, 0.5};
+  std::vector<int> signs = {-1, -1, -1};
+  choose_sides(means, {4, 2, 1}, {false, false, false}, signs);
+  EXPECT_EQ(signs, (std::vector<int>{1, -1, 1}));
+}
+
+TEST(ChooseSides, KeepsFixedSides) {
+  const std::vector<double> means = {0.5, 0, 0, 0.5};  // apart
+  std::vector<int> signs = {-1, -1};
+  choose_sides(means, {1, 1}, {true, false}, signs);
+  EXPECT_EQ(signs, (std::vector<int>{-1, 1}));
+}
+
+}  // namespace
+}  // namespace pointskin::detail

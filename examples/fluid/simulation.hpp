@@ -67,7 +67,8 @@ class Simulation {
   ///
   /// Cuts the frame into k = ceil(seconds (v + g seconds) / (courant radius)) substeps, v the speed of the fastest
   /// particle or of the obstacle, k within the limits of the options. A substep on a GPU takes 26 launches and one host
-  /// round trip with 4 iterations, a frame two round trips more. O(k n iterations); about 370 bytes a particle, 500 up to 2^18.
+  /// round trip with 4 iterations, a frame two round trips more. O(k n iterations); about 370 bytes a particle, 500 up
+  /// to 2^18.
   /// @param seconds  in (0, 1]
   /// @throws Error usage if `seconds` or an interaction is out of its range, or there are more than 7 interactions
   void step(double seconds, const std::vector<Interaction>& interactions = {});

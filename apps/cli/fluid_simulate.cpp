@@ -161,7 +161,6 @@ class Frames {
 };
 
 Json options_json(const SimulateArgs& args, const SimulateOutput& output) {
-  const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
   return {{"simulate", args.scene},
           {"particles", args.particles},
           {"frames", args.frames},

@@ -1,7 +1,8 @@
 // Smoothing kernels, and the part of a kernel that walls cover. Lengths are in kernel radii.
 // Sources: Mueller, Charypar & Gross, "Particle-based fluid simulation for interactive applications", 2003 (poly6 for
-// the density, spiky for its gradient). Differs: walls are no particles. What they cover of a kernel is a polynomial of
-// the distance, scaled so that a lattice that rests against them has exactly the rest density.
+// the density, spiky for its gradient). Differs: solids are no particles. Walls mirror the fluid; what the
+// obstacle covers of a kernel is a polynomial of the distance, scaled so that a lattice that rests against it has
+// exactly the rest density.
 #pragma once
 
 #include <cmath>
@@ -38,9 +39,8 @@ struct KernelConstants {
   float tensile_inverse;  ///< 1 / weight at the distance where the artificial pressure has its nominal strength
 };
 
-/// Part of a continuous kernel beyond a plane at distance d of its centre: the integral of 315/256 (1 - z^2)^4 from d
-/// to
-/// 1. @param d  >= 0
+/// Part of a continuous kernel beyond a plane at distance d of its centre: the integral of
+/// 315/256 (1 - z^2)^4 from d to 1. @param d  >= 0
 PSK_HD inline float covered_by_plane(float d) {
   if (d >= 1) return 0;
   const float s = d * d;

@@ -1,8 +1,9 @@
 // One substep of position-based fluids.
 // Sources: Macklin & Mueller, "Position based fluids", ACM Transactions on Graphics 32(4), 2013; Schechter & Bridson,
 // "Ghost SPH for animating water", 2012 (XSPH as a filter of velocities).
-// Differs: only compression is corrected (a surface does not pull itself together); solids cover a share of every
-// kernel instead of being particles (kernels.hpp); the neighbours of the predicted places are found once a substep.
+// Differs: only compression is corrected (a surface does not pull itself together); walls are mirrors and the
+// obstacle covers a share of the kernels near it, instead of being particles (kernels.hpp); the neighbours of the
+// predicted places are found once a substep.
 //
 // Lengths are in kernel radii, times in seconds.
 #pragma once
@@ -68,7 +69,7 @@ struct Particles {
 };
 
 /// Moves the particles on by one substep and puts them into the order of the cells of `grid`, which is around the tank.
-/// 24 launches and one host round trip on a GPU with 4 iterations, two more each; O(n neighbours iterations).
+/// 26 launches and one host round trip on a GPU with 4 iterations, two for each; O(n neighbours iterations).
 /// Sums run in the order of the cells: the same bits in every space and for any number of threads.
 template <exec::Space Exec>
 void substep(Exec& ex, Particles& particles, const StepSettings& settings, const fluid::CellGrid& grid);

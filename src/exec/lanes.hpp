@@ -1,5 +1,5 @@
-// A sum for every index, in parts that a GPU gives to threads side by side: half as long a wait as one thread would
-// have with two lanes, and neighbouring threads read neighbouring memory.
+// A sum for every index, in parts that a GPU gives to threads side by side: where there are few indices, more threads
+// wait for memory at the same time.
 #pragma once
 
 #include <cstdint>

@@ -45,12 +45,19 @@ PSK_HD inline void rotate(double (&a)[3][3], double (&v)[3][3], int p, int q) {
   }
 }
 
+/// The next sweep would change no value beyond a double's rounding, and the vectors by 1e-15 where values are apart.
+PSK_HD inline bool is_diagonal(const double (&a)[3][3]) {
+  constexpr double kNone = 1e-30;
+  const double off = a[0][1] * a[0][1] + a[0][2] * a[0][2] + a[1][2] * a[1][2];
+  return off <= kNone * (a[0][0] * a[0][0] + a[1][1] * a[1][1] + a[2][2] * a[2][2]);
+}
+
 }  // namespace eigen3
 
 PSK_HD inline Eigen3 eigen_of(const Symmetric3& m) {
   double a[3][3] = {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (int sweep = 0; sweep < eigen3::kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < eigen3::kSweeps && !eigen3::is_diagonal(a); ++sweep) {
     eigen3::rotate(a, v, 0, 1);
     eigen3::rotate(a, v, 0, 2);
     eigen3::rotate(a, v, 1, 2);

@@ -7,6 +7,7 @@
 #include "cloud/eigen3.hpp"
 #include "cloud/estimate_normals.hpp"
 #include "cloud/neighbours_impl.hpp"
+#include "cloud/select_nth.hpp"
 #include "exec/algorithms.hpp"
 
 namespace pointskin::cloud {
@@ -21,8 +22,9 @@ struct Neighbourhood {
   double weight[kMost + 1];  // by distance alone
 };
 
-template <int kMost>
-PSK_HD void gather(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count,
+/// @param ids  ids[j] for j in [0, count), nearest first
+template <int kMost, class Ids>
+PSK_HD void gather(ArrayView<const Vec3f> positions, std::int64_t i, const Ids& ids, int count,
                    Neighbourhood<kMost>& out) {
   const Double3 centre = to_double(positions[i]);
   out.count = 1;
@@ -79,28 +81,31 @@ PSK_HD void fit_plane(const Neighbourhood<kMost>& points, const double* weight, 
 /// Median of squared residuals.
 template <int kMost>
 PSK_HD double median_square(const Neighbourhood<kMost>& points, const Plane& plane, double (&squares)[kMost + 1]) {
-  double sorted[kMost + 1];
+  double mixed[kMost + 1] = {};
   for (int j = 0; j < points.count; ++j) {
     const double r = dot(plane.axes.vectors[0], points.at[j] - plane.centre);
     squares[j] = r * r;
-    int place = j;
-    for (; place > 0 && squares[j] < sorted[place - 1]; --place) sorted[place] = sorted[place - 1];
-    sorted[place] = squares[j];
+    mixed[j] = squares[j];
   }
-  return sorted[points.count / 2];
+  return select_nth(mixed, points.count, points.count / 2);
+}
+
+/// Principal components with nothing left out.
+template <int kMost>
+PSK_HD Plane fit_whole_plane(const Neighbourhood<kMost>& points) {
+  Plane plane;
+  fit_plane(points, points.weight, plane);
+  const double whole = plane.axes.values[0];
+  plane.whole_variance = whole > 0 ? whole : 0;
+  return plane;
 }
 
 inline constexpr int kRobustRounds = 2;
 
-/// Principal components with Tukey's weights. @param weight  receives the weights of the last round
+/// Goes on from the plane of fit_whole_plane with Tukey's weights. @param weight  receives those of the last round
 template <int kMost>
-PSK_HD Plane fit_plane_robustly(const Neighbourhood<kMost>& points, double (&weight)[kMost + 1]) {
-  Plane plane;
+PSK_HD void refine_robustly(const Neighbourhood<kMost>& points, double (&weight)[kMost + 1], Plane& plane) {
   double squares[kMost + 1];
-  for (int j = 0; j < points.count; ++j) weight[j] = points.weight[j];
-  fit_plane(points, weight, plane);
-  const double whole = plane.axes.values[0];
-  plane.whole_variance = whole > 0 ? whole : 0;
   for (int round = 0; round < kRobustRounds; ++round) {
     constexpr double kCutoff = 4.685 * 4.685 * 2.2;  // Tukey's constant for a variance from the median square
     const double limit = kCutoff * median_square(points, plane, squares) + 1e-12;
@@ -111,7 +116,6 @@ PSK_HD Plane fit_plane_robustly(const Neighbourhood<kMost>& points, double (&wei
     fit_plane(points, weight, plane);
   }
   plane.variance = 2.2 * median_square(points, plane, squares);
-  return plane;
 }
 
 /// What is on a sheet, of the radius, squared.
@@ -271,10 +275,8 @@ struct Line {
   Vec3f normal{0, 0, 1};
   float flatness = 0;
   float curvature = 0;
-  float roughness = 0;      // scatter across the plane / radius
-  double scatter_unit = 0;  // in the unit cube
-  double noise_unit = 0;    // the same, without outliers
-  bool is_sheet = false;    // what scatters is another sheet
+  double noise_unit = 0;  // scatter in the unit cube, without outliers
+  bool is_sheet = false;  // what scatters is another sheet
 };
 
 /// Above this scatter, per radius, another sheet or more points may help. A plane's 16 samples without noise are far
@@ -311,42 +313,36 @@ PSK_HD void describe(const Neighbourhood<kMost>& points, const Plane& plane, con
   line.curvature = static_cast<float>(sign * bend / points.radius);
 }
 
+/// Line of points whose plane of fit_whole_plane is there.
 template <int kMost>
-PSK_HD Line fit_line(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count) {
+PSK_HD Line fit_line(const Neighbourhood<kMost>& points, Plane& plane, double (&weight)[kMost + 1]) {
   Line line;
-  Neighbourhood<kMost> points;
-  gather(positions, i, ids, count, points);
-  if (!(points.radius > 0) || count < 2) return line;
-  double weight[kMost + 1];
-  const Plane plane = fit_plane_robustly(points, weight);
+  refine_robustly(points, weight, plane);
   line.noise_unit = std::sqrt(plane.variance) * points.radius;
-  line.scatter_unit = std::sqrt(plane.whole_variance) * points.radius;
-  line.roughness = static_cast<float>(std::sqrt(plane.whole_variance));
-  if (count > kNeighbours) line.is_sheet = are_two_sheets(points, plane);
+  line.is_sheet = points.count > kNeighbours + 1 && are_two_sheets(points, plane);
   describe(points, plane, weight, line);
   return line;
 }
 
 /// The sheet among the nearest points, if it goes on among the others: noise has none that does.
-template <int kMost>
-PSK_HD Line fit_sheet(ArrayView<const Vec3f> positions, std::int64_t i, const std::int32_t* ids, int count) {
+/// @param near      the nearest points
+/// @param variance  what they leave of their plane
+template <int kMost, class Ids>
+PSK_HD bool fit_sheet(ArrayView<const Vec3f> positions, std::int64_t i, const Ids& ids, int count,
+                      const Neighbourhood<kMost>& near, double variance, double (&weight)[kMost + 1], Line& line) {
   constexpr double kLeastShare = 0.3;
-  Line line;
-  Neighbourhood<kMost> points;
-  gather(positions, i, ids, kNeighbours, points);
-  if (!(points.radius > 0)) return line;
-  double weight[kMost + 1];
-  Plane plane = fit_plane_robustly(points, weight);
-  if (!find_sheet(points, plane.whole_variance, weight, plane)) return line;
+  if (!(near.radius > 0)) return false;
+  Plane plane;
+  if (!find_sheet(near, variance, weight, plane)) return false;
   int on_it = 0;
   for (int j = 0; j < count; ++j) {
-    const Double3 d = (to_double(positions[ids[j]]) - to_double(positions[i])) * (1 / points.radius) - plane.centre;
+    const Double3 d = (to_double(positions[ids[j]]) - to_double(positions[i])) * (1 / near.radius) - plane.centre;
     const double along = dot(plane.axes.vectors[0], d);
     if (along * along < kSheetNear) ++on_it;
   }
   line.is_sheet = on_it > kLeastShare * count;
-  describe(points, plane, weight, line);
-  return line;
+  if (line.is_sheet) describe(near, plane, weight, line);
+  return line.is_sheet;
 }
 
 struct Out {
@@ -364,14 +360,19 @@ struct FitNear {
   ArrayView<const Vec3f> positions;
   ArrayView<const std::int32_t> neighbours;
   Out out;
-  ArrayView<float> roughness;
+  ArrayView<float> roughness;  // scatter across the plane / radius
   PSK_HD void operator()(std::int64_t i) const {
     const std::int32_t* ids = neighbours.data + i * kNeighbours;
     int count = 0;
     while (count < kNeighbours && ids[count] >= 0) ++count;
-    const Line line = fit_line<kNeighbours>(positions, i, ids, count);
-    out.write(i, line);
-    roughness[i] = line.roughness;
+    roughness[i] = 0;
+    Neighbourhood<kNeighbours> points;
+    gather(positions, i, ids, count, points);
+    if (!(points.radius > 0) || count < 2) return out.write(i, {});
+    double weight[kNeighbours + 1];
+    Plane plane = fit_whole_plane(points);
+    roughness[i] = static_cast<float>(std::sqrt(plane.whole_variance));
+    out.write(i, fit_line(points, plane, weight));
   }
 };
 
@@ -384,6 +385,7 @@ struct IsRough {
 struct FitFar {
   neighbours::Search search;
   ArrayView<const std::int32_t> rough;
+  ArrayView<const float> roughness;
   Out out;
 
   PSK_HD void operator()(std::int64_t r) const {
@@ -395,18 +397,35 @@ struct FitFar {
     const std::int32_t i = rough[r];
     NearestList<kMostNeighbours> list;
     search(i, list);
-    if (list.count <= 2 * kNeighbours) return;
+    if (list.count() <= 2 * kNeighbours) return;
     const ArrayView<const Vec3f> positions = search.points.positions;
-    const Line sheet = fit_sheet<kMostNeighbours>(positions, i, list.ids, list.count);
-    if (sheet.is_sheet) return out.write(i, sheet);
-    const Line near = fit_line<kMostNeighbours>(positions, i, list.ids, kNeighbours);
-    const Line middle = fit_line<kMostNeighbours>(positions, i, list.ids, 2 * kNeighbours);
-    const Line far = fit_line<kMostNeighbours>(positions, i, list.ids, list.count);
-    if (far.scatter_unit <= kGrowth * middle.scatter_unit || far.scatter_unit <= kGrowthOfFour * near.scatter_unit)
-      return out.write(i, far);
-    if (middle.scatter_unit <= kGrowth * near.scatter_unit) return out.write(i, middle);
-    if (near.flatness < kBall) return out.write(i, far);
-    out.noise[i] = 0;  // some shape
+    Neighbourhood<kMostNeighbours> points;
+    double weight[kMostNeighbours + 1];
+    gather(positions, i, list, kNeighbours, points);
+    const double rough_near = roughness[i];
+    Line line;
+    if (fit_sheet(positions, i, list, list.count(), points, rough_near * rough_near, weight, line))
+      return out.write(i, line);
+    const double near = rough_near * points.radius;
+    Plane plane;
+    const auto scatter_of = [&](int count) {
+      gather(positions, i, list, count, points);
+      plane = fit_whole_plane(points);
+      return std::sqrt(plane.whole_variance) * points.radius;
+    };
+    const double far = scatter_of(list.count());
+    if (far <= kGrowthOfFour * near) return out.write(i, fit_line(points, plane, weight));
+    const double middle = scatter_of(2 * kNeighbours);
+    const bool is_noise = middle <= kGrowth * near;
+    const bool is_ball = !is_noise && out.flatness[i] < kBall;
+    if (far <= kGrowth * middle || is_ball) {
+      scatter_of(list.count());
+      out.write(i, fit_line(points, plane, weight));
+    } else if (is_noise) {
+      out.write(i, fit_line(points, plane, weight));
+    } else {
+      out.noise[i] = 0;  // some shape
+    }
   }
 };
 
@@ -443,7 +462,7 @@ NormalLines estimate_lines(Exec& ex, const octree::SearchView& points, ArrayView
   const lines::Out out{result.normals.view(), result.flatness.view(), result.curvature.view(), result.noise.view()};
   for_each(ex, "normals.fit", n, lines::FitNear{points.positions, neighbours, out, roughness.view()});
   const exec::Buffer<std::int32_t> rough = select(ex, "normals.rough", n, lines::IsRough{roughness.cview()});
-  for_each(ex, "normals.fit_far", rough.size(), lines::FitFar{{points}, rough.cview(), out});
+  for_each(ex, "normals.fit_far", rough.size(), lines::FitFar{{points}, rough.cview(), roughness.cview(), out});
   for_each(ex, "normals.noise", n, lines::ConfirmNoise{neighbours, result.noise.cview(), roughness.view()});
   result.noise = std::move(roughness);
   return result;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <bit>
+#include <cstdint>
+
 #include "cloud/neighbours.hpp"
 #include "exec/algorithms.hpp"
 #include "octree/access.hpp"
@@ -7,28 +10,61 @@
 
 namespace pointskin::cloud {
 
-/// The nearest points found so far, nearest first, at most `wanted` <= kMost of them.
+/// The nearest points found so far, at most `wanted` <= kMost of them: a heap with the farthest on top, until sort().
 template <int kMost>
-struct NearestList {
-  int wanted = kMost;
-  int count = 0;
-  std::int32_t ids[kMost];
-  float squared[kMost];
+class NearestList {
+ public:
+  PSK_HD explicit NearestList(int wanted = kMost) : wanted_(wanted) {}
 
-  [[nodiscard]] PSK_HD bool is_full() const { return count == wanted; }
-  [[nodiscard]] PSK_HD float farthest() const { return squared[wanted - 1]; }
-
-  PSK_HD void add(std::int32_t id, float d) {
-    const auto before = [&](int i) { return d < squared[i] || (d == squared[i] && id < ids[i]); };
-    if (is_full() && !before(wanted - 1)) return;
-    int place = is_full() ? wanted - 1 : count++;
-    for (; place > 0 && before(place - 1); --place) {
-      ids[place] = ids[place - 1];
-      squared[place] = squared[place - 1];
-    }
-    ids[place] = id;
-    squared[place] = d;
+  [[nodiscard]] PSK_HD int wanted() const { return wanted_; }
+  [[nodiscard]] PSK_HD int count() const { return count_; }
+  [[nodiscard]] PSK_HD bool is_full() const { return count_ == wanted_; }
+  /// Squared distance of the farthest; not after sort().
+  [[nodiscard]] PSK_HD float farthest() const {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(keys_[0] >> 32));
   }
+  [[nodiscard]] PSK_HD std::int32_t operator[](int j) const { return static_cast<std::int32_t>(keys_[j]); }
+
+  PSK_HD void clear() { count_ = 0; }
+
+  PSK_HD void add(std::int32_t id, float squared) {
+    const std::uint64_t key =
+        std::uint64_t{std::bit_cast<std::uint32_t>(squared)} << 32 | static_cast<std::uint32_t>(id);
+    if (is_full()) {
+      if (key < keys_[0]) sink(key, 0);
+      return;
+    }
+    int at = count_++;
+    for (; at > 0 && keys_[(at - 1) / 2] < key; at = (at - 1) / 2) keys_[at] = keys_[(at - 1) / 2];
+    keys_[at] = key;
+  }
+
+  /// Nearest first, equally near ones by id.
+  PSK_HD void sort() {
+    const int all = count_;
+    while (count_ > 1) {
+      const std::uint64_t farthest = keys_[0];
+      --count_;
+      sink(keys_[count_], 0);
+      keys_[count_] = farthest;
+    }
+    count_ = all;
+  }
+
+ private:
+  PSK_HD void sink(std::uint64_t key, int at) {
+    for (int child = 2 * at + 1; child < count_; child = 2 * at + 1) {
+      if (child + 1 < count_ && keys_[child] < keys_[child + 1]) ++child;
+      if (keys_[child] < key) break;
+      keys_[at] = keys_[child];
+      at = child;
+    }
+    keys_[at] = key;
+  }
+
+  int wanted_;
+  int count_ = 0;
+  std::uint64_t keys_[kMost];  // bits of the squared distance, then the id
 };
 
 namespace neighbours {
@@ -41,6 +77,7 @@ struct Search {
   PSK_HD void operator()(std::int64_t i, NearestList<kMost>& list) const {
     const Vec3f p = points.positions[i];
     if (!find_around(i, p, list)) find_anywhere(i, p, list);
+    list.sort();
   }
 
  private:
@@ -56,7 +93,8 @@ struct Search {
   PSK_HD bool find_around(std::int64_t i, const Vec3f& p, NearestList<kMost>& list) const {
     const octree::OctreeView& tree = points.tree;
     octree::Leaf at = octree::locate(tree, octree::point_key(p.x, p.y, p.z), tree.depth);
-    const std::int32_t enough = list.wanted / 4;  // in the cell: of a surface's 9 cells around, what is wanted and more
+    const std::int32_t enough =
+        list.wanted() / 4;  // in the cell: of a surface's 9 cells around, what is wanted and more
     while (at.depth > 2) {
       const octree::LevelView& level = tree.levels[at.depth];
       if (level.point_begin[at.cell + 1] - level.point_begin[at.cell] >= enough) break;
@@ -67,6 +105,8 @@ struct Search {
     const float width = 1.0F / static_cast<float>(1 << at.depth);
     const octree::Coordinates c = octree::decode(level.node_key(at.cell));
     const float nearest_face = distance_to_faces(p, c, width);
+    const std::int32_t crowd = 16 * list.wanted();  // around a point that is alone cells are wide, and may be full
+    std::int32_t seen = 0;
     for (int ring = 1; ring <= 2; ++ring) {
       for (int dx = -ring; dx <= ring; ++dx)
         for (int dy = -ring; dy <= ring; ++dy)
@@ -74,7 +114,12 @@ struct Search {
             const bool is_inner = dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1 && dz >= -1 && dz <= 1;
             if (ring == 2 && is_inner) continue;
             const std::int32_t cell = level.neighbour(at.cell, dx, dy, dz);
-            if (level.is_cell(cell)) scan(i, p, level.point_begin[cell], level.point_begin[cell + 1], list);
+            if (!level.is_cell(cell)) continue;
+            const std::int32_t first = level.point_begin[cell];
+            const std::int32_t last = level.point_begin[cell + 1];
+            seen += last - first;
+            if (seen > crowd) return false;
+            scan(i, p, first, last, list);
           }
       const float reach = (static_cast<float>(ring) * width + nearest_face) * (1 - 1e-5F);
       if (list.is_full() && list.farthest() <= reach * reach) return true;
@@ -101,7 +146,7 @@ struct Search {
   PSK_HD void find_anywhere(std::int64_t i, const Vec3f& p, NearestList<kMost>& list) const {
     const bool bounded = list.is_full();
     const float bound = bounded ? list.farthest() : 0;
-    list.count = 0;
+    list.clear();
     const auto prune = [&](float d) { return (bounded && d > bound) || (list.is_full() && d > list.farthest()); };
     octree::search::walk(points, p, prune,
                          [&](std::int32_t first, std::int32_t last) { scan(i, p, first, last, list); });
@@ -115,7 +160,7 @@ struct Find {
     NearestList<kNeighbours> list;
     search(i, list);
     std::int32_t* out = ids.data + i * kNeighbours;
-    for (int j = 0; j < kNeighbours; ++j) out[j] = j < list.count ? list.ids[j] : -1;
+    for (int j = 0; j < kNeighbours; ++j) out[j] = j < list.count() ? list[j] : -1;
   }
 };
 

@@ -9,6 +9,7 @@
 #include "cloud/eigen3.hpp"
 #include "cloud/estimate_normals.hpp"
 #include "cloud/neighbours.hpp"
+#include "cloud/select_nth.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "normals/prepared_cloud.hpp"
 #include "support/shapes.hpp"
@@ -81,7 +82,35 @@ TEST(Neighbours, AreTheNearestOfAllAmongEqualPoints) {
   expect_nearest(cloud);
 }
 
+TEST(Neighbours, AreTheNearestOfAllFarFromEverything) {
+  Cloud cloud = test::sphere_cloud(20000, 10, 0.02);  // what the wide cells around a lone point hold
+  test::append(cloud, test::sphere_cloud(12, 11));
+  const Estimated e(cloud);
+  for (std::int64_t i = 0; i < e.size(); ++i) {
+    const Vec3f& p = cloud.positions[static_cast<std::size_t>(e.points.order.data()[i])];
+    if (p.x * p.x + p.y * p.y + p.z * p.z < 0.25F) continue;
+    const std::int32_t* const found = e.neighbours.data() + i * cloud::kNeighbours;
+    EXPECT_EQ(std::vector<std::int32_t>(found, found + cloud::kNeighbours), nearest_of_all(e, i)) << "point " << i;
+  }
+}
+
 TEST(Neighbours, OfFewPointsEndInNone) { expect_nearest(test::sphere_cloud(5, 8)); }
+
+TEST(SelectNth, FindsWhatSortingPutsThere) {
+  test::Random random(12);
+  for (int count = 1; count <= 65; ++count) {
+    std::vector<double> values(static_cast<std::size_t>(count));
+    for (double& v : values) v = std::floor(random.in(0, count / 2.0));  // some of them equal
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    for (int place = 0; place < count; ++place) {
+      std::vector<double> mixed = values;
+      EXPECT_EQ(cloud::select_nth(mixed.data(), count, place), sorted[static_cast<std::size_t>(place)]);
+      std::sort(mixed.begin(), mixed.end());
+      EXPECT_EQ(mixed, sorted) << "a value was lost";
+    }
+  }
+}
 
 TEST(Eigen3, GivesTheAxesOfARotatedEllipsoid) {
   test::Random random(9);

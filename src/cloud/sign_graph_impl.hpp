@@ -2,6 +2,7 @@
 
 #include <pointskin/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -68,6 +69,7 @@ PSK_HD inline std::int64_t vote_of(const LinkedLines& lines, std::int64_t i, std
 struct PickLinks {
   static constexpr int kIndexBits = 36;
   LinkedLines lines;
+  bool has_sides;
   std::uint64_t* best;
 
   /// Among equal votes any order will do, but not one along the points: chains would be long.
@@ -79,31 +81,32 @@ struct PickLinks {
       const std::int64_t link = i * kNeighbours + l;
       const std::int32_t j = lines.ids[link];
       if (j < 0) return;
-      const std::int64_t vote = vote_of(lines, i, j);
-      if (vote == 0) continue;
-      const std::uint64_t key = static_cast<std::uint64_t>(size_of(vote)) << kIndexBits | shuffled(link);
+      const std::uint64_t key = key_of(i, j, link);
+      if (key == 0) continue;
       exec::raise_to(best + i, key);
       exec::raise_to(best + j, key);
     }
+  }
+  [[nodiscard]] PSK_HD std::uint64_t key_of(std::int64_t i, std::int32_t j, std::int64_t link) const {
+    const std::int64_t vote = vote_of(lines, i, j);
+    if (vote == 0 || (has_sides && vote < 0)) return 0;
+    return static_cast<std::uint64_t>(size_of(vote)) << kIndexBits | shuffled(link);
   }
 };
 
 /// Which link a point has picked: found again among its own, or named by the other end.
 struct NamePicks {
-  LinkedLines lines;
-  const std::uint64_t* best;
+  PickLinks pick;
   ArrayView<std::int64_t> picked;  // starts as -1
   PSK_HD void operator()(std::int64_t i) const {
     for (int l = 0; l < kLinks; ++l) {
       const std::int64_t link = i * kNeighbours + l;
-      const std::int32_t j = lines.ids[link];
+      const std::int32_t j = pick.lines.ids[link];
       if (j < 0) return;
-      const std::int64_t vote = vote_of(lines, i, j);
-      if (vote == 0) continue;
-      const std::uint64_t key =
-          static_cast<std::uint64_t>(size_of(vote)) << PickLinks::kIndexBits | PickLinks::shuffled(link);
-      if (best[i] == key) picked[i] = link;
-      if (best[j] == key) picked[j] = link;  // one writer: keys differ
+      const std::uint64_t key = pick.key_of(i, j, link);
+      if (key == 0) continue;
+      if (pick.best[i] == key) picked[i] = link;
+      if (pick.best[j] == key) picked[j] = link;  // one writer: keys differ
     }
   }
 };
@@ -216,7 +219,7 @@ struct WriteLinks {
     const std::int32_t j = lines.ids[i * kNeighbours + links[m] % kLinks];
     const std::int64_t vote = vote_of(lines, i, j) * signs[i] * signs[j];
     pairs[m] = pair_of(labels[i], labels[j]);
-    votes[m] = {vote, size_of(vote)};
+    votes[m] = {vote, size_of(vote), 1};
   }
 };
 
@@ -237,10 +240,7 @@ struct SumRuns {
   PSK_HD void operator()(std::int64_t r) const {
     const std::int64_t last = r + 1 < starts.size ? starts[r + 1] : keys.size;
     PatchVotes sum;
-    for (std::int64_t m = starts[r]; m < last; ++m) {
-      sum.net += votes[order[m]].net;
-      sum.gross += votes[order[m]].gross;
-    }
+    for (std::int64_t m = starts[r]; m < last; ++m) sum = sum + votes[order[m]];
     const std::uint64_t key = keys[starts[r]];
     pairs_out[r] = (key >> bits) << 32 | (key & ((std::uint64_t{1} << bits) - 1));
     votes_out[r] = sum;
@@ -274,6 +274,22 @@ struct PickPairs {
   ArrayView<const PatchVotes> votes;
   std::uint64_t* best;
 
+  /// Of normals that have their likely signs: a border through a surface, not from sheet to sheet, where votes are weak
+  /// and, along a longer border, contradict each other. @param smaller  points of the smaller patch
+  [[nodiscard]] PSK_HD bool may_turn(const PatchVotes& v, std::int64_t smaller) const {
+    constexpr std::int64_t kLong = 16;
+    constexpr double kAgreed = 0.8;
+    constexpr double kAsGood = 0.8;
+    constexpr double kLongest = 256.0 * kFullVote;
+    constexpr double kAllAgreed = 0.9;
+    if (rule.typical > 1) return false;
+    const auto net = static_cast<double>(size_of(v.net));
+    const auto gross = static_cast<double>(v.gross);
+    if (smaller < rule.small && net >= rule.agreement * gross) return true;
+    if (gross >= kLongest && net >= kAllAgreed * gross) return true;
+    return v.count >= kLong && net >= kAgreed * gross &&
+           gross >= kAsGood * rule.typical * static_cast<double>(v.count * kFullVote);
+  }
   [[nodiscard]] PSK_HD std::uint64_t key_of(std::int64_t m) const {
     const PatchVotes v = votes[m];
     const auto net = static_cast<double>(size_of(v.net));
@@ -283,6 +299,7 @@ struct PickPairs {
     const std::uint64_t b = sizes[static_cast<std::int64_t>(pairs[m] & 0xffffffff)];
     const auto smaller = static_cast<std::int64_t>(a < b ? a : b);
     if (net < rule.agreement * gross && smaller >= rule.small) return 0;
+    if (rule.typical > 0 && v.net < 0 && !may_turn(v, smaller)) return 0;
     const auto score = static_cast<float>(net * net / gross);  // positive floats have the order of their bits
     std::uint32_t bits;
     memcpy(&bits, &score, sizeof bits);
@@ -352,7 +369,7 @@ struct RelabelPairs {
     const auto a = static_cast<std::int64_t>(pairs[m] >> 32);
     const auto b = static_cast<std::int64_t>(pairs[m] & 0xffffffff);
     pairs_out[k] = pair_of(new_labels[a], new_labels[b]);
-    votes_out[k] = {votes[m].net * new_signs[a] * new_signs[b], votes[m].gross};
+    votes_out[k] = {votes[m].net * new_signs[a] * new_signs[b], votes[m].gross, votes[m].count};
   }
 };
 
@@ -378,6 +395,111 @@ void apply(Exec& ex, const Joined& joined, SignPatches& patches) {
   patches.votes = std::move(votes);
 }
 
+/// A correlation of two values whose means are 0.
+struct Correlation {
+  double product = 0, first = 0, second = 0;
+  PSK_HD Correlation operator+(const Correlation& other) const {
+    return {product + other.product, first + other.first, second + other.second};
+  }
+  [[nodiscard]] double value() const { return first * second > 0 ? product / std::sqrt(first * second) : 0.0; }
+};
+
+/// What shows how often links and evidence are right: links with the evidence at their ends and around triangles, and
+/// how a point's evidence differs from its neighbours' with its height above them.
+struct Coherence {
+  PatchVotes links, evidence, triangles;
+  Correlation heights;
+};
+struct CountCoherent {
+  LinkedLines lines;
+  ArrayView<const std::int32_t> evidence;
+  PSK_HD Coherence operator()(std::int64_t i) const {
+    Coherence sum;
+    const Double3 p = to_double(lines.positions[i]);
+    const Double3 n = to_double(lines.normals[i]);
+    double height = 0;
+    double scale = 0;
+    int other = 0;
+    int count = 0;
+    std::int32_t before = -1;
+    std::int64_t vote_before = 0;
+    for (int l = 0; l < kLinks; ++l) {
+      const std::int32_t j = lines.ids[i * kNeighbours + l];
+      if (j < 0) break;
+      const std::int64_t vote = vote_of(lines, i, j);
+      const std::int32_t both = evidence[i] * evidence[j];
+      sum.links = sum.links + PatchVotes{vote, size_of(vote), vote != 0 ? 1 : 0};
+      if (both != 0) sum.evidence = sum.evidence + PatchVotes{vote * both, size_of(vote), 1};
+      if (before >= 0) sum.triangles = sum.triangles + around(vote, vote_before, vote_of(lines, j, before));
+      before = j;
+      vote_before = vote;
+      const Double3 d = to_double(lines.positions[j]) - p;
+      height -= dot(n, d);
+      scale += dot(d, d);
+      other += dot(n, to_double(lines.normals[j])) < 0 ? -evidence[j] : evidence[j];
+      ++count;
+    }
+    if (scale > 0 && evidence[i] != 0) {
+      const double differs = evidence[i] - static_cast<double>(other) / count;
+      const double relative = height / std::sqrt(count * scale);
+      sum.heights = {differs * relative, differs * differs, relative * relative};
+    }
+    return sum;
+  }
+  PSK_HD static PatchVotes around(std::int64_t a, std::int64_t b, std::int64_t c) {
+    std::int64_t least = size_of(a) < size_of(b) ? size_of(a) : size_of(b);
+    if (size_of(c) < least) least = size_of(c);
+    return {((a < 0) != (b < 0)) != (c < 0) ? -least : least, least, 1};
+  }
+};
+struct AddCoherence {
+  PSK_HD Coherence operator()(const Coherence& a, const Coherence& b) const {
+    return {a.links + b.links, a.evidence + b.evidence, a.triangles + b.triangles, a.heights + b.heights};
+  }
+};
+
+/// How much more often votes are right than wrong, in [0, 1].
+inline double share_of(const PatchVotes& votes) {
+  return votes.gross > 0 ? std::max(0.0, static_cast<double>(votes.net) / static_cast<double>(votes.gross)) : 0.0;
+}
+
+struct Spread {
+  LinkedLines lines;
+  ArrayView<const std::int32_t> evidence;
+  float own;  // what a point's evidence weighs, in full votes
+  ArrayView<const float> in;
+  ArrayView<float> out;
+  PSK_HD void operator()(std::int64_t i) const {
+    float sum = own * static_cast<float>(evidence[i]);
+    float weight = own;
+    for (int l = 0; l < kLinks; ++l) {
+      const std::int32_t j = lines.ids[i * kNeighbours + l];
+      if (j < 0) break;
+      const float vote = static_cast<float>(vote_of(lines, i, j)) * (1.0F / static_cast<float>(kFullVote));
+      sum += vote * in[j];
+      weight += vote < 0 ? -vote : vote;
+    }
+    out[i] = sum / weight;
+  }
+};
+struct ToFloat {
+  ArrayView<const std::int32_t> in;
+  ArrayView<float> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<float>(in[i]); }
+};
+struct SignOf {
+  ArrayView<const float> in;
+  ArrayView<std::int32_t> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = in[i] < 0 ? -1 : 1; }
+};
+struct TakeKnown {
+  ArrayView<const std::int32_t> evidence;
+  ArrayView<std::int32_t> signs;
+  PSK_HD void operator()(std::int64_t i) const {
+    if (evidence[i] != 0) signs[i] = evidence[i];
+  }
+};
+
 struct Agreement {
   LinkedLines lines;
   ArrayView<const std::int32_t> signs;
@@ -399,17 +521,55 @@ struct Agreement {
 }  // namespace sign_graph
 
 template <exec::Space Exec>
-SignPatches start_patches(Exec& ex, const LinkedLines& lines) {
+LikelySigns spread_evidence(Exec& ex, const LinkedLines& lines, ArrayView<const std::int32_t> evidence) {
+  using namespace sign_graph;
+  constexpr double kLeastCoherence = 0.04;  // a share q of wrong signs leaves (1 - 2 q)^2
+  constexpr double kSurest = 0.99;
+  constexpr double kSurestLinks = 0.9;  // their errors come together
+  constexpr int kRounds = 6;
+  constexpr double kLinksKnow = 0.9;  // of the votes, with the best signs
+  constexpr double kSheets = 0.05;    // correlation of evidence and height: on one sheet there is none
+  const std::int64_t n = evidence.size;
+  const auto sums = exec::reduce<Coherence>(ex, "normals.coherence", n, CountCoherent{lines, evidence}, AddCoherence{});
+  // Of links a share w is wrong, of evidence q, independently: triangles close with (1 - 2 w)^3, links agree with
+  // evidence with (1 - 2 w) (1 - 2 q)^2.
+  const double coherence = share_of(sums.evidence);
+  if (coherence < kLeastCoherence) return {};
+  const double of_links = std::clamp(std::cbrt(share_of(sums.triangles)), 0.1, kSurestLinks);
+  const double of_evidence = std::min(kSurest, std::sqrt(coherence / of_links));
+  const double own = std::atanh(of_evidence) / std::atanh(of_links);  // logarithms of odds
+  auto now = exec::make_buffer<float>(ex, n);
+  auto next = exec::make_buffer<float>(ex, n);
+  for_each(ex, "normals.spread", n, ToFloat{evidence, now.view()});
+  for (int round = 0; round < kRounds; ++round) {
+    for_each(ex, "normals.spread", n, Spread{lines, evidence, static_cast<float>(own), now.cview(), next.view()});
+    now.swap(next);
+  }
+  LikelySigns likely{exec::make_buffer<std::int32_t>(ex, n),
+                     static_cast<double>(sums.links.gross) / static_cast<double>(sums.links.count * kFullVote)};
+  for_each(ex, "normals.spread", n, SignOf{now.cview(), likely.signs.view()});
+  const auto after =
+      exec::reduce<Coherence>(ex, "normals.coherence", n, CountCoherent{lines, likely.signs.cview()}, AddCoherence{});
+  if (share_of(after.evidence) >= kLinksKnow) return likely;
+  if (sums.heights.value() < std::max(kSheets, 4 / std::sqrt(static_cast<double>(n)))) return likely;
+  for_each(ex, "normals.spread", n, TakeKnown{evidence, likely.signs.view()});
+  likely.typical = std::numeric_limits<double>::infinity();
+  return likely;
+}
+
+template <exec::Space Exec>
+SignPatches start_patches(Exec& ex, const LinkedLines& lines, bool has_sides) {
   using namespace sign_graph;
   const std::int64_t n = lines.positions.size;
   if (n > std::numeric_limits<std::int32_t>::max() / kNeighbours)
     throw Error(ErrorCode::over_limit, "too many points to orient at once; thin the cloud or split it");
   auto best = exec::make_buffer<std::uint64_t>(ex, n);
   exec::fill(ex, best.view(), std::uint64_t{0});
-  for_each(ex, "normals.pick", n, PickLinks{lines, best.data()});
+  const PickLinks pick{lines, has_sides, best.data()};
+  for_each(ex, "normals.pick", n, pick);
   auto picked = exec::make_buffer<std::int64_t>(ex, n);
   exec::fill(ex, picked.view(), std::int64_t{-1});
-  for_each(ex, "normals.pick", n, NamePicks{lines, best.data(), picked.view()});
+  for_each(ex, "normals.pick", n, NamePicks{pick, picked.view()});
   best.reset();
   auto parents = exec::make_buffer<std::int32_t>(ex, n);
   auto signs = exec::make_buffer<std::int32_t>(ex, n);

@@ -76,6 +76,20 @@ struct AddFates {
   }
 };
 
+/// Lines to the likelier of their signs, and what is said of signs with them.
+struct TurnLines {
+  ArrayView<const std::int32_t> signs;
+  ArrayView<Vec3f> lines;
+  ArrayView<float> curvature;
+  ArrayView<std::int32_t> evidence;
+  PSK_HD void operator()(std::int64_t i) const {
+    if (signs[i] > 0) return;
+    lines[i] = {-lines[i].x, -lines[i].y, -lines[i].z};
+    curvature[i] = -curvature[i];
+    evidence[i] = -evidence[i];
+  }
+};
+
 /// A value of each sample to the cloud's order, times a factor and, if there are signs, the sign.
 struct Scatter {
   ArrayView<const std::int32_t> order, signs;
@@ -98,21 +112,22 @@ inline void set_attribute(Cloud& cloud, const char* name, std::vector<float> val
 }
 
 /// What is a guess, in a sentence.
-inline std::string assumption(const NormalReport& report) {
+/// @param is_certain  Evidence::is_certain
+inline std::string assumption(const NormalReport& report, bool is_certain) {
   constexpr double kClosed = 0.3;
   constexpr double kFlat = 0.03;
   switch (report.method) {
     case NormalMethod::sensor:
       return "every point was seen from its sensor";
     case NormalMethod::repair:
+      if (is_certain) return "sheets lie nearer to each other than points do: the given normals know their sides";
       return "most given normals of a connected part are right, where they say anything";
     default:
       break;
   }
   if (report.enclosing > kClosed) return "the points surround solids: normals point away from what they enclose";
   if (report.enclosing > kFlat)
-    return "the scan is open: normals point to the convex side, as if it bounded a solid; give the sensor's position "
-           "if "
+    return "the scan is open: normals point to the convex side, as if it bounded a solid; give the sensor's position if "
            "it was inside";
   return "the points enclose nothing: which side is outside is a guess; give the sensor's position";
 }
@@ -133,14 +148,16 @@ class NormalsOn final : public NormalEngine {
     const PreparedCloud points = prepare_cloud(*ex_, cloud);
     const octree::SearchView search{points.tree.view(), points.positions.cview(), {}};
     const exec::Buffer<std::int32_t> neighbours = cloud::find_neighbours(*ex_, search);
-    const cloud::NormalLines lines = cloud::estimate_lines(*ex_, search, neighbours.cview());
+    cloud::NormalLines lines = cloud::estimate_lines(*ex_, search, neighbours.cview());
     clock.lap(report.estimate_ms);
 
     announce(options, "propagate", 0.3);
-    const exec::Buffer<std::int32_t> evidence = find_evidence(points, lines, views, options);
+    exec::Buffer<std::int32_t> evidence = find_evidence(points, lines, views, options);
     const cloud::LinkedLines linked{points.positions.cview(), lines.normals.cview(), lines.flatness.cview(),
                                     lines.noise.cview(), neighbours.cview()};
-    SignSolver<Exec> solver(*ex_, linked, points.tree, evidence.cview(), options, report);
+    const double typical = evidence.empty() ? 0 : turn_lines(linked, lines, evidence);
+    const Evidence known{evidence.cview(), typical};
+    SignSolver<Exec> solver(*ex_, linked, points.tree, known, options, report);
     solver.propagate();
     clock.lap(report.propagate_ms);
     announce(options, "iterate", 0.5);
@@ -148,7 +165,7 @@ class NormalsOn final : public NormalEngine {
     clock.lap(report.iterate_ms);
     write(points, lines, solver, options, cloud, report);
     clock.read();
-    report.assumed = normals::assumption(report);
+    report.assumed = normals::assumption(report, known.is_certain());
     report.device_peak_bytes = ex_->pool()->peak_bytes();
   }
 
@@ -177,6 +194,14 @@ class NormalsOn final : public NormalEngine {
                                  sensors.cview(), towards.cview(), evidence.view()});
     }
     return evidence;
+  }
+
+  /// @returns the mean vote of links; 0: the evidence says nothing of single points
+  double turn_lines(const cloud::LinkedLines& linked, cloud::NormalLines& lines, exec::Buffer<std::int32_t>& evidence) {
+    const cloud::LikelySigns likely = cloud::spread_evidence(*ex_, linked, evidence.cview());
+    for_each(*ex_, "normals.turn", likely.signs.size(),
+             normals::TurnLines{likely.signs.cview(), lines.normals.view(), lines.curvature.view(), evidence.view()});
+    return likely.typical;
   }
 
   void write(const PreparedCloud& points, const cloud::NormalLines& lines, const SignSolver<Exec>& solver,

@@ -42,18 +42,20 @@ double Couplings::relative(std::size_t a, std::size_t b) const {
   return std::abs(share) < kNone ? 0 : share;
 }
 
-void choose_sides(const std::vector<double>& means, const std::vector<double>& areas, const std::vector<bool>& fixed,
-                  std::vector<int>& signs) {
-  const std::size_t count = areas.size();
+void choose_sides(const Sides& sides, const std::vector<bool>& fixed, std::vector<int>& signs) {
+  const std::size_t count = sides.areas.size();
   std::vector<std::size_t> free;
   for (std::size_t a = 0; a < count; ++a)
     if (!fixed[a]) free.push_back(a);
+  const std::vector<int> start = signs;
   const auto cost_of = [&](const std::vector<int>& now) {
     double cost = 0;
     for (std::size_t b = 0; b < count; ++b) {
       double field = 0;
-      for (std::size_t a = 0; a < count; ++a) field += now[a] * means[a * count + b];
-      cost += areas[b] * (field - 0.5) * (field - 0.5);
+      for (std::size_t a = 0; a < count; ++a) field += now[a] * sides.means[a * count + b];
+      cost += sides.areas[b] * (field - 0.5) * (field - 0.5);
+      for (std::size_t a = b + 1; a < count; ++a)
+        if (now[a] * now[b] != start[a] * start[b]) cost += sides.ties[a * count + b];
     }
     return cost;
   };

@@ -17,13 +17,20 @@ struct Couplings {
   [[nodiscard]] double relative(std::size_t a, std::size_t b) const;
 };
 
-/// Signs that bring the field at every patch nearest to 1/2: they minimise sum_b area_b (sum_a signs[a] m(a, b) -
-/// 1/2)^2 with m(a, b) the mean over patch b of the field of set a alone. So what lies inside of a solid is a cavity,
-/// and what lies in a cavity a solid.
-/// @param means  (sets, sets), row a for the field of set a
+/// Where the trial fields of sets of patches put each other.
+struct Sides {
+  explicit Sides(std::size_t sets) : means(sets * sets), areas(sets), ties(sets * sets) {}
+  std::vector<double> means;  ///< (sets, sets) row a: the mean of the field of set a alone over set b
+  std::vector<double> areas;  ///< (sets)
+  std::vector<double> ties;   ///< (sets, sets) what it costs to change the sign of a relative to b < a; the rest is 0
+};
+
+/// Signs that bring the field at every set nearest to 1/2: they minimise sum_b area_b (sum_a signs[a] means(a, b) -
+/// 1/2)^2 and what ties cost. So what lies inside of a solid is a cavity, what lies in a cavity a solid, and of two
+/// sheets that a thin wall consists of one has the other behind it. Of 14 sets all combinations are tried.
+/// @param fixed  sets whose sign stays
 /// @param signs  in: where to start; out: the best; those that are fixed stay
-void choose_sides(const std::vector<double>& means, const std::vector<double>& areas, const std::vector<bool>& fixed,
-                  std::vector<int>& signs);
+void choose_sides(const Sides& sides, const std::vector<bool>& fixed, std::vector<int>& signs);
 
 /// Signs that maximise sum_ab signs[a] signs[b] c(a, b), the part of the normals' field that is a gradient: the signs
 /// of a closed surface leave nothing else. All combinations are tried up to 14 free patches, else single changes are

@@ -5,6 +5,7 @@
 #include <pointskin/normals.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -13,14 +14,16 @@
 
 #include "cloud/sign_graph.hpp"
 #include "exec/algorithms.hpp"
+#include "normals/disjoint_sets.hpp"
 #include "normals/judge.hpp"
 #include "normals/sign_kernels.hpp"
 #include "normals/trial_field.hpp"
 
 namespace pointskin::detail {
 
-/// Links whose votes agree at least so far join patches; the rest is for trial fields to decide.
-inline constexpr double kSureAgreement = 0.6;
+/// Links whose votes agree at least so far join patches, the surest first: sums over longer borders are surer. The rest
+/// is for trial fields to decide.
+inline constexpr std::array kAgreements = {0.98, 0.9, 0.8, 0.7, 0.6};
 
 /// Patches whose couplings are measured: a solve each.
 inline constexpr std::size_t kJudgedPatches = 14;
@@ -28,24 +31,33 @@ inline constexpr std::size_t kJudgedPatches = 14;
 /// Signs of samples that the field or the neighbours turn are settled when fewer than this share change in a round.
 inline constexpr double kSettled = 0.001;
 
+/// What the input says of signs.
+struct Evidence {
+  ArrayView<const std::int32_t> signs;  ///< (n) 1, -1 or 0: which sign of the line it speaks for; empty: of none
+  double typical = 0;                   ///< unless 0, lines have their likely signs (cloud::LikelySigns)
+
+  /// The input knows more than neighbours do.
+  [[nodiscard]] bool is_certain() const { return typical > 1; }
+};
+
 template <exec::Space Exec>
 class SignSolver {
  public:
-  /// @param evidence  (n) 1, -1 or 0: which sign of the line the input speaks for; empty: nothing is known
-  SignSolver(Exec& ex, const cloud::LinkedLines& lines, const octree::OctreeData& tree,
-             ArrayView<const std::int32_t> evidence, const NormalOptions& options, NormalReport& report)
+  SignSolver(Exec& ex, const cloud::LinkedLines& lines, const octree::OctreeData& tree, const Evidence& evidence,
+             const NormalOptions& options, NormalReport& report)
       : ex_(ex), lines_(lines), tree_(tree), evidence_(evidence), options_(options), report_(report) {}
 
   /// Neighbours alone.
   void propagate() {
     const std::int64_t n = lines_.positions.size;
-    patches_ = cloud::start_patches(ex_, lines_);
-    cloud::merge_patches(ex_, {kSureAgreement, std::max<std::int64_t>(32, n / 2000)}, patches_);
+    patches_ = cloud::start_patches(ex_, lines_, evidence_.typical > 0);
+    for (const double agreement : kAgreements) cloud::merge_patches(ex_, {agreement, 0, evidence_.typical}, patches_);
+    cloud::merge_patches(ex_, {kAgreements.back(), std::max<std::int64_t>(32, n / 2000), evidence_.typical}, patches_);
     report_.patches = patches_.count;
     join_patches();
     signs_ = exec::make_buffer<std::int32_t>(ex_, n);
     fixed_.assign(patch_signs_.size(), false);
-    if (!evidence_.empty()) follow_evidence();
+    if (!evidence_.signs.empty()) follow_evidence();
     compose(patch_signs_);
   }
 
@@ -56,8 +68,11 @@ class SignSolver {
     judge_patches(trial);
     judge_sides(trial);
     compose(patch_signs_);
-    if (options_.method == NormalMethod::iterate) keep_iterated();
-    clean_up(trial);
+    if (evidence_.is_certain())
+      trial.solve(signs_.cview());
+    else
+      clean_up(trial);
+    settle_confidence(trial);
   }
 
   /// (n) signs of the lines.
@@ -95,7 +110,7 @@ class SignSolver {
     copy(ex_, patches_.sizes.cview(), upper.sizes.view());
     upper.pairs = std::move(patches_.pairs);
     upper.votes = std::move(patches_.votes);
-    cloud::merge_patches(ex_, {0, 0}, upper);
+    cloud::merge_patches(ex_, {0, 0, evidence_.typical}, upper);
     report_.components = upper.count;
     components_ = to_host(upper.labels);
     const std::vector<std::int32_t> signs = to_host(upper.signs);
@@ -136,7 +151,7 @@ class SignSolver {
   void follow_evidence() {
     constexpr double kPatchShare = 0.2;  // 60 : 40
     constexpr double kComponentShare = 0.1;
-    const std::vector<Votes> votes = votes_of_patches(evidence_);
+    const std::vector<Votes> votes = votes_of_patches(evidence_.signs);
     std::vector<Votes> of_components(votes.size());
     for (std::size_t c = 0; c < votes.size(); ++c) {
       Votes& all = of_components[static_cast<std::size_t>(components_[c])];
@@ -192,9 +207,8 @@ class SignSolver {
 
   /// The largest patches, by how their fields act on each other, if there are several.
   void judge_patches(TrialField<Exec>& trial) {
-    std::vector<std::size_t> large = largest_patches();
-    sets_.assign(patch_signs_.size(), 0);
-    std::iota(sets_.begin(), sets_.end(), 0);
+    const std::vector<std::size_t> large = largest_patches();
+    sets_ = DisjointSets(patch_signs_.size());
     unite_components();
     if (large.size() < 2 || std::all_of(large.begin(), large.end(), [&](std::size_t c) { return fixed_[c]; })) return;
     std::vector<std::int32_t> sets(patch_signs_.size(), -1);
@@ -218,38 +232,50 @@ class SignSolver {
       }
     }
     apply(couplings, large);
-    choose_sides_of(large, fields, areas);
+    choose_sides_of(large, couplings, fields, areas);
   }
 
-  /// Sets of patches that hang together, by where their fields put each other.
-  void choose_sides_of(const std::vector<std::size_t>& large, const std::vector<double>& fields,
-                       const std::vector<double>& areas) {
-    std::vector<std::size_t> roots;
-    std::vector<std::size_t> set_of(large.size());
-    for (std::size_t a = 0; a < large.size(); ++a) {
-      const auto at = std::find(roots.begin(), roots.end(), root(large[a]));
-      set_of[a] = static_cast<std::size_t>(at - roots.begin());
-      if (at == roots.end()) roots.push_back(root(large[a]));
+  /// Patches that their fields hold together, by where their fields put each other. Those that only doubtful links
+  /// join are tied, not held: the sheets of a thin wall meet at its rims alone.
+  void choose_sides_of(const std::vector<std::size_t>& large, const Couplings& couplings,
+                       const std::vector<double>& fields, const std::vector<double>& areas) {
+    constexpr double kHolds = 0.1;  // of what the smaller does to itself
+    constexpr double kTies = 0.05;  // of the smaller's area; a side that is clear costs or saves 1
+    const std::size_t n = large.size();
+    DisjointSets held(n);
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        if (std::abs(couplings.relative(a, b)) >= kHolds) held.unite(a, b);
+    const DisjointSets::Numbers sets = held.numbers();
+    const auto set_of = [&](std::size_t a) { return static_cast<std::size_t>(sets.of[a]); };
+    Sides sides(sets.count);
+    std::vector<bool> fixed(sets.count, false);
+    for (std::size_t a = 0; a < n; ++a) {
+      sides.areas[set_of(a)] += areas[a];
+      if (fixed_[large[a]]) fixed[set_of(a)] = true;
+      for (std::size_t b = 0; b < n; ++b) {
+        sides.means[set_of(a) * sets.count + set_of(b)] += patch_signs_[large[a]] * fields[a * n + b];
+        if (components_[large[a]] == components_[large[b]] && set_of(a) > set_of(b))
+          sides.ties[set_of(a) * sets.count + set_of(b)] += kTies * std::min(areas[a], areas[b]);
+      }
     }
-    const std::size_t count = roots.size();
-    std::vector<double> means(count * count);
-    std::vector<double> set_areas(count);
-    std::vector<bool> fixed(count, false);
-    for (std::size_t a = 0; a < large.size(); ++a) {
-      set_areas[set_of[a]] += areas[a];
-      if (fixed_[large[a]]) fixed[set_of[a]] = true;
-      for (std::size_t b = 0; b < large.size(); ++b)
-        means[set_of[a] * count + set_of[b]] += patch_signs_[large[a]] * fields[a * large.size() + b];
-    }
-    for (std::size_t a = 0; a < count; ++a)
-      for (std::size_t b = 0; b < count; ++b) means[a * count + b] /= std::max(set_areas[b], 1e-9);
-    std::vector<int> signs(count, 1);
-    choose_sides(means, set_areas, fixed, signs);
+    for (std::size_t a = 0; a < sets.count; ++a)
+      for (std::size_t b = 0; b < sets.count; ++b) sides.means[a * sets.count + b] /= std::max(sides.areas[b], 1e-9);
+    std::vector<int> turned(sets.count, 1);
+    choose_sides(sides, fixed, turned);
     for (std::size_t c = 0; c < patch_signs_.size(); ++c) {
-      const auto at = std::find(roots.begin(), roots.end(), root(c));
-      if (at != roots.end() && !fixed_[c]) patch_signs_[c] *= signs[static_cast<std::size_t>(at - roots.begin())];
+      const std::size_t at = judged_like(c, large);
+      if (at < n && !fixed_[c]) patch_signs_[c] *= turned[set_of(at)];
     }
-    report_.turned += std::count(signs.begin(), signs.end(), -1);
+    report_.turned += std::count(turned.begin(), turned.end(), -1);
+  }
+
+  /// Where patch c is among the judged ones, or else the largest that it hangs together with; their number if none.
+  [[nodiscard]] std::size_t judged_like(std::size_t c, const std::vector<std::size_t>& large) const {
+    auto at = std::find(large.begin(), large.end(), c);
+    if (at == large.end())
+      at = std::find_if(large.begin(), large.end(), [&](std::size_t a) { return sets_.root(a) == sets_.root(c); });
+    return static_cast<std::size_t>(at - large.begin());
   }
 
   signs::ComposeSigns with_signs(const std::vector<int>& patch_signs, exec::Buffer<std::int32_t>& out) {
@@ -280,26 +306,16 @@ class SignSolver {
       if (patch_signs_[large[a]] != chosen[a]) ++report_.turned;
       patch_signs_[large[a]] = chosen[a];
       for (std::size_t b = 0; b < a; ++b)
-        if (couplings.relative(a, b) != 0) unite(large[a], large[b]);
+        if (couplings.relative(a, b) != 0) sets_.unite(large[a], large[b]);
     }
   }
 
-  // Sets of patches whose signs hang together: all of a set are turned at once. Small, on the host.
-  std::size_t root(std::size_t c) {
-    while (sets_[c] != static_cast<std::int32_t>(c)) c = static_cast<std::size_t>(sets_[c]);
-    return c;
-  }
-  void unite(std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    sets_[std::max(a, b)] = static_cast<std::int32_t>(std::min(a, b));
-  }
   void unite_components() {
-    std::vector<std::int64_t> first(patch_signs_.size(), -1);
+    std::vector<std::size_t> first(patch_signs_.size(), patch_signs_.size());
     for (std::size_t c = 0; c < patch_signs_.size(); ++c) {
-      std::int64_t& of = first[static_cast<std::size_t>(components_[c])];
-      if (of < 0) of = static_cast<std::int64_t>(c);
-      sets_[c] = static_cast<std::int32_t>(of);
+      std::size_t& of = first[static_cast<std::size_t>(components_[c])];
+      of = std::min(of, c);
+      sets_.unite(of, c);
     }
   }
 
@@ -307,27 +323,20 @@ class SignSolver {
   /// enclose changes with them.
   void judge_sides(TrialField<Exec>& trial) {
     constexpr int kRounds = 6;
-    std::vector<std::int32_t> index(patch_signs_.size());
-    std::vector<std::size_t> roots;
-    for (std::size_t c = 0; c < index.size(); ++c) {
-      if (root(c) == c) roots.push_back(c);
-    }
-    std::vector<std::int32_t> of_root(index.size(), -1);
-    for (std::size_t r = 0; r < roots.size(); ++r) of_root[roots[r]] = static_cast<std::int32_t>(r);
-    std::vector<bool> fixed(roots.size(), false);
-    for (std::size_t c = 0; c < index.size(); ++c) {
-      index[c] = of_root[root(c)];
-      if (fixed_[c]) fixed[static_cast<std::size_t>(index[c])] = true;
-    }
-    std::vector<int> turns(roots.size(), 0);
+    const DisjointSets::Numbers sets = sets_.numbers();
+    const auto set_of = [&](std::size_t c) { return static_cast<std::size_t>(sets.of[c]); };
+    std::vector<bool> fixed(sets.count, false);
+    for (std::size_t c = 0; c < sets.of.size(); ++c)
+      if (fixed_[c]) fixed[set_of(c)] = true;
+    std::vector<int> turns(sets.count, 0);
     for (int round = 0; round < kRounds && may_solve(); ++round) {
       compose(patch_signs_);
       trial.solve(signs_.cview());
-      const std::vector<SetSums> sums = measure(trial, signs_.cview(), index, roots.size());
+      const std::vector<SetSums> sums = measure(trial, signs_.cview(), sets.of, sets.count);
       SetSums total;
-      std::vector<bool> turn(roots.size(), false);
+      std::vector<bool> turn(sets.count, false);
       bool any = false;
-      for (std::size_t r = 0; r < roots.size(); ++r) {
+      for (std::size_t r = 0; r < sets.count; ++r) {
         total.area += sums[r].area;
         total.field += sums[r].field;
         turn[r] = !fixed[r] && turns[r] < 2 && (sums[r].mean() < -0.01 || sums[r].mean() > 1);
@@ -336,32 +345,32 @@ class SignSolver {
       }
       report_.enclosing = total.mean();
       if (!any) return;
-      for (std::size_t c = 0; c < index.size(); ++c)
-        if (turn[static_cast<std::size_t>(index[c])]) patch_signs_[c] = -patch_signs_[c];
+      for (std::size_t c = 0; c < sets.of.size(); ++c)
+        if (turn[set_of(c)]) patch_signs_[c] = -patch_signs_[c];
       report_.turned += std::count(turn.begin(), turn.end(), true);
     }
   }
 
   /// iPSR: signs follow the field until they stay; then every patch takes what most of its samples say.
   void iterate(TrialField<Exec>& trial) {
+    constexpr int kRounds = 25;
     if (options_.random_start)
       for_each(ex_, "normals.random", signs_.size(), signs::RandomSigns{options_.seed, signs_.view()});
-    constexpr int kRounds = 25;
-    auto changed = exec::make_buffer<std::int32_t>(ex_, signs_.size());
-    const auto follow = [&](TrialField<Exec>& field, int rounds) {
-      for (int round = 0; round < rounds && may_solve(); ++round) {
-        field.solve(signs_.cview());
-        for_each(ex_, "normals.follow", signs_.size(),
-                 signs::FollowField{field.view(), lines_.positions, lines_.normals, signs_.view(), changed.view()});
-        if (is_settled(changed)) break;
-      }
-    };
-    follow(trial, kRounds);
+    follow_field(trial, kRounds);
     const std::vector<Votes> votes = votes_of_patches(signs_.cview());
     for (std::size_t c = 0; c < votes.size(); ++c)
       if (votes[c].decide(0.1) && !fixed_[c]) patch_signs_[c] = votes[c].net < 0 ? -1 : 1;
   }
-  void keep_iterated() {}
+
+  void follow_field(TrialField<Exec>& trial, int rounds) {
+    auto changed = exec::make_buffer<std::int32_t>(ex_, signs_.size());
+    for (int round = 0; round < rounds && may_solve(); ++round) {
+      trial.solve(signs_.cview());
+      for_each(ex_, "normals.follow", signs_.size(),
+               signs::FollowField{trial.view(), lines_.positions, lines_.normals, signs_.view(), changed.view()});
+      if (is_settled(changed)) break;
+    }
+  }
 
   bool is_settled(const exec::Buffer<std::int32_t>& changed) {
     const std::int64_t count = exec::sum_counts(ex_, "normals.changed", changed.cview());
@@ -382,6 +391,11 @@ class SignSolver {
                               changed.view()});
       if (is_settled(changed) || !may_solve()) break;
     }
+  }
+
+  void settle_confidence(TrialField<Exec>& trial) {
+    const std::int64_t n = signs_.size();
+    auto agreement = exec::make_buffer<float>(ex_, n);
     cloud::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
     const double sides = options_.method == NormalMethod::sensor || options_.method == NormalMethod::repair
                              ? 1.0
@@ -396,7 +410,7 @@ class SignSolver {
   Exec& ex_;
   cloud::LinkedLines lines_;
   const octree::OctreeData& tree_;
-  ArrayView<const std::int32_t> evidence_;
+  Evidence evidence_;
   const NormalOptions& options_;
   NormalReport& report_;
   Clock::time_point start_ = Clock::now();
@@ -405,8 +419,8 @@ class SignSolver {
   std::vector<std::int32_t> components_;  // of patches
   std::vector<int> patch_signs_;
   std::vector<std::uint64_t> sizes_;
-  std::vector<bool> fixed_;         // patches whose sign the input decides
-  std::vector<std::int32_t> sets_;  // union-find over patches
+  std::vector<bool> fixed_;  // patches whose sign the input decides
+  DisjointSets sets_;        // patches whose signs hang together: all of a set are turned at once
   exec::Buffer<std::int32_t> kept_signs_;
   exec::Buffer<std::int32_t> signs_;
   exec::Buffer<float> confidence_;

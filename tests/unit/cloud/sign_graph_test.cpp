@@ -109,5 +109,54 @@ TEST(SignGraph, AgreementIsTheShareOfVotes) {
   EXPECT_EQ(share.data()[7], 0);
 }
 
+/// The true signs of a graph's lines, a share of them wrong.
+exec::Buffer<std::int32_t> evidence_of(Graph& graph, double wrong, std::uint64_t seed) {
+  test::Random random(seed);
+  auto evidence = exec::make_buffer<std::int32_t>(graph.ex, graph.points.positions.size());
+  for (std::size_t i = 0; i < graph.turned.size(); ++i)
+    evidence.data()[i] = graph.turned[i] * (random.unit() < wrong ? -1 : 1);
+  return evidence;
+}
+
+TEST(LikelySigns, CorrectWhatNeighboursContradict) {
+  Graph graph(test::torus_cloud(8'000, 21), 22);
+  for (const double wrong : {0.0, 0.1, 0.3, 0.9}) {
+    SCOPED_TRACE(wrong);
+    const exec::Buffer<std::int32_t> evidence = evidence_of(graph, wrong, 23);
+    const cloud::LikelySigns likely = cloud::spread_evidence(graph.ex, graph.lines, evidence.cview());
+    ASSERT_EQ(likely.signs.size(), evidence.size());
+    EXPECT_GT(likely.typical, 0.8);
+    std::int64_t right = 0;
+    for (std::size_t i = 0; i < graph.turned.size(); ++i)
+      right += likely.signs.data()[i] == graph.turned[i] * (wrong > 0.5 ? -1 : 1) ? 1 : 0;
+    EXPECT_GE(right, wrong == 0.3 ? 7'900 : 7'990);
+  }
+}
+
+TEST(LikelySigns, AreNoneWhereTheInputIsChance) {
+  Graph graph(test::torus_cloud(8'000, 24), 25);
+  const exec::Buffer<std::int32_t> chance = evidence_of(graph, 0.5, 26);
+  EXPECT_TRUE(cloud::spread_evidence(graph.ex, graph.lines, chance.cview()).signs.empty());
+  auto nothing = exec::make_buffer<std::int32_t>(graph.ex, chance.size());
+  exec::fill(graph.ex, nothing.view(), 0);
+  EXPECT_TRUE(cloud::spread_evidence(graph.ex, graph.lines, nothing.cview()).signs.empty());
+}
+
+TEST(SignGraph, TurnsWhatHasLikelySignsOverLongBordersAlone) {
+  // Signs that are right but for a hemisphere, and for single points.
+  Graph graph(test::sphere_cloud(8'000, 27), 28);
+  for (std::size_t i = 0; i < graph.turned.size(); ++i) {
+    Vec3f& n = graph.points.given.data()[i];
+    const int wanted = graph.points.positions.data()[i].x > 0.5F ? -1 : 1;
+    if (graph.turned[i] != wanted) n = {-n.x, -n.y, -n.z};
+    graph.turned[i] = wanted;
+  }
+  cloud::SignPatches patches = cloud::start_patches(graph.ex, graph.lines, true);
+  for (std::size_t i = 0; i < graph.turned.size(); ++i) ASSERT_EQ(patches.signs.data()[i], 1);
+  cloud::merge_patches(graph.ex, {0.9, 0, 0.9}, patches);
+  EXPECT_EQ(patches.count, 1);
+  expect_consistent(graph, patches);
+}
+
 }  // namespace
 }  // namespace pointskin

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "normals/disjoint_sets.hpp"
 #include "normals/judge.hpp"
 #include "support/shapes.hpp"
 
@@ -66,17 +67,55 @@ TEST(ChooseSigns, ImprovesManyStepByStep) {
 
 TEST(ChooseSides, TurnsCavitiesInsideSolids) {
   // Sphere in sphere in sphere: outside of itself a sphere's field is 0, inside 1, on it 1/2.
-  const std::vector<double> means = {0.5, 1, 1, 0, 0.5, 1, 0, 0, 0.5};
+  Sides sides(3);
+  sides.means = {0.5, 1, 1, 0, 0.5, 1, 0, 0, 0.5};
+  sides.areas = {4, 2, 1};
   std::vector<int> signs = {-1, -1, -1};
-  choose_sides(means, {4, 2, 1}, {false, false, false}, signs);
+  choose_sides(sides, {false, false, false}, signs);
   EXPECT_EQ(signs, (std::vector<int>{1, -1, 1}));
 }
 
 TEST(ChooseSides, KeepsFixedSides) {
-  const std::vector<double> means = {0.5, 0, 0, 0.5};  // apart
+  Sides sides(2);
+  sides.means = {0.5, 0, 0, 0.5};  // apart
+  sides.areas = {1, 1};
   std::vector<int> signs = {-1, -1};
-  choose_sides(means, {1, 1}, {true, false}, signs);
+  choose_sides(sides, {true, false}, signs);
   EXPECT_EQ(signs, (std::vector<int>{-1, 1}));
+}
+
+TEST(ChooseSides, GivesTheSheetsOfAThinWallOppositeSides) {
+  // Two sheets, each with its lower side at -1/4 and its upper one at 1/4 beyond the rims' effect.
+  Sides sides(2);
+  sides.means = {0.02, -0.27, 0.25, -0.01};
+  sides.areas = {1, 1};
+  std::vector<int> signs = {1, 1};
+  choose_sides(sides, {false, false}, signs);
+  EXPECT_EQ(signs, (std::vector<int>{-1, 1}));
+}
+
+TEST(ChooseSides, FollowsTiesWhereTheFieldSaysNothing) {
+  Sides sides(2);
+  sides.means = {0, 0.01, 0.02, 0};
+  sides.areas = {1, 1};
+  sides.ties = {0, 0, 0.05, 0};
+  for (const std::vector<int>& start : {std::vector<int>{1, 1}, std::vector<int>{1, -1}}) {
+    std::vector<int> signs = start;
+    choose_sides(sides, {false, false}, signs);
+    EXPECT_EQ(signs[0] * signs[1], start[0] * start[1]);
+  }
+}
+
+TEST(DisjointSets, AreNamedByTheirSmallestMembers) {
+  DisjointSets sets(6);
+  sets.unite(4, 2);
+  sets.unite(5, 4);
+  sets.unite(1, 3);
+  EXPECT_EQ(sets.root(5), 2U);
+  EXPECT_EQ(sets.root(3), 1U);
+  const DisjointSets::Numbers numbers = sets.numbers();
+  EXPECT_EQ(numbers.count, 3U);
+  EXPECT_EQ(numbers.of, (std::vector<std::int32_t>{0, 1, 2, 1, 2, 2}));
 }
 
 }  // namespace

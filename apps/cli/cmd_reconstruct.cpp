@@ -47,30 +47,36 @@ void warn_about_options(const ReconstructArgs& args) {
   if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
 }
 
-/// Normals for the cloud; its attributes stay as they are.
-NormalReport make_normals(const ReconstructArgs& args, const Record& record, Cloud& cloud) {
+bool makes_normals(const ReconstructArgs& args) { return !args.estimate_normals.empty(); }
+
+/// Only what becomes part of the mesh.
+void drop_attributes(const ReconstructArgs& args, Cloud& cloud) {
+  if (!args.options.attributes && !args.colors) cloud.attributes.clear();
+  if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
+    print_warning("--colors: the points have no red, green or blue");
+}
+
+/// Normals for the cloud, and then its attributes: they may say where points were seen from.
+void make_normals(const ReconstructArgs& args, Record& record, Cloud& cloud) {
   NormalOptions options = normal_options_of(args);
   options.confidence = false;
   on_interrupt(OnInterrupt::remember);
-  return estimate_normals(cloud, options, record.device, args.quiet);
+  record.normals = estimate_normals(cloud, options, record.device, args.quiet);
+  drop_attributes(args, cloud);
 }
 
 /// Reads, merges and cleans the input; fills in the counts.
 Cloud read_input(const ReconstructArgs& args, Record& record) {
   const Stopwatch watch;
-  const bool estimated = !args.estimate_normals.empty();
   Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads},
-                            estimated ? MissingNormals::allowed : MissingNormals::refused);
-  if (!estimated) {
+                            makes_normals(args) ? MissingNormals::allowed : MissingNormals::refused);
+  if (!makes_normals(args)) {
     drop_unusable(cloud);
+    drop_attributes(args, cloud);
   } else if (cloud.dropped > 0) {
     print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
   }
   record.read_ms = watch.ms();
-  if (estimated && !args.dry_run) record.normals = make_normals(args, record, cloud);
-  if (!args.options.attributes && !args.colors) cloud.attributes.clear();
-  if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
-    print_warning("--colors: the points have no red, green or blue");
   record.dropped = cloud.dropped;
   record.points = cloud.size() + cloud.dropped;
   return cloud;
@@ -105,10 +111,12 @@ struct Estimate {
   [[nodiscard]] std::int64_t total() const { return buffers + cloud; }
 };
 
-Estimate estimate_memory(const Cloud& cloud, const Record& record, int threads) {
+Estimate estimate_memory(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
   const Mesh* envelope = record.options.envelope.get();
   const std::int64_t shared = host_bytes(cloud) + (envelope != nullptr ? host_bytes(*envelope) : 0);
-  return {estimate_device_bytes(cloud, record.options, threads), record.device.kind == DeviceKind::cpu ? shared : 0};
+  std::int64_t buffers = estimate_device_bytes(cloud, record.options, args.threads);
+  if (makes_normals(args)) buffers = std::max(buffers, estimate_normals_device_bytes(cloud, args.threads));
+  return {buffers, record.device.kind == DeviceKind::cpu ? shared : 0};
 }
 
 std::string bytes_text(std::int64_t bytes) {
@@ -147,7 +155,7 @@ void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Recor
 nlohmann::ordered_json other_options(const ReconstructArgs& args) {
   nlohmann::ordered_json json = {{"device", args.device}, {"threads", args.threads}, {"shift", args.shift}};
   json["envelope"] = or_null(args.envelope);
-  if (!args.estimate_normals.empty()) json["estimate_normals"] = to_json(normal_options_of(args));
+  if (makes_normals(args)) json["estimate_normals"] = to_json(normal_options_of(args));
   json["repeat"] = args.repeat;
   json["inputs"] = args.inputs;
   json["output"] = or_null(args.output);
@@ -200,7 +208,7 @@ int run(const ReconstructArgs& given) {
   Record record;
   if (args.problems) record.command = "problems";
   record.options = library_options(args);
-  if (!args.estimate_normals.empty()) normal_options_of(args);
+  if (makes_normals(args)) normal_options_of(args);
   parse_shift(args.shift);
   check_files(args);
   record.device = args.chosen();
@@ -210,13 +218,14 @@ int run(const ReconstructArgs& given) {
   Cloud cloud = read_input(args, record);
   settle_options(args, cloud, record);
   if (args.dry_run || record.options.max_memory_bytes > 0) {
-    const Estimate estimate = estimate_memory(cloud, record, args.threads);
+    const Estimate estimate = estimate_memory(args, cloud, record);
     if (args.dry_run && !record.options.keep_strays) warn_about_strays(cloud, args.threads);
     if (args.dry_run) print_estimate(args, cloud, record, estimate);
     check_memory(estimate.total(), record.options.max_memory_bytes);
   }
   if (args.dry_run) return 0;
 
+  if (makes_normals(args)) make_normals(args, record, cloud);
   on_interrupt(OnInterrupt::remember);
   const Mesh mesh = compute(args, cloud, record);
   cloud = Cloud();

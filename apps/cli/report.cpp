@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -165,7 +166,9 @@ Json to_json(const Record& record) {
   json["mesh"] = to_json(record.mesh);
   json["ms"] = ms_json(record);
   if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
-  json["memory"] = {{"host_peak_bytes", record.host_peak_bytes}, {"device_peak_bytes", record.run.device_peak_bytes}};
+  const std::int64_t before = record.normals ? record.normals->device_peak_bytes : 0;
+  json["memory"] = {{"host_peak_bytes", record.host_peak_bytes},
+                    {"device_peak_bytes", std::max(before, record.run.device_peak_bytes)}};
   return json;
 }
 

@@ -76,10 +76,10 @@ class NormalEstimator {
   NormalEstimator& operator=(NormalEstimator&&) noexcept;
 
   /// Gives `cloud` outward unit normals; positions and other attributes stay. Given normals that are kept stay as they
-  /// are. Every point gets one, strays too. About 800 bytes of the device's memory a point, octree and trial fields
-  /// included. Sources: docs/algorithm.md, section 19. Deterministic: the same bytes for any thread count, any order of
-  /// the points (points alike in position and normal may be exchanged), CPU or GPU, unless NormalOptions::time_limit_s
-  /// cuts it short. O(n log n), and about 4 solves as Reconstructor's at a depth of log4(n / 3).
+  /// are. Every point gets one, strays too. Memory: estimate_normals_device_bytes, 370 to 1200 bytes a point. Sources:
+  /// docs/algorithm.md, section 19. Deterministic: the same bytes for any thread count, any order of the points (points
+  /// alike in position and normal may be exchanged), CPU or GPU, unless NormalOptions::time_limit_s cuts it short. O(n
+  /// log n), and about 4 solves as Reconstructor's at a depth of log4(n / 1.5).
   /// @throws Error usage (an option out of range; sensor without one), no_normals (repair without normals),
   ///         invalid_input (points or normals that are not finite), empty_result (fewer than 3 points, or all at one
   ///         place), over_limit, interrupted
@@ -93,6 +93,10 @@ class NormalEstimator {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Device memory that NormalEstimator::orient takes for `cloud`, bytes: from what it measures
+/// (NormalReport::device_peak_bytes) to 1.6 times that. Host, time and memory as estimate_device_bytes.
+std::int64_t estimate_normals_device_bytes(const Cloud& cloud, int threads = 0);
 
 /// @throws Error usage if an option is out of range
 void validate(const NormalOptions& options);

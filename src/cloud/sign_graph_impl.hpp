@@ -213,13 +213,13 @@ struct WriteLinks {
   LinkedLines lines;
   ArrayView<const std::int32_t> labels, signs, links;
   ArrayView<std::uint64_t> pairs;
-  ArrayView<PatchVotes> votes;
+  ArrayView<std::int16_t> votes;
   PSK_HD void operator()(std::int64_t m) const {
     const std::int64_t i = links[m] / kLinks;
     const std::int32_t j = lines.ids[i * kNeighbours + links[m] % kLinks];
     const std::int64_t vote = vote_of(lines, i, j) * signs[i] * signs[j];
     pairs[m] = pair_of(labels[i], labels[j]);
-    votes[m] = {vote, size_of(vote), 1};
+    votes[m] = static_cast<std::int16_t>(vote);
   }
 };
 
@@ -230,41 +230,45 @@ struct Pack {
   ArrayView<std::uint64_t> keys;
   PSK_HD void operator()(std::int64_t m) const { keys[m] = (pairs[m] >> 32) << bits | (pairs[m] & 0xffffffff); }
 };
+PSK_HD inline PatchVotes to_votes(const PatchVotes& votes) { return votes; }
+PSK_HD inline PatchVotes to_votes(std::int16_t vote) { return {vote, size_of(vote), 1}; }
+
+template <class Vote>
 struct SumRuns {
   int bits;
   ArrayView<const std::uint64_t> keys;
   ArrayView<const std::int32_t> starts, order;
-  ArrayView<const PatchVotes> votes;
+  ArrayView<const Vote> votes;
   ArrayView<std::uint64_t> pairs_out;
   ArrayView<PatchVotes> votes_out;
   PSK_HD void operator()(std::int64_t r) const {
     const std::int64_t last = r + 1 < starts.size ? starts[r + 1] : keys.size;
     PatchVotes sum;
-    for (std::int64_t m = starts[r]; m < last; ++m) sum = sum + votes[order[m]];
+    for (std::int64_t m = starts[r]; m < last; ++m) sum = sum + to_votes(votes[order[m]]);
     const std::uint64_t key = keys[starts[r]];
     pairs_out[r] = (key >> bits) << 32 | (key & ((std::uint64_t{1} << bits) - 1));
     votes_out[r] = sum;
   }
 };
 
-/// One entry for every pair, ascending.
-template <exec::Space Exec>
-void sum_pairs(Exec& ex, std::int32_t count, exec::Buffer<std::uint64_t>& pairs, exec::Buffer<PatchVotes>& votes) {
+/// One entry for every pair, ascending, and the sums of their votes. @param votes  PatchVotes, or those of single links
+template <exec::Space Exec, class Vote>
+exec::Buffer<PatchVotes> sum_pairs(Exec& ex, std::int32_t count, exec::Buffer<std::uint64_t>& pairs,
+                                   const exec::Buffer<Vote>& votes) {
   int bits = 1;
   while (bits < 31 && (std::int32_t{1} << bits) < count) ++bits;
   const std::int64_t m = pairs.size();
   auto keys = exec::make_buffer<std::uint64_t>(ex, m);
   for_each(ex, "normals.pairs", m, Pack{bits, pairs.cview(), keys.view()});
+  pairs.reset();
   exec::Buffer<std::int32_t> order = exec::iota(ex, m);
   sort_pairs(ex, "normals.pairs", keys, order, 2 * bits);
   const exec::Buffer<std::int32_t> starts = exec::run_starts(ex, "normals.pairs", keys.cview());
-  auto pairs_out = exec::make_buffer<std::uint64_t>(ex, starts.size());
-  auto votes_out = exec::make_buffer<PatchVotes>(ex, starts.size());
-  for_each(
-      ex, "normals.pairs", starts.size(),
-      SumRuns{bits, keys.cview(), starts.cview(), order.cview(), votes.cview(), pairs_out.view(), votes_out.view()});
-  pairs = std::move(pairs_out);
-  votes = std::move(votes_out);
+  pairs = exec::make_buffer<std::uint64_t>(ex, starts.size());
+  auto sums = exec::make_buffer<PatchVotes>(ex, starts.size());
+  for_each(ex, "normals.pairs", starts.size(),
+           SumRuns<Vote>{bits, keys.cview(), starts.cview(), order.cview(), votes.cview(), pairs.view(), sums.view()});
+  return sums;
 }
 
 /// Pairs that may merge, at both of their patches.
@@ -390,9 +394,8 @@ void apply(Exec& ex, const Joined& joined, SignPatches& patches) {
            RelabelPairs{kept.cview(), joined.labels.cview(), joined.signs.cview(), patches.pairs.cview(),
                         patches.votes.cview(), pairs.view(), votes.view()});
   patches.count = joined.count;
-  sum_pairs(ex, patches.count, pairs, votes);
+  patches.votes = sum_pairs(ex, patches.count, pairs, votes);
   patches.pairs = std::move(pairs);
-  patches.votes = std::move(votes);
 }
 
 /// A correlation of two values whose means are 0.
@@ -585,14 +588,14 @@ SignPatches start_patches(Exec& ex, const LinkedLines& lines, bool has_sides) {
   patches.sizes = exec::make_buffer<std::uint64_t>(ex, patches.count);
   exec::fill(ex, patches.sizes.view(), std::uint64_t{0});
   for_each(ex, "normals.sizes", n, CountSizes{patches.labels.cview(), {}, patches.sizes.data()});
-  const exec::Buffer<std::int32_t> links =
-      select(ex, "normals.links", n * kLinks, IsBetween{lines, patches.labels.cview()});
+  exec::Buffer<std::int32_t> links = select(ex, "normals.links", n * kLinks, IsBetween{lines, patches.labels.cview()});
   patches.pairs = exec::make_buffer<std::uint64_t>(ex, links.size());
-  patches.votes = exec::make_buffer<PatchVotes>(ex, links.size());
+  auto votes = exec::make_buffer<std::int16_t>(ex, links.size());
   for_each(ex, "normals.links", links.size(),
            WriteLinks{lines, patches.labels.cview(), patches.signs.cview(), links.cview(), patches.pairs.view(),
-                      patches.votes.view()});
-  sum_pairs(ex, patches.count, patches.pairs, patches.votes);
+                      votes.view()});
+  links.reset();
+  patches.votes = sum_pairs(ex, patches.count, patches.pairs, votes);
   return patches;
 }
 

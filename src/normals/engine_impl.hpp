@@ -127,8 +127,8 @@ inline std::string assumption(const NormalReport& report, bool is_certain) {
   }
   if (report.enclosing > kClosed) return "the points surround solids: normals point away from what they enclose";
   if (report.enclosing > kFlat)
-    return "the scan is open: normals point to the convex side, as if it bounded a solid; give the sensor's position if "
-           "it was inside";
+    return "the scan is open: normals point to the convex side, as if it bounded a solid; "
+           "if the sensor was inside, give its position";
   return "the points enclose nothing: which side is outside is a guess; give the sensor's position";
 }
 

@@ -1,6 +1,7 @@
 #include <pointskin/normals.hpp>
 
 #include <pointskin/error.hpp>
+#include <pointskin/reconstruct.hpp>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "normals/engine.hpp"
+#include "normals/trial_size.hpp"
 
 namespace pointskin {
 namespace {
@@ -109,6 +111,15 @@ void NormalEstimator::orient(Cloud& cloud, const NormalOptions& options) {
 
 const NormalReport& NormalEstimator::report() const { return impl_->report_; }
 const Device& NormalEstimator::device() const { return impl_->device_; }
+
+std::int64_t estimate_normals_device_bytes(const Cloud& cloud, int threads) {
+  constexpr std::int64_t kLinks = 540;   // a point, while patches are made: 370 to 500 measured
+  constexpr std::int64_t kBeside = 180;  // a point, beside a trial field: 100 to 130
+  Options trial;
+  trial.depth = detail::trial_depth(cloud.size());
+  trial.scale = detail::kTrialRoom;
+  return std::max(kLinks * cloud.size(), estimate_device_bytes(cloud, trial, threads) + kBeside * cloud.size());
+}
 
 void validate(const NormalOptions& options) {
   require(options.max_rounds >= 1 && options.max_rounds <= 1000, "option max-rounds must be in 1..1000");

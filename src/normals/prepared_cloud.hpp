@@ -12,6 +12,7 @@
 #include "cloud/double3.hpp"
 #include "exec/algorithms.hpp"
 #include "normals/engine.hpp"
+#include "normals/trial_size.hpp"
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
 #include "octree/strays.hpp"
@@ -31,9 +32,6 @@ struct PreparedCloud {
 };
 
 namespace prepare {
-
-/// Working cube / bounding cube: the trial field is 0 on the cube, which must not be near.
-inline constexpr double kRoom = 1.5;
 
 /// Into the cube: strays come to lie on its faces.
 struct ClampToCube {
@@ -60,16 +58,6 @@ exec::Buffer<Vec3f> upload_finite(Exec& ex, const std::vector<Vec3f>& values, co
     throw Error(ErrorCode::invalid_input,
                 std::to_string(bad) + " points have " + what + " that are not finite; leave them out");
   return out;
-}
-
-/// About 1.5 samples a cell of an even surface: the depth log4(n / 1.5), rounded. With twice as many, the smoothed
-/// normals of sheets two spacings apart overlap, and speak for equal sides.
-inline int depth_for(std::int64_t n) {
-  constexpr int kLeast = 4;
-  constexpr int kMost = 13;
-  int depth = kLeast;
-  while (depth < kMost && (std::int64_t{3} << 2 * depth) < n) ++depth;
-  return depth;
 }
 
 /// What is said of the side of one sample: towards its sensor.
@@ -135,7 +123,7 @@ PreparedCloud prepare_cloud(Exec& ex, const Cloud& cloud) {
   if (cloud.has_normals()) given = prepare::upload_finite(ex, cloud.normals, "normals");
   const octree::StrayPoints strays = octree::find_strays(ex, world.cview());
   out.strays = strays.size();
-  out.frame = octree::frame_around(strays.core, prepare::kRoom);
+  out.frame = octree::frame_around(strays.core, kTrialRoom);
   auto unit = exec::make_buffer<Vec3f>(ex, n);
   auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
   for_each(ex, "octree.unit", n, octree::ToUnit{out.frame, world.cview(), unit.view()});
@@ -152,7 +140,7 @@ PreparedCloud prepare_cloud(Exec& ex, const Cloud& cloud) {
     out.given = exec::make_buffer<Vec3f>(ex, n);
     exec::gather(ex, given.cview(), out.order.cview(), out.given.view());
   }
-  out.tree = octree::build_octree(ex, sorted.keys.cview(), prepare::depth_for(n));
+  out.tree = octree::build_octree(ex, sorted.keys.cview(), trial_depth(n));
   return out;
 }
 

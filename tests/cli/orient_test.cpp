@@ -138,6 +138,22 @@ TEST_F(OrientCommand, ReconstructEstimatesWhereItIsTold) {
                  "--estimate-normals");
 }
 
+TEST_F(OrientCommand, ReconstructCountsTheMemoryOfNormals) {
+  const auto with = [&](Args more) {
+    Args args = {"reconstruct", bare_, "-o", output_, "--depth", "4", "--estimate-normals", "--device", "cpu"};
+    args.insert(args.end(), more.begin(), more.end());
+    return pointskin_run(args);
+  };
+  const std::int64_t estimate = bytes_after("with the cloud", with({"--dry-run"}).out);
+  ASSERT_GT(estimate, 0);
+  EXPECT_EQ(with({"--max-memory", std::to_string(estimate), "--report", report_}).exit_code, 0);
+  const Json report = report_against("report.schema.json");
+  EXPECT_GE(report["memory"]["device_peak_bytes"].get<std::int64_t>(), 400 * 4000);
+  EXPECT_LE(report["memory"]["device_peak_bytes"].get<std::int64_t>(), estimate);
+  std::filesystem::remove(output_);
+  expect_failure(with({"--max-memory", std::to_string(estimate - 1)}), 6, "--max-memory");
+}
+
 TEST_F(OrientCommand, ReconstructRepairsGivenNormals) {
   ASSERT_EQ(pointskin_run({"reconstruct", wrong_, "-o", output_, "--depth", "5", "--estimate-normals", "-q"}).exit_code,
             0);

@@ -178,4 +178,11 @@ bool is_one_error_line(const std::string& text) {
   return text.starts_with("pointskin: ") && text.find('\n') == text.size() - 1;
 }
 
+std::int64_t bytes_after(const std::string& words, const std::string& text) {
+  const std::size_t first = text.find(words);
+  const std::size_t open = text.find('(', first);
+  if (first == std::string::npos || open == std::string::npos) return 0;
+  return std::stoll(text.substr(open + 1));
+}
+
 }  // namespace pointskin::test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -48,5 +49,8 @@ void expect_error(const Result& result, int code, const std::string& part);
 
 /// True if `text` is exactly one line that starts with "pointskin: ".
 bool is_one_error_line(const std::string& text);
+
+/// The bytes in brackets behind `words` in what a dry run prints; 0 if there are none.
+std::int64_t bytes_after(const std::string& words, const std::string& text);
 
 }  // namespace pointskin::test

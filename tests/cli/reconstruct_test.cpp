@@ -259,14 +259,6 @@ TEST_F(ReconstructCommand, DryRunPrintsTheEstimateAndWritesNothing) {
   EXPECT_EQ(to_stdout.out, "");
 }
 
-/// The bytes in brackets after `words` in what a dry run prints; 0: there are none.
-std::int64_t bytes_after(const std::string& words, const std::string& text) {
-  const std::size_t first = text.find(words);
-  const std::size_t open = text.find('(', first);
-  if (first == std::string::npos || open == std::string::npos) return 0;
-  return std::stoll(text.substr(open + 1));
-}
-
 TEST_F(ReconstructCommand, DryRunPrintsThePeakThatTheReportMeasures) {
   const std::int64_t estimate = bytes_after("estimate", reconstruct({"--dry-run"}).out);
   const std::string report = folder_ / "report.json";

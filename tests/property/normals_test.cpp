@@ -154,6 +154,17 @@ TEST(Normals, ThatAreRightStayRightOnThinSheets) {
   }
 }
 
+TEST(Normals, TakeNoMoreMemoryThanEstimated) {
+  for (const Named& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    Cloud cloud = without_normals(shape.cloud);
+    const auto estimate = static_cast<double>(estimate_normals_device_bytes(cloud));
+    const auto peak = static_cast<double>(orient(cloud).device_peak_bytes);
+    EXPECT_LE(peak, estimate);
+    EXPECT_GE(1.7 * peak, estimate);
+  }
+}
+
 TEST(Normals, ThatAreRightStayByteForByte) {
   const Cloud truth = test::torus_cloud(10'000, 11);
   Cloud cloud = truth;

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cloud/double3.hpp"
 #include "cloud/rotation.hpp"
 #include "core/array_view.hpp"
+#include "core/double3.hpp"
 
 namespace pointskin::cloud {
 

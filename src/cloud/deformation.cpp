@@ -37,7 +37,7 @@ double length_of(const Vec3d& v) { return std::hypot(v[0], v[1], v[2]); }
 
 /// Determinant of three vectors over the product of their lengths.
 double independence(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const double volume = cloud::dot(cloud::to_double(a), cloud::cross(cloud::to_double(b), cloud::to_double(c)));
+  const double volume = dot(to_double(a), cross(to_double(b), to_double(c)));
   const double lengths = length_of(a) * length_of(b) * length_of(c);
   return lengths > 0 ? volume / lengths : 0;
 }
@@ -128,10 +128,10 @@ struct ScaleTransform {
     if (parts.identity) return map;
     const cloud::HandleData& data = parts.handles.front();
     const cloud::Rotation rotation(data.rotation * share);
-    const auto image = [&](const cloud::Double3& axis) { return rotation * (axis + data.stretch * axis * share); };
-    const cloud::Matrix3 linear{image({1, 0, 0}), image({0, 1, 0}), image({0, 0, 1})};
-    const cloud::Double3 pivot = cloud::to_double(map.pivot);
-    const cloud::Double3 shift = data.translation * share + pivot - linear * pivot;
+    const auto image = [&](const Double3& axis) { return rotation * (axis + data.stretch * axis * share); };
+    const Matrix3 linear{image({1, 0, 0}), image({0, 1, 0}), image({0, 0, 1})};
+    const Double3 pivot = to_double(map.pivot);
+    const Double3 shift = data.translation * share + pivot - linear * pivot;
     map.matrix = {linear.x.x, linear.y.x, linear.z.x, shift.x,    linear.x.y, linear.y.y,
                   linear.z.y, shift.y,    linear.x.z, linear.y.z, linear.z.z, shift.z};
     return map;

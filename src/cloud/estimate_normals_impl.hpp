@@ -3,11 +3,11 @@
 #include <cmath>
 #include <utility>
 
-#include "cloud/double3.hpp"
-#include "cloud/eigen3.hpp"
 #include "cloud/estimate_normals.hpp"
 #include "cloud/neighbours_impl.hpp"
 #include "cloud/select_nth.hpp"
+#include "core/double3.hpp"
+#include "core/eigen3.hpp"
 #include "exec/algorithms.hpp"
 
 namespace pointskin::cloud {
@@ -67,13 +67,7 @@ PSK_HD void fit_plane(const Neighbourhood<kMost>& points, const double* weight, 
   Symmetric3 m;
   for (int j = 0; j < points.count; ++j) {
     const Double3 d = points.at[j] - plane.centre;
-    const double w = weight[j] / sum;
-    m.xx += w * d.x * d.x;
-    m.yy += w * d.y * d.y;
-    m.zz += w * d.z * d.z;
-    m.yz += w * d.y * d.z;
-    m.xz += w * d.x * d.z;
-    m.xy += w * d.x * d.y;
+    m = m + outer(d) * (weight[j] / sum);
   }
   plane.axes = eigen_of(m);
 }

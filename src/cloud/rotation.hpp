@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cloud/double3.hpp"
+#include "core/double3.hpp"
 
 namespace pointskin::cloud {
 

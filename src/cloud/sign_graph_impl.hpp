@@ -8,9 +8,9 @@
 #include <limits>
 #include <utility>
 
-#include "cloud/double3.hpp"
 #include "cloud/neighbours.hpp"
 #include "cloud/sign_graph.hpp"
+#include "core/double3.hpp"
 #include "exec/algorithms.hpp"
 #include "exec/atomic.hpp"
 

@@ -154,7 +154,7 @@ class DeformOn final : public DeformEngine {
     PhaseClock clock(*ex_);
     const exec::Buffer<cloud::HandleData> handles = on_device(prepared.handles);
     const exec::Buffer<cloud::LatticeData> lattices = on_device(prepared.lattices);
-    const exec::Buffer<cloud::Double3> moves = on_device(prepared.moves);
+    const exec::Buffer<Double3> moves = on_device(prepared.moves);
     find_chosen(prepared);
     cloud::MapView map{handles.cview(), lattices.cview(), moves.cview(), {}, 0};
 

@@ -35,51 +35,6 @@ struct Ellipsoid {
   float weight = 0;
 };
 
-/// Eigenvalues of a symmetric matrix and, in the columns of `vectors`, what belongs to them. In no order.
-struct Eigen3 {
-  double values[3];
-  double vectors[3][3];
-};
-
-/// Cyclic Jacobi with a fixed number of sweeps: to double precision, in + - * / and square roots.
-/// Source: Golub & Van Loan, "Matrix Computations", 4th ed., 2013, section 8.5.
-PSK_HD inline Eigen3 eigen_of(double (&a)[3][3]) {
-  constexpr int kSweeps = 6;
-  Eigen3 e{{0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  for (int i = 0; i < 3 * kSweeps; ++i) {
-    const int p = i % 3 == 2 ? 1 : 0;
-    const int q = i % 3 == 0 ? 1 : 2;
-    if (a[p][q] == 0) continue;
-    const double tau = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-    const double size = tau < 0 ? -tau : tau;
-    const double root = 1 / (size + std::sqrt(1 + tau * tau));
-    const double t = tau < 0 ? -root : root;
-    const double c = 1 / std::sqrt(1 + t * t);
-    const double s = t * c;
-    for (int k = 0; k < 3; ++k) {
-      const double kp = a[k][p];
-      const double kq = a[k][q];
-      a[k][p] = c * kp - s * kq;
-      a[k][q] = s * kp + c * kq;
-    }
-    for (int k = 0; k < 3; ++k) {
-      const double pk = a[p][k];
-      const double qk = a[q][k];
-      a[p][k] = c * pk - s * qk;
-      a[q][k] = s * pk + c * qk;
-    }
-    a[p][q] = a[q][p] = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double kp = e.vectors[k][p];
-      const double kq = e.vectors[k][q];
-      e.vectors[k][p] = c * kp - s * kq;
-      e.vectors[k][q] = s * kp + c * kq;
-    }
-  }
-  for (int k = 0; k < 3; ++k) e.values[k] = a[k][k];
-  return e;
-}
-
 /// The field as kernels see it, over centres in the unit cube.
 struct AnisotropicField {
   ParticleTreeView tree;             ///< of the centres

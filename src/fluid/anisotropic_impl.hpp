@@ -1,11 +1,15 @@
 #pragma once
 
+#include "core/double3.hpp"
+#include "core/eigen3.hpp"
 #include "exec/algorithms.hpp"
 #include "fluid/anisotropic.hpp"
 #include "fluid/particle_tree_impl.hpp"
 
 namespace pointskin::fluid {
 namespace anisotropic {
+
+using Covariance = pointskin::Symmetric3;
 
 struct FindEllipsoid {
   ParticleTreeView tree;
@@ -18,42 +22,33 @@ struct FindEllipsoid {
   /// Weighted sums over the neighbours, relative to the particle, in R.
   struct Sums {
     double weight = 0;
-    double mean[3] = {0, 0, 0};
-    double products[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    Double3 mean;
+    Covariance products;
     int others = 0;
   };
 
   PSK_HD void operator()(std::int64_t i) const {
     const Sums sums = sum_up(i);
     const double inverse = 1 / sums.weight;
-    double covariance[3][3];
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        covariance[a][b] = inverse * sums.products[a][b] - inverse * inverse * sums.mean[a] * sums.mean[b];
-    const Vec3f p = positions[i];
-    const double step = kTowardsMean * inverse * radius;
-    centres[i] = {static_cast<float>(p.x + step * sums.mean[0]), static_cast<float>(p.y + step * sums.mean[1]),
-                  static_cast<float>(p.z + step * sums.mean[2])};
+    const Double3 mean = sums.mean * inverse;
+    centres[i] = to_float(to_double(positions[i]) + mean * (kTowardsMean * radius));
+    const Covariance covariance = sums.products * inverse + outer(mean) * -1.0;
     ellipsoids[i] = sums.others <= kFewNeighbours ? ball() : stretched(covariance);
   }
 
   [[nodiscard]] PSK_HD Sums sum_up(std::int64_t i) const {
-    const Vec3f p = positions[i];
+    const Double3 p = to_double(positions[i]);
     const double inverse = 1 / static_cast<double>(radius);
     Sums sums;
     for_each_neighbour(tree, tree.cell[i], [&](std::int32_t j) {
-      const Vec3f n = positions[j];
-      const double d[3] = {(static_cast<double>(n.x) - p.x) * inverse, (static_cast<double>(n.y) - p.y) * inverse,
-                           (static_cast<double>(n.z) - p.z) * inverse};
-      const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      const Double3 d = (to_double(positions[j]) - p) * inverse;
+      const double squared = dot(d, d);
       if (!(squared < 1)) return;
       const double w = 1 - squared * std::sqrt(squared);
       sums.weight += w;
       sums.others += j != i ? 1 : 0;
-      for (int a = 0; a < 3; ++a) {
-        sums.mean[a] += w * d[a];
-        for (int b = 0; b < 3; ++b) sums.products[a][b] += w * d[a] * d[b];
-      }
+      sums.mean = sums.mean + d * w;
+      sums.products = sums.products + outer(d) * w;
     });
     return sums;
   }
@@ -69,23 +64,21 @@ struct FindEllipsoid {
     return {kInverse, 0, 0, kInverse, 0, kInverse, weight_of(kBallOfFew * kBallOfFew * kBallOfFew)};
   }
 
-  [[nodiscard]] PSK_HD Ellipsoid stretched(double (&covariance)[3][3]) const {
+  [[nodiscard]] PSK_HD Ellipsoid stretched(const Covariance& covariance) const {
     const Eigen3 e = eigen_of(covariance);
-    double largest = e.values[0] > e.values[1] ? e.values[0] : e.values[1];
-    largest = e.values[2] > largest ? e.values[2] : largest;
+    const double largest = e.values[2];
     if (!(largest > 0)) return ball();  // all at one place
-    double g[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    Covariance g;
     double product = 1;
     for (int k = 0; k < 3; ++k) {
       const double limited = e.values[k] > largest / kLargestStretch ? e.values[k] : largest / kLargestStretch;
       const double scaled = limited / kBulkEigenvalue;
       const double half_axis = scaled < kLeast ? kLeast : scaled < 1 ? scaled : 1.0;
       product *= half_axis;
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) g[a][b] += e.vectors[a][k] * e.vectors[b][k] / half_axis;
+      g = g + outer(e.vectors[k]) * (1 / half_axis);
     }
-    const auto f = [&](int a, int b) { return static_cast<float>(g[a][b]); };
-    return {f(0, 0), f(0, 1), f(0, 2), f(1, 1), f(1, 2), f(2, 2), weight_of(product)};
+    const auto f = [](double value) { return static_cast<float>(value); };
+    return {f(g.xx), f(g.xy), f(g.xz), f(g.yy), f(g.yz), f(g.zz), weight_of(product)};
   }
   /// Half axes are never shorter: particles crowded at one place are no needles of infinite density.
   static constexpr double kLeast = 0.125;

@@ -38,9 +38,9 @@ struct WriteNormals {
     Fate fate = estimated;
     if (!given.empty()) {
       const Vec3f g = given[i];
-      const cloud::Double3 exact = cloud::to_double(g);
-      const double squared = cloud::dot(exact, exact);
-      const double along = cloud::dot(exact, cloud::to_double(result));
+      const Double3 exact = to_double(g);
+      const double squared = dot(exact, exact);
+      const double along = dot(exact, to_double(result));
       fate = replaced;
       if (squared > 0 && along * along >= least_cosine_squared * squared) {
         fate = along < 0 ? flipped : kept;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cloud/double3.hpp"
 #include "core/array_view.hpp"
+#include "core/double3.hpp"
 #include "exec/atomic.hpp"
 #include "normals/trial_field.hpp"
 
@@ -52,7 +52,7 @@ struct MeasureSets {
     const std::int32_t set = sets[labels[i]];
     if (set < 0) return;
     const AtSample at = trial(positions[i]);
-    const double along = cloud::dot(cloud::to_double(lines[i]), cloud::to_double(at.outward)) * signs[i];
+    const double along = dot(to_double(lines[i]), to_double(at.outward)) * signs[i];
     const double area = areas[i];
     exec::add(sums + kSums * set, fixed_point(area));
     exec::add(sums + kSums * set + 1, fixed_point(area * static_cast<double>(at.value)));

@@ -19,7 +19,6 @@
 namespace pointskin {
 namespace {
 
-using cloud::Double3;
 using cloud::Mapped;
 using test::Random;
 
@@ -60,7 +59,7 @@ void expect_jacobian(const Deformation& deformation, std::uint64_t seed) {
   constexpr double kStep = 1e-5;
   for (int i = 0; i < 200; ++i) {
     const Double3 x = random_point(random);
-    const cloud::Matrix3 jacobian = map(x).jacobian;
+    const Matrix3 jacobian = map(x).jacobian;
     const auto slope = [&](const Double3& step) {
       return (map(x + step).position - map(x - step).position) * (0.5 / kStep);
     };
@@ -92,9 +91,9 @@ TEST(PolarParts, GiveBackTheMatrixTheyWereMadeFrom) {
   Random random(11);
   for (int i = 0; i < 100; ++i) {
     const Vec3d axis = random.direction();
-    const cloud::Rotation rotation(cloud::to_double(axis) * random.in(-3.1, 3.1));
-    const cloud::Symmetric3 e{random.in(-0.5, 2),   random.in(-0.5, 2),   random.in(-0.5, 2),
-                              random.in(-0.1, 0.1), random.in(-0.1, 0.1), random.in(-0.1, 0.1)};
+    const cloud::Rotation rotation(to_double(axis) * random.in(-3.1, 3.1));
+    const Symmetric3 e{random.in(-0.5, 2),   random.in(-0.5, 2),   random.in(-0.5, 2),
+                       random.in(-0.1, 0.1), random.in(-0.1, 0.1), random.in(-0.1, 0.1)};
     const auto image = [&](const Double3& v) { return rotation * (v + e * v); };
     const Double3 x = image({1, 0, 0});
     const Double3 y = image({0, 1, 0});
@@ -150,7 +149,7 @@ TEST(Handles, WithOneTransformMoveEverythingByIt) {
   for (int i = 0; i < 100; ++i) {
     const Double3 x = random_point(random);
     expect_near(three(x).position, one(x).position, 1e-13);
-    const cloud::Matrix3 j = three(x).jacobian;
+    const Matrix3 j = three(x).jacobian;
     EXPECT_NEAR(dot(j.x, cross(j.y, j.z)), 1, 1e-12);
     EXPECT_NEAR(dot(j.x, j.y), 0, 1e-12);
   }
@@ -221,7 +220,7 @@ TEST(Lattices, ReproduceAffineMapsInsideAndOut) {
   for (int i = 0; i < 100; ++i) {
     const Double3 x = random_point(random);
     const Vec3d expected = affine({x.x, x.y, x.z});
-    expect_near(map(x).position, cloud::to_double(expected), 1e-12);
+    expect_near(map(x).position, to_double(expected), 1e-12);
   }
 }
 

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "cloud/eigen3.hpp"
 #include "cloud/estimate_normals.hpp"
 #include "cloud/neighbours.hpp"
 #include "cloud/select_nth.hpp"
@@ -108,31 +107,6 @@ TEST(SelectNth, FindsWhatSortingPutsThere) {
       EXPECT_EQ(cloud::select_nth(mixed.data(), count, place), sorted[static_cast<std::size_t>(place)]);
       std::sort(mixed.begin(), mixed.end());
       EXPECT_EQ(mixed, sorted) << "a value was lost";
-    }
-  }
-}
-
-TEST(Eigen3, GivesTheAxesOfARotatedEllipsoid) {
-  test::Random random(9);
-  for (int i = 0; i < 200; ++i) {
-    // m = sum of values times outer products of an orthonormal frame
-    const Vec3d a = random.direction();
-    const cloud::Double3 u{a[0], a[1], a[2]};
-    const Vec3d b = random.direction();
-    cloud::Double3 v = cloud::cross(u, {b[0], b[1], b[2]});
-    v = v * (1 / std::sqrt(cloud::dot(v, v)));
-    const cloud::Double3 w = cloud::cross(u, v);
-    const double values[3] = {random.in(0, 1), random.in(1.1, 2), random.in(2.1, 3)};
-    cloud::Symmetric3 m;
-    const cloud::Double3 axes[3] = {u, v, w};
-    for (int k = 0; k < 3; ++k) {
-      const cloud::Double3& q = axes[k];
-      m = m + cloud::Symmetric3{q.x * q.x, q.y * q.y, q.z * q.z, q.y * q.z, q.x * q.z, q.x * q.y} * values[k];
-    }
-    const cloud::Eigen3 eigen = cloud::eigen_of(m);
-    for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(eigen.values[k], values[k], 1e-12);
-      EXPECT_NEAR(std::abs(cloud::dot(eigen.vectors[k], axes[k])), 1, 1e-12);
     }
   }
 }

@@ -98,29 +98,6 @@ TEST(FluidBand, LosesNoCrossingOfEllipsoids) {
     }
 }
 
-TEST(Eigenvalues, ComeWithOrthonormalVectorsThatGiveTheMatrixBack) {
-  Random random(kSeed);
-  for (int trial = 0; trial < 500; ++trial) {
-    double m[3][3];
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b <= a; ++b) m[a][b] = m[b][a] = trial % 3 == 0 && a != b ? 0 : random.in(-1, 1);
-    double copy[3][3];
-    std::copy(&m[0][0], &m[0][0] + 9, &copy[0][0]);
-    const fluid::Eigen3 e = fluid::eigen_of(copy);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) {
-        double back = 0;
-        double dot = 0;
-        for (int k = 0; k < 3; ++k) {
-          back += e.values[k] * e.vectors[a][k] * e.vectors[b][k];
-          dot += e.vectors[k][a] * e.vectors[k][b];
-        }
-        ASSERT_NEAR(back, m[a][b], 1e-12);
-        ASSERT_NEAR(dot, a == b ? 1 : 0, 1e-12);
-      }
-  }
-}
-
 TEST(FluidBand, HoldsTheFieldsValuesBitForBit) {
   exec::Cpu ex(2);
   for (const NamedParticles& frame : particle_frames(kSeed)) {

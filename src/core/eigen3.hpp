@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "cloud/double3.hpp"
+#include "core/double3.hpp"
 
-namespace pointskin::cloud {
+namespace pointskin {
 
 /// Eigenvalues, ascending, and their unit eigenvectors.
 struct Eigen3 {
@@ -81,4 +81,4 @@ PSK_HD inline Eigen3 eigen_of(const Symmetric3& m) {
   return out;
 }
 
-}  // namespace pointskin::cloud
+}  // namespace pointskin

@@ -5,7 +5,7 @@
 
 #include "core/host_device.hpp"
 
-namespace pointskin::cloud {
+namespace pointskin {
 
 struct Double3 {
   double x = 0, y = 0, z = 0;
@@ -58,9 +58,13 @@ PSK_HD inline Symmetric3 operator+(const Symmetric3& a, const Symmetric3& b) {
 PSK_HD inline Symmetric3 operator*(const Symmetric3& a, double s) {
   return {a.xx * s, a.yy * s, a.zz * s, a.yz * s, a.xz * s, a.xy * s};
 }
+/// v v^T.
+PSK_HD inline Symmetric3 outer(const Double3& v) {
+  return {v.x * v.x, v.y * v.y, v.z * v.z, v.y * v.z, v.x * v.z, v.x * v.y};
+}
 PSK_HD inline Double3 operator*(const Symmetric3& m, const Double3& v) {
   return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
           m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
 
-}  // namespace pointskin::cloud
+}  // namespace pointskin

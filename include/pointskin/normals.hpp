@@ -95,7 +95,8 @@ class NormalEstimator {
 };
 
 /// Device memory that NormalEstimator::orient takes for `cloud`, bytes: from what it measures
-/// (NormalReport::device_peak_bytes) to 1.6 times that. Host, time and memory as estimate_device_bytes.
+/// (NormalReport::device_peak_bytes) to 1.6 times that. Positions must be finite. Host, time, memory and errors as
+/// estimate_device_bytes.
 std::int64_t estimate_normals_device_bytes(const Cloud& cloud, int threads = 0);
 
 /// @throws Error usage if an option is out of range

@@ -3,7 +3,6 @@
 
 namespace pointskin::cloud {
 
-template LikelySigns spread_evidence(exec::Cpu&, const LinkedLines&, ArrayView<const std::int32_t>);
 template SignPatches start_patches(exec::Cpu&, const LinkedLines&, bool);
 template void merge_patches(exec::Cpu&, const MergeRule&, SignPatches&);
 template void measure_agreement(exec::Cpu&, const LinkedLines&, ArrayView<const std::int32_t>, ArrayView<float>);

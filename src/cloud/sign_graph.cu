@@ -3,7 +3,6 @@
 
 namespace pointskin::cloud {
 
-template LikelySigns spread_evidence(exec::Cuda&, const LinkedLines&, ArrayView<const std::int32_t>);
 template SignPatches start_patches(exec::Cuda&, const LinkedLines&, bool);
 template void merge_patches(exec::Cuda&, const MergeRule&, SignPatches&);
 template void measure_agreement(exec::Cuda&, const LinkedLines&, ArrayView<const std::int32_t>, ArrayView<float>);

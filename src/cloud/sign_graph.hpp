@@ -1,46 +1,19 @@
 // Relative signs of normals: a graph of neighbours whose links vote for equal or opposite signs, merged from the surest
 // votes to the least sure.
-// Sources: Hoppe et al. 1992, section 3.2 (propagation along a spanning tree); Xie, Wang, Hua, Qin & Kaufman,
-// "Piecewise C1 continuous surface reconstruction of noisy point clouds via local implicit quadric regression", IEEE
-// Visualization 2003 (a neighbour's normal is the mirror image, so sharp edges do not turn it over); Schertler,
-// Savchynskyy & Gumhold, "Towards globally optimal normal orientations for large point clouds", CGF 36, 2017 (signed
-// graphs over patches); Boruvka, 1926. Differs: votes between two patches are summed before the next round, so that no
-// single link decides; all sums are integers (docs/decisions/0026-normals.md).
+// Sources: Hoppe et al. 1992, section 3.2 (propagation along a spanning tree); Schertler, Savchynskyy & Gumhold, "Towards
+// globally optimal normal orientations for large point clouds", CGF 36, 2017 (signed graphs over patches); Boruvka, 1926.
+// Differs: votes between two patches are summed before the next round, so that no single link decides; all sums are
+// integers (docs/decisions/0027-signs.md).
 #pragma once
 
 #include <cstdint>
 
-#include <pointskin/vector.hpp>
-
+#include "cloud/link_votes.hpp"
 #include "core/array_view.hpp"
-#include "core/host_device.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
 
 namespace pointskin::cloud {
-
-/// A vote of full weight.
-inline constexpr std::int64_t kFullVote = 1024;
-
-/// Samples in the order of the tree, and their neighbours (find_neighbours).
-struct LinkedLines {
-  ArrayView<const Vec3f> positions;   ///< in the unit cube
-  ArrayView<const Vec3f> normals;     ///< unit length, of any sign
-  ArrayView<const float> flatness;    ///< NormalLines::flatness
-  ArrayView<const float> noise;       ///< NormalLines::noise
-  ArrayView<const std::int32_t> ids;  ///< (n, kNeighbours)
-};
-
-/// Votes between two patches, of all links between them.
-struct PatchVotes {
-  std::int64_t net = 0;    ///< for equal signs minus for opposite ones
-  std::int64_t gross = 0;  ///< for either
-  std::int64_t count = 0;  ///< links
-
-  PSK_HD PatchVotes operator+(const PatchVotes& other) const {
-    return {net + other.net, gross + other.gross, count + other.count};
-  }
-};
 
 /// Points in patches: within one, signs are relative to each other.
 struct SignPatches {
@@ -60,20 +33,6 @@ struct MergeRule {
                            ///< borders whose links agree and are as good as others turn a large patch over; above 1
                            ///< none does
 };
-
-/// The likelier signs of single points.
-struct LikelySigns {
-  exec::Buffer<std::int32_t> signs;  ///< (n) 1 or -1; empty: the input says nothing of single points
-  double typical = 0;                ///< mean vote of all links, of kFullVote; infinite: signs are those of the input,
-                                     ///< which tells sheets apart that links do not
-};
-
-/// What is known of single points, averaged over links for a few rounds. How much a point's own evidence weighs beside
-/// its neighbours' follows from how often links contradict it, and each other.
-/// @param evidence  (n) 1, -1 or 0: which sign the input speaks for
-/// About 6 passes over the links. Up to 40 % of wrong signs; with more, neighbours say as much as chance.
-template <exec::Space Exec>
-LikelySigns spread_evidence(Exec& ex, const LinkedLines& lines, ArrayView<const std::int32_t> evidence);
 
 /// Every point a patch of its own, merged along its surest link.
 /// @param has_sides  normals have their likely signs: links that turn one of their ends over are left out

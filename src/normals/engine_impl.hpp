@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cloud/estimate_normals.hpp"
+#include "cloud/likely_signs.hpp"
 #include "cloud/neighbours.hpp"
 #include "exec/algorithms.hpp"
 #include "normals/engine.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cloud/estimate_normals.hpp"
+#include "cloud/likely_signs.hpp"
 #include "cloud/neighbours.hpp"
 #include "cloud/sign_graph.hpp"
 #include "exec/cpu_primitives.hpp"

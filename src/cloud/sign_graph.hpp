@@ -1,9 +1,9 @@
 // Relative signs of normals: a graph of neighbours whose links vote for equal or opposite signs, merged from the surest
 // votes to the least sure.
-// Sources: Hoppe et al. 1992, section 3.2 (propagation along a spanning tree); Schertler, Savchynskyy & Gumhold, "Towards
-// globally optimal normal orientations for large point clouds", CGF 36, 2017 (signed graphs over patches); Boruvka, 1926.
-// Differs: votes between two patches are summed before the next round, so that no single link decides; all sums are
-// integers (docs/decisions/0027-signs.md).
+// Sources: Hoppe et al. 1992, section 3.2 (propagation along a spanning tree); Schertler, Savchynskyy & Gumhold,
+// "Towards globally optimal normal orientations for large point clouds", CGF 36, 2017 (signed graphs over patches);
+// Boruvka, 1926. Differs: votes between two patches are summed before the next round, so that no single link decides;
+// all sums are integers (docs/decisions/0027-signs.md).
 #pragma once
 
 #include <cstdint>

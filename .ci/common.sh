@@ -1,15 +1,18 @@
-# shellcheck shell=bash disable=SC2034,SC2191
+# shellcheck shell=bash disable=SC2086
 # Shared by ./quickstart, ./check and .ci/run: packages, configuring, logs. Sourced, with the working folder at the root.
 
 step() { printf '==> %s\n' "$*"; }
 die() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
 
-# What each task needs: Debian packages, or COMMAND=PACKAGE where any provider of the command will do.
-packages_to_build=(g++=g++ cmake=cmake ninja=ninja-build libtbb-dev libpng-dev libfmt-dev libcli11-dev
-  nlohmann-json3-dev)
-packages_to_test=(libgtest-dev libbenchmark-dev python3=python3 node=nodejs npm=npm)
-packages_to_format=(clang-format=clang-format python3=python3)
-packages_to_lint=(clang-tidy=clang-tidy)
+# packages_to TASK...: what the tasks need, one a line: Debian packages, or COMMAND=PACKAGE where any provider of the command
+# will do. The list is .ci/packages.
+packages_to() {
+  local task
+  for task in "$@"; do
+    grep -q "^$task:" .ci/packages || die ".ci/packages has no line '$task:'"
+    sed -n "s/^$task: *//p" .ci/packages | tr -s ' ' '\n'
+  done
+}
 
 # missing_packages NEED...: prints the packages to install, one a line.
 missing_packages() {
@@ -28,10 +31,11 @@ as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
 }
 
-# install_packages NEED...: installs what is missing, and only that.
-install_packages() {
-  local missing
-  mapfile -t missing < <(missing_packages "$@")
+# install_packages_to TASK...: installs what is missing for these tasks, and only that.
+install_packages_to() {
+  local needs missing
+  needs=$(packages_to "$@")
+  mapfile -t missing < <(missing_packages $needs)
   [ ${#missing[@]} = 0 ] && return
   local advice="these Debian packages are missing: ${missing[*]}; install them with: apt-get install ${missing[*]}"
   command -v apt-get >/dev/null || die "$advice"

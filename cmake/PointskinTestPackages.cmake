@@ -1,0 +1,16 @@
+# What only the tests need. All of it is looked for before anything is said, so that a reader of the message installs once.
+set(missing)
+foreach(package IN ITEMS GTest:libgtest-dev Eigen3:libeigen3-dev Python3:python3)
+  string(REPLACE ":" ";" pair ${package})
+  list(GET pair 0 name)
+  list(GET pair 1 debian)
+  find_package(${name} QUIET)
+  if(NOT ${name}_FOUND)
+    list(APPEND missing ${debian})
+  endif()
+endforeach()
+if(missing)
+  list(JOIN missing " " missing)
+  message(FATAL_ERROR "The tests need these Debian packages: ${missing}. Install them (apt-get install ${missing}), let "
+    "./check do it, or build without tests: -DBUILD_TESTING=OFF")
+endif()

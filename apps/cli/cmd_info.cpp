@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
+#include <pointskin/reconstruct.hpp>
 
 #include "args.hpp"
 #include "commands.hpp"
@@ -59,15 +61,30 @@ Json strays_json(const Cloud& cloud) {
   return {{"count", strays.size()}, {"points", places}};
 }
 
-Json describe(const Cloud& cloud) {
+/// What depth the points support; null where they are at one place.
+Json suggestion_json(const Cloud& cloud, int threads) {
+  try {
+    const DepthSuggestion suggested = suggest_depth(cloud, {}, Device::cpu(threads));
+    return {{"depth", suggested.depth},
+            {"supported", suggested.supported},
+            {"spacing", suggested.spacing},
+            {"noise", suggested.noise}};
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::empty_result) throw;
+    return nullptr;
+  }
+}
+
+Json describe(const Cloud& cloud, int threads) {
   Json json = {{"kind", "cloud"}, {"points", cloud.size()}, {"dropped", cloud.dropped}};
   json["normals"] = cloud.has_normals();
   json["strays"] = strays_json(cloud);
   json.update(points_json(cloud.positions, cloud.origin, cloud.attributes));
+  json["suggestion"] = suggestion_json(cloud, threads);
   return json;
 }
 
-Json describe(const Mesh& mesh) {
+Json describe(const Mesh& mesh, int /*threads*/) {
   Json json = {{"kind", "mesh"}, {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}};
   json["normals"] = !mesh.normals.empty();
   json.update(points_json(mesh.vertices, mesh.origin, mesh.attributes));
@@ -106,6 +123,11 @@ std::string human_text(const Json& json) {
     line("strays", fmt::format("{}, the farthest at {}", json["strays"]["count"].get<std::int64_t>(),
                                vector_text(json["strays"]["points"][0])));
   line("spacing", fmt::format("{:.4g}", json["spacing"].get<double>()));
+  if (json.contains("suggestion") && !json["suggestion"].is_null()) {
+    const Json& suggested = json["suggestion"];
+    line("depth", fmt::format("{} suits (surface points {:.3g} apart, noise {:.3g})", suggested["depth"].get<int>(),
+                              suggested["spacing"].get<double>(), suggested["noise"].get<double>()));
+  }
   return text;
 }
 
@@ -114,15 +136,17 @@ int run(const InfoArgs& args) {
   const ReadOptions options{.shift = parse_shift(args.shift), .threads = args.threads};
   const std::variant<Cloud, Mesh> content = read_cloud_or_mesh(args.file, options);
   Json json = {{"version", 1}, {"command", "info"}, {"file", args.file}};
-  json.update(std::visit([](const auto& held) { return describe(held); }, content));
+  json.update(std::visit([&args](const auto& held) { return describe(held, args.threads); }, content));
   write_stdout(args.json ? json_text(json) : human_text(json));
   return 0;
 }
 
 constexpr char kFooter[] =
     "Prints counts, normals, attributes and their types, the bounding box in world coordinates, the origin that was\n"
-    "subtracted while reading, stray points far from all others (`reconstruct` leaves them out), and the spacing: the\n"
-    "median distance to the nearest neighbour, in world units.";
+    "subtracted while reading, stray points far from all others (`reconstruct` leaves them out), the spacing (the "
+    "median\n"
+    "distance to the nearest neighbour, in world units), and the depth that suits `reconstruct`: from the spacing of\n"
+    "points along the surface, their noise across it, and the memory of this machine.";
 
 }  // namespace
 

@@ -36,46 +36,34 @@ void check_files(const ReconstructArgs& args) {
   if (!args.report.empty()) check_replaceable(args.report);
 }
 
-/// @throws Error usage
-NormalOptions normal_options_of(const ReconstructArgs& args) {
-  NormalArgs normals = args.normals;
-  normals.method = args.estimate_normals;
-  return normal_options(normals, "--estimate-normals");
-}
-
 void warn_about_options(const ReconstructArgs& args) {
   if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
 }
 
-bool makes_normals(const ReconstructArgs& args) { return !args.estimate_normals.empty(); }
-
-/// Only what becomes part of the mesh.
-void drop_attributes(const ReconstructArgs& args, Cloud& cloud) {
-  if (!args.options.attributes && !args.colors) cloud.attributes.clear();
-  if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
-    print_warning("--colors: the points have no red, green or blue");
+/// Points without a normal get one.
+bool makes_normals(const Options& options) {
+  return options.point_normals == PointNormals::repair || options.point_normals == PointNormals::estimate;
 }
 
-/// Normals for the cloud, and then its attributes: they may say where points were seen from.
-void make_normals(const ReconstructArgs& args, Record& record, Cloud& cloud) {
-  NormalOptions options = normal_options_of(args);
-  options.confidence = false;
-  on_interrupt(OnInterrupt::remember);
-  record.normals = estimate_normals(cloud, options, record.device, args.quiet);
-  drop_attributes(args, cloud);
+/// Only what becomes part of the mesh, or says where points were seen from.
+void drop_attributes(const ReconstructArgs& args, Cloud& cloud) {
+  const bool tells_views = args.normals_policy != "given" && has_view_attributes(cloud);
+  if (!args.options.attributes && !args.colors && !tells_views) cloud.attributes.clear();
+  if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
+    print_warning("--colors: the points have no red, green or blue");
 }
 
 /// Reads, merges and cleans the input; fills in the counts.
 Cloud read_input(const ReconstructArgs& args, Record& record) {
   const Stopwatch watch;
   Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads},
-                            makes_normals(args) ? MissingNormals::allowed : MissingNormals::refused);
-  if (!makes_normals(args)) {
+                            makes_normals(record.options) ? MissingNormals::allowed : MissingNormals::refused);
+  if (!makes_normals(record.options)) {
     drop_unusable(cloud);
-    drop_attributes(args, cloud);
   } else if (cloud.dropped > 0) {
     print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
   }
+  drop_attributes(args, cloud);
   record.read_ms = watch.ms();
   record.dropped = cloud.dropped;
   record.points = cloud.size() + cloud.dropped;
@@ -114,8 +102,7 @@ struct Estimate {
 Estimate estimate_memory(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
   const Mesh* envelope = record.options.envelope.get();
   const std::int64_t shared = host_bytes(cloud) + (envelope != nullptr ? host_bytes(*envelope) : 0);
-  std::int64_t buffers = estimate_device_bytes(cloud, record.options, args.threads);
-  if (makes_normals(args)) buffers = std::max(buffers, estimate_normals_device_bytes(cloud, args.threads));
+  const std::int64_t buffers = estimate_device_bytes(cloud, record.options, args.threads);
   return {buffers, record.device.kind == DeviceKind::cpu ? shared : 0};
 }
 
@@ -152,15 +139,18 @@ void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Recor
 }
 
 /// The options of the report that the library does not know.
-nlohmann::ordered_json other_options(const ReconstructArgs& args) {
+nlohmann::ordered_json other_options(const ReconstructArgs& args, const Options& options) {
   nlohmann::ordered_json json = {{"device", args.device}, {"threads", args.threads}, {"shift", args.shift}};
   json["envelope"] = or_null(args.envelope);
-  if (makes_normals(args)) json["estimate_normals"] = to_json(normal_options_of(args));
+  if (makes_normals(options)) json["estimate_normals"] = to_json(options.normal_estimation);
   json["repeat"] = args.repeat;
   json["inputs"] = args.inputs;
   json["output"] = or_null(args.output);
   return json;
 }
+
+/// The depth is what was asked for: nothing needs to be said of it.
+bool chose_depth(const ReconstructArgs& args) { return args.depth_given || args.width_given; }
 
 /// Runs the reconstruction, with progress, and the repeated runs, without.
 Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
@@ -175,7 +165,9 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   Mesh mesh = reconstructor.reconstruct(cloud, options);
   line.clear();
   record.run = reconstructor.report();
-  if (record.run.strays > 0) print_warning(strays_text(record.run.strays, record.run.farthest_strays.front()));
+  for (const Warning& warning : record.run.warnings)
+    if (warning.kind != WarningKind::coarse_depth || !chose_depth(args)) print_warning(warning.text);
+  if (record.run.normals && !args.quiet) print_note(summary(*record.run.normals));
   if (mesh.triangles.empty()) throw Error(ErrorCode::empty_result, "the surface has no triangles");
   if (args.repeat > 0) {
     options.residuals = false;  // They cost time and are not part of the job.
@@ -194,11 +186,26 @@ void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record)
   record.write_ms = watch.ms();
 }
 
+/// The deepest that the points support and the memory holds.
+int choose_depth(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
+  const DepthSuggestion chosen = suggest_depth(cloud, record.options, record.device);
+  if (chosen.depth < chosen.supported)
+    print_warning(fmt::format("the memory holds depth {} only; the points hold detail for depth {}", chosen.depth,
+                              chosen.supported));
+  if (!args.quiet)
+    print_note(
+        fmt::format("depth {}: the points lie {:.3g} apart, noise {:.3g}", chosen.depth, chosen.spacing, chosen.noise));
+  return chosen.depth;
+}
+
 /// Settles what depends on the points.
 void settle_options(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   Options& options = record.options;
-  if (args.width_given) options.depth = depth_for_width(cube_world(cloud, options, args.threads), args.width_world);
-  record.other_options = other_options(args);
+  if (args.width_given)
+    options.depth = depth_for_width(cube_world(cloud, options, args.threads), args.width_world);
+  else if (options.depth == Options::kAutomaticDepth)
+    options.depth = choose_depth(args, cloud, record);
+  record.other_options = other_options(args, options);
 }
 
 int run(const ReconstructArgs& given) {
@@ -208,7 +215,6 @@ int run(const ReconstructArgs& given) {
   Record record;
   if (args.problems) record.command = "problems";
   record.options = library_options(args);
-  if (makes_normals(args)) normal_options_of(args);
   parse_shift(args.shift);
   check_files(args);
   record.device = args.chosen();
@@ -225,7 +231,6 @@ int run(const ReconstructArgs& given) {
   }
   if (args.dry_run) return 0;
 
-  if (makes_normals(args)) make_normals(args, record, cloud);
   on_interrupt(OnInterrupt::remember);
   const Mesh mesh = compute(args, cloud, record);
   cloud = Cloud();

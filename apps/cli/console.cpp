@@ -24,6 +24,12 @@ bool use_colour() {
   return stderr_is_terminal() && term != nullptr && std::string_view(term) != "dumb";
 }
 
+/// The program is one run of one command: what it has said is its own.
+std::vector<std::string>& warnings() {
+  static std::vector<std::string> all;
+  return all;
+}
+
 }  // namespace
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
@@ -49,7 +55,13 @@ void print_error(const std::string& story) {
   print_note(fmt::format("{} {}", name, one_line(story)));
 }
 
-void print_warning(const std::string& story) { print_note("pointskin: warning: " + one_line(story)); }
+void print_warning(const std::string& story) {
+  const std::string line = one_line(story);
+  warnings().push_back(line);
+  print_note("pointskin: warning: " + line);
+}
+
+const std::vector<std::string>& printed_warnings() { return warnings(); }
 
 void print_note(const std::string& text) {
   const std::string line = text + "\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace pointskin::cli {
 
@@ -11,8 +12,11 @@ bool stderr_is_terminal();
 /// Prints "pointskin: `story`" as exactly one line on stderr. The name is red on a terminal unless NO_COLOR is set.
 void print_error(const std::string& story);
 
-/// Prints "pointskin: warning: `story`" as one line on stderr.
+/// Prints "pointskin: warning: `story`" as one line on stderr, and remembers it.
 void print_warning(const std::string& story);
+
+/// The stories of all warnings printed so far, for reports.
+const std::vector<std::string>& printed_warnings();
 
 /// Prints `text` and a line break on stderr.
 void print_note(const std::string& text);

@@ -1,5 +1,7 @@
 #include "fit_args.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include <pointskin/error.hpp>
@@ -24,6 +26,22 @@ Boundary boundary_of(const std::string& name) {
   throw Error(ErrorCode::usage, fmt::format("--boundary: '{}' is not free, dirichlet or neumann", name));
 }
 
+/// "auto", or a whole number.
+int depth_of(const std::string& text) {
+  if (text == "auto") return Options::kAutomaticDepth;
+  const double value = parse_number(text).value_or(-1);
+  if (value >= 1 && value <= 20 && value == std::floor(value)) return static_cast<int>(value);
+  throw Error(ErrorCode::usage, fmt::format("--depth: '{}' is not a whole number from 1 to 20 or auto", text));
+}
+
+/// "auto", or a share.
+double trim_of(const std::string& text) {
+  if (text == "auto") return Options::kAutomaticTrim;
+  const double value = parse_number(text).value_or(-1);
+  if (value >= 0 && value < 1) return value;
+  throw Error(ErrorCode::usage, fmt::format("--trim: '{}' is not a number from 0 to below 1 or auto", text));
+}
+
 FieldKind field_of(const std::string& name) {
   if (name == "poisson") return FieldKind::poisson;
   if (name == "distance") return FieldKind::distance;
@@ -32,6 +50,7 @@ FieldKind field_of(const std::string& name) {
 
 Options with_words(const SolveArgs& args) {
   Options options = args.options;
+  options.depth = depth_of(args.depth);
   options.normals = !args.no_normals;
   options.boundary = boundary_of(args.boundary);
   return options;
@@ -53,7 +72,8 @@ void define_device_options(CLI::App& command, DeviceArgs& args) {
 
 void define_solve_options(CLI::App& command, SolveArgs& args) {
   Options& options = args.options;
-  add_surface_value(command, "--depth", options.depth, "octree depth D in levels, 1 to 20; cells are cube / 2^D wide")
+  add_surface_value(command, "--depth", args.depth,
+                    "octree depth D in levels, 1 to 20, or auto; cells are cube / 2^D wide")
       ->type_name("D")
       ->each([&args](const std::string&) { args.depth_given = true; });
   add_surface_value(command, "--screening", options.screening, "weight of the points, no unit, >= 0; 0: unscreened")
@@ -92,12 +112,17 @@ void define_fit_options(CLI::App& command, FitArgs& args) {
   add_surface_value(command, "--offset", options.offset,
                     "distance of the mesh from the surface, world units, > 0 outwards")
       ->type_name("D");
-  add_surface_value(command, "--trim", options.trim,
-                    "cut where samples end: share that counts as sparse, 0 (off) to below 1")
+  add_surface_value(command, "--trim", args.trim,
+                    "cut where samples end: share that counts as sparse, 0 (off) to below 1, or auto")
       ->type_name("Q");
   add_surface_value(command, "--island-ratio", options.island_ratio,
                     "trim: smallest piece, share of the area, 0 to below 1")
       ->type_name("R");
+  command.add_flag("--largest", options.largest, "keep only the connected piece with the largest area")
+      ->group(kSurfaceGroup);
+  add_surface_value(command, "--min-component", options.min_component,
+                    "leave out smaller pieces: triangles, or below 1 the share of the area; 0: none")
+      ->type_name("N|RATIO");
   command.add_flag("--density", options.density, "add the property density, points per world unit^2")
       ->group(kSurfaceGroup);
   command.add_flag("--weakness", options.weakness, "add the property weakness, 0 to 1: how doubtful the topology is")
@@ -116,6 +141,7 @@ Options solve_options(const SolveArgs& args) {
 
 Options fit_options(const FitArgs& args) {
   Options options = with_words(args);
+  options.trim = trim_of(args.trim);
   options.confidence = confidence_of(args.confidence);
   options.domain_faces = args.open ? DomainFaces::open : DomainFaces::closed;
   options.field = field_of(args.field);

@@ -21,6 +21,7 @@ struct DeviceArgs {
 /// How a field is solved for.
 struct SolveArgs {
   Options options;
+  std::string depth = "8";
   std::string boundary = "free";
   bool depth_given = false, no_normals = false;
 };
@@ -28,6 +29,7 @@ struct SolveArgs {
 /// And what is done with it then.
 struct FitArgs : SolveArgs {
   std::string field = "poisson";
+  std::string trim = "0";
   std::string confidence = "0";  ///< PoissonRecon's exponent of the normals' length: 0 or 1 here
   std::string envelope;          ///< empty: none
   bool open = false;

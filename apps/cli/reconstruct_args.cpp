@@ -29,10 +29,18 @@ void define_files(CLI::App& command, ReconstructArgs& args) {
 }
 
 void define_normals(CLI::App& command, ReconstructArgs& args) {
+  CLI::Option* policy =
+      command
+          .add_option("--normals", args.normals_policy,
+                      "given (as they are), auto (turned or repaired where clearly wrong), repair, estimate")
+          ->type_name("WHAT")
+          ->group(kNormalGroup)
+          ->capture_default_str();
   command
       .add_flag("--estimate-normals{auto}", args.estimate_normals,
-                "make or correct normals; =METHOD: auto, sensor, propagate, iterate, repair")
-      ->group(kNormalGroup);
+                "same as --normals estimate; =METHOD: auto, sensor, propagate, iterate, repair")
+      ->group(kNormalGroup)
+      ->excludes(policy);
   define_normal_options(command, args.normals);
 }
 
@@ -79,6 +87,22 @@ void define_poisson_recon_names(CLI::App& command, ReconstructArgs& args) {
       ->group(group);
 }
 
+PointNormals point_normals_of(const ReconstructArgs& args) {
+  if (!args.estimate_normals.empty()) return PointNormals::estimate;
+  for (const PointNormals policy :
+       {PointNormals::given, PointNormals::automatic, PointNormals::repair, PointNormals::estimate})
+    if (args.normals_policy == name_of(policy)) return policy;
+  throw Error(ErrorCode::usage,
+              fmt::format("--normals: '{}' is not given, auto, repair or estimate", args.normals_policy));
+}
+
+/// @throws Error usage
+NormalOptions normal_estimation_of(const ReconstructArgs& args) {
+  NormalArgs normals = args.normals;
+  if (!args.estimate_normals.empty()) normals.method = args.estimate_normals;
+  return normal_options(normals, "--estimate-normals");
+}
+
 }  // namespace
 
 void define_reconstruct_options(CLI::App& command, ReconstructArgs& args) {
@@ -100,6 +124,8 @@ Options library_options(const ReconstructArgs& args) {
   }
   Options options = fit_options(args);
   if (args.boundary_type != 0) options.boundary = args.boundary_type == 2 ? Boundary::dirichlet : Boundary::free;
+  options.point_normals = point_normals_of(args);
+  options.normal_estimation = normal_estimation_of(args);
   options.attributes = options.attributes || args.colors;
   options.weakness = options.weakness || args.problems;
   options.residuals = args.verbose || !args.report.empty();

@@ -20,7 +20,8 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   std::string report;                     ///< empty: none
   std::string shift = "auto";
   NormalArgs normals;
-  std::string estimate_normals;  ///< method; empty: the points have normals
+  std::string normals_policy = "auto";
+  std::string estimate_normals;  ///< method; empty: --normals counts
   std::string max_memory;        ///< empty: no limit
   int boundary_type = 0;         ///< PoissonRecon's number of the boundary; 0: none
   double width_world = 0;        ///< > 0: chooses the depth

@@ -21,6 +21,7 @@ std::int64_t used(const Record& record) { return record.points - record.dropped 
 
 Json input_json(const Record& record) {
   Json json = {{"points", record.points}, {"used", used(record)}, {"dropped", record.dropped}};
+  json["normals"] = name_of(record.run.normals_done);
   json["strays"] = {{"count", record.run.strays}, {"points", record.run.farthest_strays}};
   return json;
 }
@@ -45,7 +46,8 @@ Json solve_json(const Record& record) {
 }
 
 Json trim_json(const TrimReport& trim) {
-  return {{"density", trim.density},
+  return {{"quantile", trim.quantile},
+          {"density", trim.density},
           {"area_before", trim.area_before},
           {"area_removed", trim.area_removed},
           {"triangles_before", trim.triangles_before},
@@ -72,6 +74,12 @@ Json offset_json(const Record& record) {
           {"samples", offset.samples},
           {"band_cells", offset.band_cells},
           {"ms", offset.ms}};
+}
+
+Json pieces_json(const PiecesReport& pieces) {
+  return {{"pieces", pieces.pieces},
+          {"pieces_removed", pieces.pieces_removed},
+          {"triangles_removed", pieces.triangles_removed}};
 }
 
 Json problems_json(const std::vector<ProblemRegion>& problems) {
@@ -110,6 +118,8 @@ Json repeat_json(const std::vector<double>& values) {
 
 Json options_json(const Record& record) {
   Json json = to_json(record.options);
+  json["point_normals"] = name_of(record.options.point_normals);
+  if (record.options.trim == Options::kAutomaticTrim) json["trim"] = record.run.trim.quantile;
   json.update(record.other_options);
   return json;
 }
@@ -139,6 +149,8 @@ Json to_json(const Options& options) {
           {"offset", options.offset},
           {"trim", options.trim},
           {"island_ratio", options.island_ratio},
+          {"largest", options.largest},
+          {"min_component", options.min_component},
           {"keep_strays", options.keep_strays},
           {"max_memory_bytes", options.max_memory_bytes}};
 }
@@ -155,20 +167,20 @@ Json to_json(const Record& record) {
   json["device"] = to_json(record.device);
   json["input"] = input_json(record);
   json["options"] = options_json(record);
-  if (record.normals) json["normals"] = to_json(*record.normals);
+  json["warnings"] = printed_warnings();
+  if (record.run.normals) json["normals"] = to_json(*record.run.normals);
   json["octree"] = octree_json(record.run);
   json["solve"] = solve_json(record);
   json["isovalue"] = record.run.isovalue;
   if (record.options.envelope != nullptr) json["envelope"] = envelope_json(record);
   if (record.options.offset != 0) json["offset"] = offset_json(record);
-  if (record.options.trim > 0) json["trim"] = trim_json(record.run.trim);
+  if (record.options.trim != 0) json["trim"] = trim_json(record.run.trim);
+  if (record.options.largest || record.options.min_component > 0) json["pieces"] = pieces_json(record.run.pieces);
   if (record.options.weakness) json["problems"] = problems_json(record.problems);
   json["mesh"] = to_json(record.mesh);
   json["ms"] = ms_json(record);
   if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
-  const std::int64_t before = record.normals ? record.normals->device_peak_bytes : 0;
-  json["memory"] = {{"host_peak_bytes", record.host_peak_bytes},
-                    {"device_peak_bytes", std::max(before, record.run.device_peak_bytes)}};
+  json["memory"] = {{"host_peak_bytes", record.host_peak_bytes}, {"device_peak_bytes", record.run.device_peak_bytes}};
   return json;
 }
 
@@ -181,10 +193,11 @@ std::string summary(const Record& record) {
       used(record), run.depth, record.mesh.triangles, run.octree_ms, function_ms, run.extract_ms, record.total_ms,
       format_bytes(static_cast<double>(run.device_peak_bytes)),
       format_bytes(static_cast<double>(record.host_peak_bytes)));
-  if (record.options.trim > 0) {
+  if (record.options.trim != 0 && run.trim.quantile == 0) line += "; nothing to trim: the surface is near the points";
+  if (run.trim.quantile > 0) {
     const double share = run.trim.area_before > 0 ? run.trim.area_removed / run.trim.area_before : 0;
-    line +=
-        fmt::format("; trimmed {:.1f} % of the area, below {:.4g} points per unit^2", 100 * share, run.trim.density);
+    line += fmt::format("; trimmed {:.1f} % of the area, below {:.4g} points per unit^2 (--trim {:g})", 100 * share,
+                        run.trim.density, run.trim.quantile);
   }
   if (!record.repeat_ms.empty()) {
     const double ms = spread_of(record.repeat_ms).median;

@@ -24,7 +24,6 @@ struct Record {
   std::int64_t dropped = 0;              ///< of them, left out: not finite, or a normal of zero length
   Options options;                       ///< after defaults
   nlohmann::ordered_json other_options;  ///< what Options does not hold
-  std::optional<NormalReport> normals;   ///< with --estimate-normals
   RunReport run;
   MeshReport mesh;
   std::string command = "reconstruct";

@@ -9,14 +9,15 @@
 
 #include <pointskin/cloud.hpp>
 #include <pointskin/device.hpp>
-#include <pointskin/reconstruct.hpp>
+#include <pointskin/progress.hpp>
 #include <pointskin/vector.hpp>
 
 namespace pointskin {
 
 /// What decides to which side a normal points.
 enum class NormalMethod {
-  automatic,  ///< sensor where the input says where it was seen from, repair where it has normals, else propagate
+  automatic,  ///< sensor where the input says where it was seen from, repair where it has normals, else propagate;
+              ///< closed parts whose given normals point into them are turned
   sensor,     ///< towards the sensor: NormalOptions::sensors, or attributes of the points
   propagate,  ///< consistent with the neighbours, patches and parts by trial reconstructions
   iterate,    ///< from a trial reconstruction, whose sides turn the normals, and again, until none turns

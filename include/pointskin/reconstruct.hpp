@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@
 #include <pointskin/device.hpp>
 #include <pointskin/field.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/normals.hpp>
+#include <pointskin/progress.hpp>
+#include <pointskin/warning.hpp>
 
 namespace pointskin {
 
@@ -34,14 +38,26 @@ enum class FieldKind {
              ///< (Hoppe et al. 1992): nothing is solved; passes through the samples, their noise included
 };
 
-/// Where a run is; handed to Options::progress.
-struct Progress {
-  const char* phase = "";  ///< one of "octree", "splat", "solve", "extract"
-  double fraction = 0;     ///< of the whole run, in [0, 1], never decreasing
+/// What is done about the normals that points come with.
+enum class PointNormals {
+  automatic,  ///< kept, byte for byte, where they are consistent; all turned where the cloud is inside out; repaired
+              ///< where they are clearly wrong. RunReport::warnings says what was done
+  given,      ///< taken as they are; RunReport::warnings says what is wrong with them
+  repair,     ///< judged first, and turned and replaced where they are wrong (NormalMethod::automatic)
+  estimate,   ///< made first, as Options::normal_estimation says; the points need none
 };
 
 struct Options {
-  int depth = 8;  ///< octree depth D, in [1, 20]; the finest cells are cube / 2^D wide
+  /// As `depth`: the deepest that spacing and noise of the points support and the memory holds (suggest_depth).
+  static constexpr int kAutomaticDepth = 0;
+  /// As `trim`: the value that RunReport::warnings would name where the surface is far from the points or runs into the
+  /// faces of the working cube, which then stay open; else off.
+  static constexpr double kAutomaticTrim = -1;
+
+  int depth = 8;  ///< octree depth D, in [1, 20], or kAutomaticDepth; the finest cells are cube / 2^D wide
+  PointNormals point_normals = PointNormals::automatic;
+  NormalOptions
+      normal_estimation{};  ///< how normals are repaired or made; its `progress` and `confidence` do not count
   /// With `distance`, `screening`, `fixed_screening`, `iterations`, `samples_per_node` and `residuals` have no meaning
   /// and are not used; `boundary` must be free and `envelope` null. With `confidence` a sample's plane weighs by the
   /// length of its normal.
@@ -77,9 +93,14 @@ struct Options {
   /// Costs a query of the distance for every corner near it, on the host (docs/algorithm.md, section 10).
   std::shared_ptr<const Mesh> envelope{};
   double trim = 0;  ///< > 0: the mesh ends where samples lie 1.75 times farther apart than at the sparsest samples,
-                    ///< this share of all; in [0, 1); 0: off, the mesh is closed. 0.01 to 0.1 suit open scans
+                    ///< this share of all; in [0, 1), or kAutomaticTrim; 0: off, the mesh is closed. 0.01 to 0.1 suit
+                    ///< open scans
   double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,
                                 ///< islands are removed and pinholes stay closed; in [0, 1)
+  bool largest = false;         ///< true: only the connected piece with the largest area stays, of closed meshes too
+  double min_component =
+      0;  ///< connected pieces that are smaller are left out, of closed meshes too, cavities as well:
+          ///< >= 1: than so many triangles; in (0, 1): than this share of the whole area; 0: none
   /// Not 0: the surface at this distance from that of the field, world units, outwards where positive, inwards where
   /// negative; round around edges, and the working cube grows where it must (docs/algorithm.md, section 14). The Field
   /// is then minus the signed distance to that surface, in finest cells. Finite; excludes `trim`, `density`,
@@ -104,13 +125,21 @@ struct LevelReport {
 
 /// What Options::trim did. All zero without it.
 struct TrimReport {
-  double density = 0;  ///< samples per unit of area (world units^-2) below which the surface was cut away
+  double quantile = 0;  ///< Options::trim, or what was taken for kAutomaticTrim; 0: nothing was cut
+  double density = 0;   ///< samples per unit of area (world units^-2) below which the surface was cut away
   double area_before = 0, area_removed = 0;  ///< world units^2
   std::int64_t triangles_before = 0;
   std::int64_t triangles_removed = 0;  ///< wholly
   std::int64_t triangles_split = 0;    ///< by the cut, into one or two
   std::int64_t islands_removed = 0;    ///< kept pieces below Options::island_ratio, which were cut away, too
   std::int64_t holes_filled = 0;       ///< cut pieces below Options::island_ratio, which were kept
+};
+
+/// What Options::largest and Options::min_component did. All zero without them.
+struct PiecesReport {
+  std::int64_t pieces = 0;             ///< connected pieces before
+  std::int64_t pieces_removed = 0;     ///< of them
+  std::int64_t triangles_removed = 0;  ///< with them
 };
 
 /// What Options::envelope did. All zero without it.
@@ -130,17 +159,24 @@ struct OffsetReport {
   double ms = 0;                ///< the extraction of the surface included
 };
 
+/// What became of the normals that points came with.
+enum class NormalsDone { kept, turned, repaired, estimated };
+
 /// What a run did and what it cost. Times are milliseconds on the device's clock.
 struct RunReport {
-  std::int64_t points = 0;             ///< points used
-  std::int64_t strays = 0;             ///< points left out because they are strays; 0 with Options::keep_strays
-  std::vector<Vec3d> farthest_strays;  ///< up to 10 of them, world units, the farthest first
+  std::vector<Warning> warnings;  ///< what should be looked at, the input first
+  NormalsDone normals_done = NormalsDone::kept;
+  std::optional<NormalReport> normals;  ///< where they were repaired or estimated
+  std::int64_t points = 0;              ///< points used
+  std::int64_t strays = 0;              ///< points left out because they are strays; 0 with Options::keep_strays
+  std::vector<Vec3d> farthest_strays;   ///< up to 10 of them, world units, the farthest first
   int depth = 0;
   std::int64_t nodes = 0;           ///< cells of all depths
   std::vector<LevelReport> levels;  ///< depth 0 first
   double isovalue = 0;              ///< weighted mean of the field over the samples; 0 for FieldKind::distance, and
                                     ///< minus OffsetReport::cells with Options::offset
   TrimReport trim;                  ///< with Options::trim
+  PiecesReport pieces;              ///< with Options::largest or Options::min_component
   EnvelopeReport envelope;          ///< with Options::envelope
   OffsetReport offset;              ///< with Options::offset
   double upload_ms = 0, octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0, download_ms = 0;
@@ -213,7 +249,31 @@ std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, i
 /// several times, and too low for surfaces that fill their cube like a sponge.
 std::int64_t estimate_device_bytes(std::int64_t points, const Options& options);
 
+/// A depth that suits a cloud, and why.
+struct DepthSuggestion {
+  int depth = 0;       ///< in [1, 16]
+  int supported = 0;   ///< what spacing and noise support; `depth` is less where the memory holds no more
+  double spacing = 0;  ///< between samples of the surface, median over the points, world units
+  double noise = 0;    ///< standard deviation of points across the surface, median, world units; what the surface bends
+                       ///< over a few spacings is in it
+};
+
+/// The depth whose cells are as wide as the points resolve: sqrt(3/4) of their spacing, and no finer than twice their
+/// noise (docs/algorithm.md, section 20), if an estimate of the run on `device` fits Options::max_memory_bytes, or
+/// without such a limit the memory that the device has now. Normals are not needed.
+/// @param options  those of the run; `depth` does not count
+/// @throws Error usage (an option out of range), invalid_input (points that are not finite), empty_result (no points,
+///         or all at one place), over_limit, device_unavailable
+/// O(n log n): a sort, and an octree with about 1.5 points a cell. Deterministic but for the memory.
+DepthSuggestion suggest_depth(const Cloud& cloud, const Options& options = {}, Device device = Device::cpu());
+
 /// @throws Error usage, naming the option and its range, if an option is out of range
 void validate(const Options& options);
+
+/// "auto", "given", "repair", "estimate".
+const char* name_of(PointNormals normals);
+
+/// "kept", "turned", "repaired", "estimated".
+const char* name_of(NormalsDone done);
 
 }  // namespace pointskin

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "boolean/engine.hpp"
+#include "pipeline/engine.hpp"
 
 namespace pointskin {
 namespace {
@@ -14,7 +15,7 @@ void require(bool holds, const char* story) {
 }
 
 void check(const BooleanOptions& options) {
-  validate(options.reconstruction);
+  detail::validate_settled(options.reconstruction);
   require(options.coincidence_cells >= 0 && options.coincidence_cells <= 100,
           "option coincidence must be in 0..100 cells");
   require(!options.reconstruction.attributes, "a Boolean does not carry attributes; leave the option unset");

@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include "deform/engine.hpp"
+#include "pipeline/engine.hpp"
 
 namespace pointskin {
 
 class Deformer::Impl {
  public:
   Impl(const Cloud& rest, const Options& options, Device device) : device_(device), points_(rest.size()) {
-    validate(options);
+    detail::validate_settled(options);
     check_memory(rest, options);
     engine_ = device.kind == DeviceKind::cuda ? detail::make_cuda_deform_engine(device.index, rest, options, report_)
                                               : detail::make_cpu_deform_engine(device.threads, rest, options, report_);

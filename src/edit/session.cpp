@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "edit/points.hpp"
+#include "pipeline/engine.hpp"
 
 namespace pointskin {
 namespace {
@@ -66,7 +67,7 @@ void check(const Insert& insert) {
 }
 
 std::unique_ptr<EditSession::Impl> make_session(const Cloud& base, const EditOptions& options, const Device& device) {
-  validate(options.reconstruction);
+  detail::validate_settled(options.reconstruction);
   require(options.reconstruction.offset == 0, "option offset must be 0 in an editing session");
   require(options.states_kept >= 1, "option states_kept must be at least 1");
   return device.kind == DeviceKind::cuda ? detail::make_cuda_session(base, options, device.index)

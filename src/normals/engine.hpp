@@ -9,10 +9,11 @@
 
 namespace pointskin::detail {
 
-/// What the input says of where points were seen from, relative to the cloud's origin.
+/// What is known of sides: where points were seen from, relative to the cloud's origin, and what given normals decide.
 struct Views {
   std::vector<Vec3d> sensors;  ///< relative to the cloud's origin
   std::vector<Vec3f> towards;  ///< (n) or none: from the point towards its sensor, any length
+  bool turns_given = false;    ///< given normals that point into what the points enclose are turned
   [[nodiscard]] bool empty() const { return sensors.empty() && towards.empty(); }
 };
 

@@ -121,6 +121,8 @@ inline std::string assumption(const NormalReport& report, bool is_certain) {
     case NormalMethod::sensor:
       return "every point was seen from its sensor";
     case NormalMethod::repair:
+      if (report.flipped > 9 * report.kept)
+        return "the points surround solids: given normals pointed into what they enclose";
       if (is_certain) return "sheets lie nearer to each other than points do: the given normals know their sides";
       return "most given normals of a connected part are right, where they say anything";
     default:
@@ -157,7 +159,7 @@ class NormalsOn final : public NormalEngine {
     const cloud::LinkedLines linked{points.positions.cview(), lines.normals.cview(), lines.flatness.cview(),
                                     lines.noise.cview(), neighbours.cview()};
     const double typical = evidence.empty() ? 0 : turn_lines(linked, lines, evidence);
-    const Evidence known{evidence.cview(), typical};
+    const Evidence known{evidence.cview(), typical, views.turns_given};
     SignSolver<Exec> solver(*ex_, linked, points.tree, known, options, report);
     solver.propagate();
     clock.lap(report.propagate_ms);

@@ -100,9 +100,10 @@ void NormalEstimator::orient(Cloud& cloud, const NormalOptions& options) {
   using Clock = std::chrono::steady_clock;
   validate(options);
   const Clock::time_point start = Clock::now();
-  const detail::Views views = find_views(cloud, options);
+  detail::Views views = find_views(cloud, options);
   NormalOptions settled = options;
   settled.method = chosen_method(cloud, views, options.method);
+  views.turns_given = options.method == NormalMethod::automatic && settled.method == NormalMethod::repair;
   impl_->report_ = {};
   impl_->report_.method = settled.method;
   impl_->engine_->orient(cloud, views, settled, impl_->report_);

@@ -45,7 +45,7 @@ struct ClampToCube {
 
 struct CountNotFinite {
   ArrayView<const Vec3f> values;
-  PSK_HD std::int64_t operator()(std::int64_t i) const { return points::FindFlaws::is_finite(values[i]) ? 0 : 1; }
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return points::is_finite(values[i]) ? 0 : 1; }
 };
 
 template <exec::Space Exec>

@@ -35,6 +35,7 @@ inline constexpr double kSettled = 0.001;
 struct Evidence {
   ArrayView<const std::int32_t> signs;  ///< (n) 1, -1 or 0: which sign of the line it speaks for; empty: of none
   double typical = 0;                   ///< unless 0, lines have their likely signs (cloud::LikelySigns)
+  bool may_be_inside_out = false;       ///< all signs of a closed part may be wrong
 
   /// The input knows more than neighbours do.
   [[nodiscard]] bool is_certain() const { return typical > 1; }
@@ -323,6 +324,7 @@ class SignSolver {
   /// enclose changes with them.
   void judge_sides(TrialField<Exec>& trial) {
     constexpr int kRounds = 6;
+    constexpr double kInsideOut = -0.3;  // -1/2 on a closed surface; nearer to 0 the scan is open, and may be a room
     const DisjointSets::Numbers sets = sets_.numbers();
     const auto set_of = [&](std::size_t c) { return static_cast<std::size_t>(sets.of[c]); };
     std::vector<bool> fixed(sets.count, false);
@@ -339,7 +341,8 @@ class SignSolver {
       for (std::size_t r = 0; r < sets.count; ++r) {
         total.area += sums[r].area;
         total.field += sums[r].field;
-        turn[r] = !fixed[r] && turns[r] < 2 && (sums[r].mean() < -0.01 || sums[r].mean() > 1);
+        turn[r] = turns[r] < 2 && (fixed[r] ? evidence_.may_be_inside_out && sums[r].mean() < kInsideOut
+                                            : sums[r].mean() < -0.01 || sums[r].mean() > 1);
         if (turn[r]) ++turns[r];
         any = any || turn[r];
       }

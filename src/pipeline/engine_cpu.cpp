@@ -3,6 +3,10 @@
 
 namespace pointskin::detail {
 
+std::unique_ptr<Engine> make_engine(const Device& device) {
+  return device.kind == DeviceKind::cuda ? make_cuda_engine(device.index) : make_cpu_engine(device.threads);
+}
+
 std::unique_ptr<Engine> make_cpu_engine(int threads) {
   return std::make_unique<EngineOn<exec::Cpu>>(std::make_shared<exec::Cpu>(threads));
 }

@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/detail.hpp"
 #include "pipeline/engine.hpp"
 #include "pipeline/fit_field.hpp"
 #include "pipeline/phase_clock.hpp"
 #include "pipeline/points.hpp"
+#include "pipeline/thin.hpp"
 #include "pipeline/within_envelope.hpp"
 
 namespace pointskin::detail {
@@ -18,33 +20,44 @@ class EngineOn final : public Engine {
  public:
   explicit EngineOn(std::shared_ptr<Exec> ex) : ex_(std::move(ex)) {}
 
-  std::shared_ptr<FieldImpl> solve(const Cloud& cloud, const Options& options, RunReport& report) override {
+  std::shared_ptr<FieldImpl> solve(const Input& input, const Options& options, RunReport& report) override {
+    const Cloud& cloud = input.cloud;
     ex_->activate();
     ex_->pool()->reset_peak();
     std::shared_ptr<const envelope::Envelope> envelope = make_envelope(*ex_, options, cloud.origin);
     PhaseClock clock(*ex_);
-    DevicePoints points = upload(*ex_, cloud);
-    points.attributes = upload_attributes(*ex_, cloud, options);
+    DevicePoints points = upload(*ex_, input, options);
     clock.lap(report.upload_ms);
     clock.read();
-    FieldData data = fit_field(*ex_, points, {.envelope = std::move(envelope)}, options, report);
+    FieldData data = fit_field(*ex_, points, {.envelope = std::move(envelope), .look = true}, options, report);
     for (Vec3d& p : report.farthest_strays)
       for (std::size_t a = 0; a < 3; ++a) p[a] += cloud.origin[a];
     report.device_peak_bytes = ex_->pool()->peak_bytes();
     return make_field(ex_, std::move(data), options, cloud.origin);
   }
 
-  std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) override {
+  Cloud thin(const Cloud& cloud, const Options& options, std::int64_t count) override {
     ex_->activate();
-    const FitSetup setup{.keep_points = true, .envelope = make_envelope(*ex_, options, cloud.origin)};
-    DevicePoints points = upload(*ex_, cloud);
-    points.attributes = upload_attributes(*ex_, cloud, options);
+    return thin_cloud(*ex_, detail::upload(*ex_, cloud), options, count);
+  }
+
+  Detail measure_detail(const Cloud& cloud, const Options& options) override {
+    ex_->activate();
+    return detail::measure_detail(*ex_, cloud, options);
+  }
+
+  std::vector<RunTimes> repeat(const Input& input, const Options& options, int times) override {
+    ex_->activate();
+    const FitSetup setup{
+        .keep_points = true, .envelope = make_envelope(*ex_, options, input.cloud.origin), .look = true};
+    DevicePoints points = upload(*ex_, input, options);
     std::vector<RunTimes> runs;
     for (int i = 0; i < times; ++i) {
       PhaseClock clock(*ex_);
       RunReport report;
-      const FieldData data = fit_field(*ex_, points, setup, options, report);
+      FieldData data = fit_field(*ex_, points, setup, options, report);
       const surface::Surface surface = detail::extract(*ex_, data, options, report);
+      look_at_surface(*ex_, surface, data);
       field::interpolate(*ex_, data.tree, data.attributes, surface.positions.cview(),
                          [](const field::Channel&, const exec::Buffer<float>&) {});
       RunTimes run{report.octree_ms, report.splat_ms, report.solve_ms};
@@ -59,6 +72,13 @@ class EngineOn final : public Engine {
   }
 
  private:
+  static DevicePoints upload(Exec& ex, const Input& input, const Options& options) {
+    DevicePoints points = detail::upload(ex, input.cloud);
+    if (input.turned) turn_normals(ex, points.normals.view());
+    points.attributes = upload_attributes(ex, input.cloud, options);
+    return points;
+  }
+
   std::shared_ptr<Exec> ex_;
 };
 

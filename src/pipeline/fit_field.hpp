@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "diagnose/counts.hpp"
 #include "envelope/envelope.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
@@ -40,9 +41,12 @@ struct FieldData {
   field::AttributeSamples attributes;                  ///< without positions unless there are channels
   std::shared_ptr<const envelope::Envelope> envelope;  ///< with Options::envelope
   double isovalue = 0;
-  FieldSamples samples;    ///< with FitSetup::keep_samples
-  float trim_limit = 0;    ///< spacing in finest cells, with Options::trim
-  WeaknessScale weakness;  ///< with Options::weakness
+  FieldSamples samples;                   ///< with FitSetup::keep_samples
+  double trim = 0;                        ///< Options::trim, or what was chosen
+  float trim_limit = 0;                   ///< spacing in finest cells, with Options::trim
+  WeaknessScale weakness;                 ///< with Options::weakness
+  exec::Buffer<diagnose::Counts> counts;  ///< with FitSetup::look
+  diagnose::Counts seen{};                ///< these, as they were read last
 
   [[nodiscard]] field::FieldView view(DomainFaces faces) const {
     return {resolution.view(tree), values.data(), static_cast<float>(isovalue), faces == DomainFaces::closed,
@@ -56,6 +60,7 @@ struct FitSetup {
   std::optional<octree::Frame> cube{};  ///< the working cube, for all points; unset: fitted, and strays are left out
   std::shared_ptr<const envelope::Envelope> envelope{};  ///< made ready from Options::envelope, or null
   bool keep_samples = false;                             ///< fill FieldData::samples
+  bool look = false;                                     ///< count what may be wrong, FieldData::seen
   /// Of nearly the same points, or null. It is started from if its cube and depth are the same, with three
   /// quarters of the iterations (docs/decisions/0023-editing.md).
   const FieldData* before = nullptr;
@@ -71,6 +76,10 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
 /// @param report  receives what was cut, with Options::trim, and what was moved, with an envelope
 template <exec::Space Exec>
 surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, RunReport& report);
+
+/// Counts what may be wrong with a surface of `field`, if its fit was looked at; FieldData::seen. Waits.
+template <exec::Space Exec>
+void look_at_surface(Exec& ex, const surface::Surface& surface, FieldData& field);
 
 /// The same, with triangles.
 /// @throws Error empty_result if nothing crosses the isovalue, or nothing is left after Options::trim

@@ -10,9 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "diagnose/look.hpp"
+#include "diagnose/verdict.hpp"
 #include "exec/algorithms.hpp"
 #include "field/distance.hpp"
 #include "field/evaluate.hpp"
+#include "pipeline/fit_cube.hpp"
 #include "pipeline/fit_field.hpp"
 #include "pipeline/offset_surface.hpp"
 #include "pipeline/phase_clock.hpp"
@@ -24,6 +27,7 @@
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
 #include "poisson/trust.hpp"
+#include "surface/pieces.hpp"
 
 namespace pointskin::detail {
 namespace fit {
@@ -43,27 +47,6 @@ inline void report_levels(const octree::OctreeData& tree, const std::vector<pois
   for (const poisson::LevelSolve& level : levels)
     report.levels.push_back({level.depth, view.levels[level.depth].cells(), level.unknowns, level.iterations,
                              level.residual_before, level.residual_after});
-}
-
-inline void report_strays(const octree::StrayPoints& strays, RunReport& report) {
-  constexpr std::size_t kListed = 10;
-  report.strays = strays.size();
-  for (std::size_t i = 0; i < std::min(kListed, strays.positions.size()); ++i) {
-    const Vec3f& p = strays.positions[i];
-    report.farthest_strays.push_back({p.x, p.y, p.z});
-  }
-}
-
-/// The working cube; leaves strays out of the points that are used, unless they are to be kept.
-template <exec::Space Exec>
-octree::Frame fit_cube(Exec& ex, DevicePoints& points, const Options& options, RunReport& report) {
-  report.strays = 0;
-  report.farthest_strays.clear();
-  if (options.keep_strays) return octree::fit_frame(ex, points.positions.cview(), options.scale);
-  const octree::StrayPoints strays = octree::find_strays(ex, points.positions.cview());
-  report_strays(strays, report);
-  leave_out(ex, strays, points);
-  return octree::frame_around(strays.core, options.scale);
 }
 
 /// The unknowns to solve for, where some are held at 0; else none.
@@ -120,6 +103,27 @@ double find_isovalue(Exec& ex, const FieldData& field, ArrayView<const float> u,
   return isovalue;
 }
 
+/// Looks at the samples, and settles what to trim.
+template <exec::Space Exec>
+void look_at_samples(Exec& ex, const poisson::Samples& samples, const FitSetup& setup, const Options& options,
+                     FieldData& field) {
+  const bool chooses = options.trim == Options::kAutomaticTrim;
+  if (setup.look || chooses) {
+    field.counts = diagnose::make_counts(ex);
+    diagnose::look_at_samples(ex, field.tree.view(), field.density, samples.view(), field.counts);
+  }
+  field.trim =
+      chooses ? diagnose::fitting_trim(diagnose::findings_of(diagnose::read_counts(ex, field.counts))) : options.trim;
+  if (field.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, field.trim);
+}
+
+/// Looks at the solved field, and reads all that was counted.
+template <exec::Space Exec>
+void look_at_fit(Exec& ex, const poisson::Samples& samples, const Options& options, FieldData& field) {
+  diagnose::look_at_field(ex, field.view(options.domain_faces), samples.view(), field.counts);
+  field.seen = diagnose::read_counts(ex, field.counts);
+}
+
 /// The report of a field that nothing was solved for.
 inline void report_octree(const octree::OctreeData& tree, RunReport& report) {
   std::vector<poisson::LevelSolve> levels(static_cast<std::size_t>(tree.depth) + 1);
@@ -138,15 +142,16 @@ void fit_distance(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const 
   exec::Buffer<float> weights;
   if (options.confidence) weights = poisson::confidence_weights(ex, samples.normals.cview());
   field::normalise(ex, samples.normals.view());
-  if (options.density || options.trim > 0)
+  if (options.density || options.trim != 0)
     field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
-  if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
+  look_at_samples(ex, samples, setup, options, field);
   clock.lap(report.splat_ms);
 
   announce(options, "solve", 0.45);
   field.values =
       field::distance_to_planes(ex, field.tree, {samples.positions.cview(), samples.normals.cview(), weights.cview()});
   field.isovalue = 0;
+  if (!field.counts.empty()) look_at_fit(ex, samples, options, field);
   if (setup.keep_samples) {
     field.samples.normals = std::move(samples.normals);
     keep_samples(ex, samples, std::move(sorted.added), field.samples);
@@ -174,7 +179,7 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
   poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
   field.resolution = poisson::find_resolution(ex, field.tree, samples);
-  if (options.trim > 0) field.trim_limit = trim_limit(ex, field.tree, field.density, samples, options.trim);
+  look_at_samples(ex, samples, setup, options, field);
   if (!options.density && !options.weakness && options.trim == 0) field.density.counts.reset();
   if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
@@ -207,6 +212,7 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   screening = {};
   field.isovalue = find_isovalue(ex, field, solution.u.cview(), samples, sorted.added.cview(), report);
   field.values = std::move(solution.u);
+  if (!field.counts.empty()) look_at_fit(ex, samples, options, field);
   if (setup.keep_samples) keep_samples(ex, samples, std::move(sorted.added), field.samples);
   if (options.weakness)
     field.weakness = weakness_scale(ex, field.tree, field.density, field.values.data(), samples.positions.cview());
@@ -249,7 +255,9 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
   FieldData field = fit::fit_to_points(ex, points, setup, options, report);
   if (options.offset == 0) return field;
   fit::announce(options, "solve", 0.8);
-  return offset_surface(ex, field, options, report);
+  FieldData offset = offset_surface(ex, field, options, report);
+  offset.seen = field.seen;
+  return offset;
 }
 
 /// Share of curvature that a crossing takes (surface/edge_vertex.hpp). The screening pulls the trilinear function to
@@ -257,28 +265,73 @@ FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const
 /// the surface (docs/decisions/0017-noise-and-smoothness.md).
 inline constexpr float kCurvature = 0.5F;
 
+namespace fit {
+
+/// A trim that was to be chosen leaves out what closes the surface on the faces of the cube: that may be near samples.
+inline DomainFaces domain_faces(const FieldData& field, const Options& options) {
+  const bool opens =
+      options.trim == Options::kAutomaticTrim && diagnose::runs_into_faces(diagnose::findings_of(field.seen));
+  return opens ? DomainFaces::open : options.domain_faces;
+}
+
+/// False if the trim was to be chosen, and the surface is near the samples everywhere.
+template <exec::Space Exec>
+bool is_worth_trimming(Exec& ex, const FieldData& field, const surface::Surface& surface, const Options& options) {
+  constexpr double kLittle = 0.005;  // of the area
+  if (options.trim != Options::kAutomaticTrim) return true;
+  const diagnose::Findings findings = diagnose::findings_of(field.seen);
+  if (diagnose::runs_into_faces(findings) && findings.faces_inside < 1) return true;
+  diagnose::look_at_surface(ex, field.tree.view(), diagnose::far_depth(findings, field.tree.depth), surface,
+                            field.counts);
+  return diagnose::findings_of(diagnose::read_counts(ex, field.counts)).far >= kLittle;
+}
+
+/// The surface without small pieces, where some are to go.
+template <exec::Space Exec>
+surface::Surface without_pieces(Exec& ex, surface::Surface surface, const Options& options, RunReport& report) {
+  if (!options.largest && options.min_component == 0) return surface;
+  surface::PieceCounts counts;
+  surface = surface::keep_pieces(ex, std::move(surface), {options.largest, options.min_component}, counts);
+  report.pieces = {counts.pieces, counts.pieces_removed, counts.triangles_removed};
+  return surface;
+}
+
+}  // namespace fit
+
 template <exec::Space Exec>
 surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, RunReport& report) {
-  const bool trim = options.trim > 0;  // which needs normals
+  const bool trim = field.trim > 0;  // which needs normals
   surface::ExtractOptions extraction{options.linear_fit ? 0 : kCurvature, options.normals || trim};
   if (field.envelope != nullptr) extraction.move_vertices = clip_to(ex, *field.envelope, field.frame, report.envelope);
-  surface::Surface surface = surface::extract_surface(ex, field.view(options.domain_faces), extraction);
-  if (trim) {
+  surface::Surface surface = surface::extract_surface(ex, field.view(fit::domain_faces(field, options)), extraction);
+  if (trim && fit::is_worth_trimming(ex, field, surface, options)) {
     surface::TrimCounts counts;
     surface = trim_to_samples(ex, field.tree, field.density, std::move(surface),
                               {field.trim_limit, options.island_ratio}, counts);
     report.trim = trim_report(counts, field.frame, field.tree.depth, field.trim_limit);
-    if (!options.normals) surface.normals.reset();
+    report.trim.quantile = field.trim;
   }
+  if (!options.normals) surface.normals.reset();
+  surface = fit::without_pieces(ex, std::move(surface), options, report);
   if (field.envelope != nullptr)
     project_onto(ex, *field.envelope, field.frame, surface.positions.view(), report.envelope);
   return surface;
 }
 
 template <exec::Space Exec>
+void look_at_surface(Exec& ex, const surface::Surface& surface, FieldData& field) {
+  if (field.counts.empty()) return;
+  const int far_depth = diagnose::far_depth(diagnose::findings_of(field.seen), field.tree.depth);
+  diagnose::look_at_surface(ex, field.tree.view(), far_depth, surface, field.counts);
+  field.seen = diagnose::read_counts(ex, field.counts);
+}
+
+template <exec::Space Exec>
 surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& options, RunReport& report) {
   ex.activate();
   surface::Surface surface = detail::extract(ex, field, options, report);
+  if (surface.triangles.empty() && report.pieces.pieces > 0)
+    throw Error(ErrorCode::empty_result, "all pieces of the surface are smaller than min-component");
   if (surface.triangles.empty() && report.trim.triangles_before > 0)
     throw Error(ErrorCode::empty_result,
                 "all of the surface was trimmed away; choose a smaller trim quantile or island ratio");
@@ -381,15 +434,20 @@ class FieldOn final : public FieldImpl {
     download_mesh(*ex_, data_, extract_some(*ex_, data_, options_, unused), options_, origin_, mesh);
   }
 
+  [[nodiscard]] const diagnose::Counts& seen() const override { return data_.seen; }
+
   void extract_and_release(Mesh& mesh, RunReport& report) override {
     PhaseClock clock(*ex_);
     surface::Surface surface = extract_some(*ex_, data_, options_, report);
+    look_at_surface(*ex_, surface, data_);
     std::vector<Attribute> weakness = fit::weakness_at(*ex_, data_, options_, surface);
     data_.values.reset();
     std::vector<Attribute> attributes = fit::attributes_at(*ex_, data_, options_, surface, std::move(weakness));
     clock.lap(report.extract_ms);
     const octree::Frame frame = data_.frame;
+    const diagnose::Counts seen = data_.seen;
     data_ = {};
+    data_.seen = seen;
     download(*ex_, std::move(surface), frame, origin_, mesh);
     mesh.attributes = std::move(attributes);
     clock.lap(report.download_ms);

@@ -89,7 +89,8 @@ struct Model {
   }
   [[nodiscard]] bool is_distance() const { return options.field == FieldKind::distance; }
   [[nodiscard]] bool has_envelope() const { return options.envelope != nullptr; }
-  [[nodiscard]] bool trims() const { return options.trim > 0; }
+  [[nodiscard]] bool trims() const { return options.trim != 0; }
+  [[nodiscard]] bool picks_pieces() const { return options.largest || options.min_component > 0; }
   [[nodiscard]] std::int64_t kept_counts() const {
     return options.density || options.weakness || trims() ? kNodeValue * counted_bricks : 0;
   }
@@ -189,6 +190,13 @@ struct Model {
     return field() + mesh() + (kSides + std::max(kPieces, stay)) * vertices();
   }
 
+  /// The larger of: pieces, their areas and triangles; the triangles that stay, as if all did.
+  [[nodiscard]] std::int64_t pick_pieces() const {
+    if (!picks_pieces()) return 0;
+    const std::int64_t stay = 2 * kOrder + kTrianglesPerVertex * (kOrder + kTriangle);
+    return field() + mesh() + (1 + std::max(kPieces + kVertexKey, stay)) * vertices();
+  }
+
   /// One pass of up to three attributes: their means with a weight at every node, their values at the vertices.
   [[nodiscard]] std::int64_t interpolate() const {
     const auto most = static_cast<std::int64_t>(field::kAttributesAtOnce);
@@ -212,11 +220,12 @@ std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options
             {"distance", model.distance()},
             {"extract", model.extract()},
             {"trim", model.trim()},
+            {"pieces", model.pick_pieces()},
             {"interpolate", model.interpolate()}};
   return {{"sort", model.sort()},       {"find bricks", model.find_bricks()}, {"build tree", model.build_tree()},
           {"density", model.density()}, {"trim limit", model.trim_limit()},   {"splat", model.splat()},
           {"solve", model.solve()},     {"isovalue", model.isovalue()},       {"extract", model.extract()},
-          {"trim", model.trim()},       {"interpolate", model.interpolate()}};
+          {"trim", model.trim()},       {"pieces", model.pick_pieces()},      {"interpolate", model.interpolate()}};
 }
 
 std::int64_t uploaded_bytes(std::int64_t points, std::int64_t attributes) {

@@ -45,6 +45,8 @@ FieldData offset_surface(Exec& ex, const FieldData& field, const Options& option
   PhaseClock clock(ex);
   Options plain = options;
   plain.normals = false;
+  plain.largest = false;  // pieces are those of the offset surface
+  plain.min_component = 0;
   const surface::Surface surface = extract(ex, field, plain, report);
   if (surface.triangles.empty())
     throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");

@@ -42,6 +42,11 @@ struct DevicePoints {
   [[nodiscard]] std::int64_t used_count() const { return used.empty() ? positions.size() : used.size(); }
 };
 
+/// Copies a cloud to the space, whose normals may be missing or zero.
+/// @throws Error empty_result without points, invalid_input if some are not finite, over_limit beyond 2^31 - 1
+template <exec::Space Exec>
+DevicePoints upload_some(Exec& ex, const Cloud& cloud);
+
 /// Copies a cloud to the space.
 /// @throws Error no_normals if there are none or all have zero length, empty_result without points, invalid_input if
 /// some
@@ -49,13 +54,17 @@ struct DevicePoints {
 template <exec::Space Exec>
 DevicePoints upload(Exec& ex, const Cloud& cloud);
 
+/// Turns all normals the other way round.
+template <exec::Space Exec>
+void turn_normals(Exec& ex, ArrayView<Vec3f> normals);
+
 /// Copies the attributes that the mesh is to keep, under the names that they have there (kept_names).
 /// @throws Error invalid_input if an attribute has another length than the cloud
 template <exec::Space Exec>
 std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options);
 
 /// Leaves strays out of the points to use. O(n), and nothing if there are none.
-/// @throws Error no_normals if the normals of all others have zero length
+/// @throws Error no_normals if there are normals, and those of all others have zero length
 template <exec::Space Exec>
 void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points);
 

@@ -23,6 +23,14 @@ struct ToWorld {
   PSK_HD void operator()(std::int64_t i) const { positions[i] = frame.to_world(positions[i]); }
 };
 
+struct Turn {
+  ArrayView<Vec3f> normals;
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f n = normals[i];
+    normals[i] = {-n.x, -n.y, -n.z};
+  }
+};
+
 /// Mixes the bits of a point; equal points have equal hashes. Source: the finaliser of MurmurHash3.
 struct HashPoint {
   ArrayView<const Vec3f> positions, normals;
@@ -38,7 +46,7 @@ struct HashPoint {
   PSK_HD void operator()(std::int64_t i) const {
     const std::int64_t from = selection(i);
     const Vec3f p = positions[from];
-    const Vec3f n = normals[from];
+    const Vec3f n = normals.empty() ? Vec3f{} : normals[from];
     hashes[i] = mix(mix(mix(mix(mix(mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z), n.x), n.y), n.z);
   }
 };
@@ -55,6 +63,11 @@ struct HashAttribute {
   }
 };
 
+PSK_HD inline bool is_finite(const Vec3f& v) {
+  const float sum = 0 * v.x + 0 * v.y + 0 * v.z;  // anything not finite becomes NaN
+  return sum == 0;
+}
+
 /// What may be wrong with points.
 struct Flaws {
   std::int64_t not_finite = 0;
@@ -64,13 +77,9 @@ struct FindFlaws {
   ArrayView<const Vec3f> positions, normals;
   octree::Selection selection{};
 
-  PSK_HD static bool is_finite(const Vec3f& v) {
-    const float sum = 0 * v.x + 0 * v.y + 0 * v.z;  // anything not finite becomes NaN
-    return sum == 0;
-  }
   PSK_HD Flaws operator()(std::int64_t i) const {
     const std::int64_t from = selection(i);
-    const Vec3f n = normals[from];
+    const Vec3f n = normals.empty() ? Vec3f{} : normals[from];
     return {is_finite(positions[from]) && is_finite(n) ? 0 : 1, n.x != 0 || n.y != 0 || n.z != 0 ? 1 : 0};
   }
 };
@@ -88,6 +97,12 @@ Flaws find_flaws(Exec& ex, const DevicePoints& points) {
                              AddFlaws{});
 }
 
+inline void require_finite(const Flaws& flaws) {
+  if (flaws.not_finite > 0)
+    throw Error(
+        ErrorCode::invalid_input,
+        std::to_string(flaws.not_finite) + " points have coordinates or normals that are not finite; leave them out");
+}
 inline void require_normals(const Flaws& flaws) {
   if (flaws.with_normal == 0)
     throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
@@ -95,30 +110,53 @@ inline void require_normals(const Flaws& flaws) {
 
 }  // namespace points
 
-template <exec::Space Exec>
-DevicePoints upload(Exec& ex, const Cloud& cloud) {
+namespace points {
+
+inline void require_points(const Cloud& cloud) {
   if (cloud.positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
-  if (!cloud.has_normals())
-    throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
   if (cloud.size() > std::numeric_limits<std::int32_t>::max())
     throw Error(ErrorCode::over_limit, "the cloud has more than 2^31 - 1 points; thin it or split it");
+}
+
+}  // namespace points
+
+template <exec::Space Exec>
+DevicePoints upload_some(Exec& ex, const Cloud& cloud) {
+  points::require_points(cloud);
+  DevicePoints points{exec::make_buffer<Vec3f>(ex, cloud.size()), {}, {}};
+  copy_to_device(ex, cloud.positions.data(), points.positions.view());
+  if (cloud.has_normals()) {
+    points.normals = exec::make_buffer<Vec3f>(ex, cloud.size());
+    copy_to_device(ex, cloud.normals.data(), points.normals.view());
+  }
+  points::require_finite(points::find_flaws(ex, points));
+  return points;
+}
+
+template <exec::Space Exec>
+DevicePoints upload(Exec& ex, const Cloud& cloud) {
+  points::require_points(cloud);
+  if (!cloud.has_normals())
+    throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
   DevicePoints points{exec::make_buffer<Vec3f>(ex, cloud.size()), exec::make_buffer<Vec3f>(ex, cloud.size()), {}};
   copy_to_device(ex, cloud.positions.data(), points.positions.view());
   copy_to_device(ex, cloud.normals.data(), points.normals.view());
   const points::Flaws flaws = points::find_flaws(ex, points);
-  if (flaws.not_finite > 0)
-    throw Error(
-        ErrorCode::invalid_input,
-        std::to_string(flaws.not_finite) + " points have coordinates or normals that are not finite; leave them out");
+  points::require_finite(flaws);
   points::require_normals(flaws);
   return points;
+}
+
+template <exec::Space Exec>
+void turn_normals(Exec& ex, ArrayView<Vec3f> normals) {
+  for_each(ex, "upload.turn", normals.size, points::Turn{normals});
 }
 
 template <exec::Space Exec>
 void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points) {
   if (strays.indices.empty()) return;
   points.used = octree::without_strays(ex, points.positions.size(), strays);
-  points::require_normals(points::find_flaws(ex, points));
+  if (!points.normals.empty()) points::require_normals(points::find_flaws(ex, points));
 }
 
 template <exec::Space Exec>
@@ -158,8 +196,10 @@ SortedSamples sort_into_cube(Exec& ex, const DevicePoints& points, const octree:
   unit.reset();
   if (!points.used.empty())  // from here on, the order leads to the caller's points
     exec::gather(ex, points.used.cview(), sorted.order.cview(), sorted.order.view());
-  samples.normals = exec::make_buffer<Vec3f>(ex, n);
-  exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
+  if (!points.normals.empty()) {
+    samples.normals = exec::make_buffer<Vec3f>(ex, n);
+    exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
+  }
   if (!points.added.empty()) {
     out.added = exec::make_buffer<std::uint8_t>(ex, n);
     exec::gather(ex, points.added.cview(), sorted.order.cview(), out.added.view());

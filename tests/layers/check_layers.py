@@ -22,8 +22,10 @@ LAYERS = {
     "mesh": {"core", "exec", "mesh"},
     "envelope": {"core", "exec", "octree", "mesh", "envelope"},
     "io": {"core", "exec", "io"},
+    "diagnose": {"core", "exec", "octree", "poisson", "field", "surface", "diagnose"},
     # What joins the parts: one reconstruction, and what is built on it.
-    "pipeline": PARTS | {"pipeline"},
+    "pipeline": PARTS | {"diagnose", "pipeline"},
+    "reconstruct": PARTS | {"diagnose", "pipeline", "reconstruct"},
     "edit": PARTS | {"pipeline", "edit"},
     "deform": PARTS | {"pipeline", "deform"},
     "boolean": PARTS | {"pipeline", "boolean"},

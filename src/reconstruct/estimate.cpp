@@ -100,6 +100,16 @@ std::int64_t estimate_device_bytes(std::int64_t points, const Options& options) 
 
 std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, int threads) {
   validate(options);
+  if (options.point_normals == PointNormals::repair || options.point_normals == PointNormals::estimate) {
+    Options oriented = options;
+    oriented.point_normals = PointNormals::given;
+    return std::max(estimate_device_bytes(cloud, oriented, threads), estimate_normals_device_bytes(cloud, threads));
+  }
+  if (options.depth == Options::kAutomaticDepth) {
+    Options settled = options;
+    settled.depth = suggest_depth(cloud, options, Device::cpu(threads)).depth;
+    return estimate_device_bytes(cloud, settled, threads);
+  }
   exec::Cpu ex(threads);
   detail::RunSize size;
   try {

@@ -1,11 +1,14 @@
 #include <pointskin/error.hpp>
 #include <pointskin/reconstruct.hpp>
 
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "pipeline/engine.hpp"
+#include "reconstruct/run.hpp"
+#include "reconstruct/suggest_depth.hpp"
 
 namespace pointskin {
 namespace {
@@ -25,29 +28,48 @@ void check_combinations(const Options& options) {
   exclude(distance && options.weakness, "option weakness needs the field poisson");
   if (options.offset == 0) return;
   exclude(options.weakness, "options offset and weakness exclude each other: there are no samples on the surface");
-  exclude(options.trim > 0, "options offset and trim exclude each other");
+  exclude(options.trim != 0, "options offset and trim exclude each other");
   exclude(options.density, "options offset and density exclude each other: there are no samples on the surface");
   exclude(options.attributes, "options offset and attributes exclude each other: there are no samples on the surface");
   exclude(options.envelope != nullptr, "options offset and envelope exclude each other");
   exclude(options.domain_faces == DomainFaces::open, "an offset surface is closed: domain_faces must be closed");
 }
 
-std::unique_ptr<detail::Engine> make_engine(const Device& device) {
-  return device.kind == DeviceKind::cuda ? detail::make_cuda_engine(device.index)
-                                         : detail::make_cpu_engine(device.threads);
-}
-
 }  // namespace
 
 class Reconstructor::Impl {
  public:
-  explicit Impl(Device device) : device_(device), engine_(make_engine(device)) {}
+  explicit Impl(Device device) : device_(device), engine_(detail::make_engine(device)) {}
+
+  /// Checks the options, chooses the depth if it is to be chosen, and begins a report.
+  Options begin(const Cloud& cloud, const Options& options) {
+    validate(options);
+    report_ = {};
+    Options settled = options;
+    if (options.depth == Options::kAutomaticDepth)
+      settled.depth = detail::suggest_depth(*engine_, device_, cloud, options).depth;
+    check_memory(cloud, settled);
+    return settled;
+  }
 
   std::shared_ptr<detail::FieldImpl> solve(const Cloud& cloud, const Options& options) {
-    validate(options);
-    check_memory(cloud, options);
-    report_ = {};
-    return engine_->solve(cloud, options, report_);
+    const Options settled = begin(cloud, options);
+    return detail::Run(*engine_, device_, settled, report_).solve(cloud);
+  }
+
+  void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh) {
+    const Options settled = begin(cloud, options);
+    detail::Run run(*engine_, device_, settled, report_);
+    run.extract(run.solve(cloud), mesh);
+  }
+
+  std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) {
+    const RunReport before = std::move(report_);
+    const Options settled = begin(cloud, options);
+    RunReport unused;
+    std::vector<RunTimes> runs = detail::Run(*engine_, device_, settled, unused).repeat(cloud, times);
+    report_ = before;
+    return runs;
   }
 
   void check_memory(const Cloud& cloud, const Options& options) const {
@@ -79,17 +101,12 @@ Mesh Reconstructor::reconstruct(const Cloud& cloud, const Options& options) {
 }
 
 void Reconstructor::reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh) {
-  const std::shared_ptr<detail::FieldImpl> field = impl_->solve(cloud, options);
-  if (options.progress && !options.progress({"extract", 0.8}))
-    throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
-  field->extract_and_release(mesh, impl_->report_);
+  impl_->reconstruct(cloud, options, mesh);
 }
 
 std::vector<RunTimes> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
-  validate(options);
   require(times > 0, "repeat", "at least 1");
-  impl_->check_memory(cloud, options);
-  return impl_->engine_->repeat(cloud, options, times);
+  return impl_->repeat(cloud, options, times);
 }
 
 const RunReport& Reconstructor::report() const { return impl_->report_; }
@@ -108,16 +125,41 @@ Mesh Field::extract() const {
 }
 
 void validate(const Options& options) {
-  require(options.depth >= 1 && options.depth <= 20, "depth", "in 1..20");
+  require(options.depth == Options::kAutomaticDepth || (options.depth >= 1 && options.depth <= 20), "depth",
+          "in 1..20, or automatic");
+  validate(options.normal_estimation);
   require(options.screening >= 0 && options.screening <= 1e6, "screening", "in 0..1e6");
   require(options.iterations >= 1 && options.iterations <= 1000, "iterations", "in 1..1000");
   require(options.scale >= 1 && options.scale <= 100, "scale", "in 1..100");
   require(options.samples_per_node >= 0 && options.samples_per_node <= 100, "samples-per-node", "in 0..100");
-  require(options.trim >= 0 && options.trim < 1, "trim", "in [0, 1)");
+  require(options.trim == Options::kAutomaticTrim || (options.trim >= 0 && options.trim < 1), "trim",
+          "in [0, 1), or automatic");
   require(options.island_ratio >= 0 && options.island_ratio < 1, "island-ratio", "in [0, 1)");
+  require(options.min_component >= 0 && std::isfinite(options.min_component) &&
+              (options.min_component < 1 || options.min_component == std::floor(options.min_component)),
+          "min-component", "a whole number of triangles, or a share in [0, 1)");
   require(std::isfinite(options.offset), "offset", "finite");
   require(options.max_memory_bytes >= 0, "max-memory", "at least 0");
   check_combinations(options);
 }
 
+const char* name_of(PointNormals normals) {
+  constexpr std::array kNames = {"auto", "given", "repair", "estimate"};
+  return kNames[static_cast<std::size_t>(normals)];
+}
+
+const char* name_of(NormalsDone done) {
+  constexpr std::array kNames = {"kept", "turned", "repaired", "estimated"};
+  return kNames[static_cast<std::size_t>(done)];
+}
+
+namespace detail {
+
+void validate_settled(const Options& options) {
+  validate(options);
+  require(options.depth != Options::kAutomaticDepth, "depth", "a number here; suggest_depth finds one");
+  require(options.trim != Options::kAutomaticTrim, "trim", "a number here");
+}
+
+}  // namespace detail
 }  // namespace pointskin

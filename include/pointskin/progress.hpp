@@ -1,0 +1,12 @@
+// Where a run is.
+#pragma once
+
+namespace pointskin {
+
+/// Handed to the `progress` of options.
+struct Progress {
+  const char* phase = "";  ///< "octree", "splat", "solve", "extract"; of normals "estimate", "propagate", "iterate"
+  double fraction = 0;     ///< of the whole run, in [0, 1], never decreasing
+};
+
+}  // namespace pointskin

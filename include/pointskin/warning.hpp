@@ -1,0 +1,29 @@
+// What a run found wrong, or doubtful, with its input or its result.
+#pragma once
+
+#include <string>
+
+namespace pointskin {
+
+/// What a Warning is about.
+enum class WarningKind {
+  strays,              ///< points far from all others were left out
+  normals_disagree,    ///< normals of neighbouring points are opposed
+  normals_inside_out,  ///< normals point into what the points enclose
+  normals_doubtful,    ///< most normals that were estimated are a guess
+  off_surface,         ///< most points lie away from the surface
+  at_domain_faces,     ///< the surface runs into the faces of the working cube
+  far_from_points,     ///< much of the surface is far from all points
+  coarse_depth,        ///< the points hold clearly more detail than the depth shows
+};
+
+/// One thing, in one sentence for people that says how much of it there is and what helps. Options are named as on the
+/// command line.
+struct Warning {
+  WarningKind kind = WarningKind::strays;
+  double share = 0;  ///< how much, in [0, 1]: of the points, of pairs of neighbours, of the surface's area; of the
+                     ///< cells of the depth that the points hold, those that the depth cannot show; 0 for strays
+  std::string text;
+};
+
+}  // namespace pointskin

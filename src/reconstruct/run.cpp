@@ -1,0 +1,190 @@
+#include "reconstruct/run.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include "diagnose/warnings.hpp"
+
+namespace pointskin::detail {
+
+using diagnose::NormalsVerdict;
+
+Run::Run(Engine& engine, const Device& device, const Options& options, RunReport& report)
+    : engine_(engine), device_(device), options_(options), engine_options_(options), report_(report) {
+  if (options_.progress) engine_options_.progress = [this](const Progress& progress) { return tell(progress); };
+}
+
+void Run::next_part(double until) {
+  from_ = until_;
+  until_ = until;
+}
+
+bool Run::tell(const Progress& progress) {
+  constexpr double kSolved = 0.8;  // what a solve calls the whole of its part
+  const double share = std::min(1.0, progress.fraction / kSolved);
+  return options_.progress({progress.phase, from_ + share * (until_ - from_)});
+}
+
+std::shared_ptr<FieldImpl> Run::fit(const Cloud& cloud, bool turned) {
+  // What an earlier fit of this run reported is overwritten; what was said of normals stays.
+  RunReport report;
+  report.warnings = std::move(report_.warnings);
+  report.normals = std::move(report_.normals);
+  report.normals_done = report_.normals_done;
+  report_ = std::move(report);
+  turned_ = turned;
+  std::shared_ptr<FieldImpl> field = engine_.solve({cloud, turned}, engine_options_, report_);
+  side_ = field->cube_size_world();
+  return field;
+}
+
+NormalsVerdict Run::judge(const FieldImpl& field) const {
+  return diagnose::judge_normals(diagnose::findings_of(field.seen()),
+                                 options_.boundary == Boundary::free && options_.envelope == nullptr);
+}
+
+std::shared_ptr<FieldImpl> Run::solve(const Cloud& cloud) {
+  std::shared_ptr<FieldImpl> field;
+  switch (options_.point_normals) {
+    case PointNormals::given: {
+      field = fit(cloud, false);
+      warn_of_normals(*field);
+      break;
+    }
+    case PointNormals::automatic:
+      field = fit_judged(cloud);
+      break;
+    case PointNormals::repair:
+    case PointNormals::estimate: {
+      until_ = 0.5;
+      own_ = cloud;
+      const bool repairs = options_.point_normals == PointNormals::repair;
+      if (repairs && !cloud.has_normals())
+        throw Error(ErrorCode::no_normals, "there are no normals to repair; --normals estimate makes them");
+      report_.normals = orient(own_, repairs ? NormalMethod::automatic : options_.normal_estimation.method);
+      report_.normals_done = repairs ? NormalsDone::repaired : NormalsDone::estimated;
+      next_part(0.8);
+      field = fit_outwards(own_);
+      break;
+    }
+  }
+  diagnose::warn_of_strays(report_.strays, report_.farthest_strays, report_.warnings);
+  if (report_.normals) diagnose::warn_of_doubts(*report_.normals, report_.warnings);
+  diagnose::warn_of_fit(diagnose::findings_of(field->seen()), {side_, report_.depth}, report_.warnings);
+  return field;
+}
+
+/// Turns a cloud that is inside out, unless it is known where it was seen from: of a room, from inside.
+std::shared_ptr<FieldImpl> Run::fit_outwards(const Cloud& cloud) {
+  std::shared_ptr<FieldImpl> field = fit(cloud, false);
+  if (judge(*field) != NormalsVerdict::inside_out) return field;
+  if (report_.normals && report_.normals->method == NormalMethod::sensor) {
+    warn_of_normals(*field);
+    return field;
+  }
+  field.reset();
+  next_part(until_ + (0.8 - until_) / 2);
+  field = fit(cloud, true);
+  if (report_.normals_done == NormalsDone::kept) report_.normals_done = NormalsDone::turned;
+  diagnose::warn_of_turning(report_.warnings);
+  return field;
+}
+
+std::shared_ptr<FieldImpl> Run::fit_judged(const Cloud& cloud) {
+  constexpr double kFirst = 0.6;  // more may have to follow
+  constexpr double kParts = 0.05;
+  until_ = kFirst;
+  std::shared_ptr<FieldImpl> field = fit(cloud, false);
+  switch (judge(*field)) {
+    case NormalsVerdict::inside_out:
+      field.reset();
+      next_part(0.8);
+      field = fit(cloud, true);
+      report_.normals_done = NormalsDone::turned;
+      diagnose::warn_of_turning(report_.warnings);
+      return field;
+    case NormalsVerdict::suspicious: {
+      const double parts = flipped_parts(cloud);
+      if (parts >= kParts) return fit_repaired(cloud, std::move(field));
+      diagnose::warn_of_parts(parts, report_.warnings);
+      return field;
+    }
+    case NormalsVerdict::wrong:
+      return fit_repaired(cloud, std::move(field));
+    case NormalsVerdict::consistent:
+      break;
+  }
+  return field;
+}
+
+/// What is left as it is. Of what is inside out an automatic trim leaves no more than what was scanned.
+void Run::warn_of_normals(const FieldImpl& field) {
+  const NormalsVerdict verdict = judge(field);
+  if (verdict == NormalsVerdict::inside_out && options_.trim == Options::kAutomaticTrim) return;
+  diagnose::warn_of_normals(diagnose::findings_of(field.seen()), verdict, report_.warnings);
+}
+
+/// The share of points whose normals are flipped: a few thousand of them tell, in a fraction of the time that all take.
+double Run::flipped_parts(const Cloud& cloud) {
+  constexpr std::int64_t kFew = 16384;
+  Cloud few = engine_.thin(cloud, engine_options_, kFew);
+  const NormalReport report = orient(few, NormalMethod::automatic);
+  return static_cast<double>(report.flipped) / std::max(1.0, static_cast<double>(report.given));
+}
+
+bool Run::may_take_normals(const Cloud& cloud) const {
+  return options_.max_memory_bytes == 0 ||
+         estimate_normals_device_bytes(cloud, device_.threads) <= options_.max_memory_bytes;
+}
+
+/// @param field  of the normals as they came; stays if these cannot be repaired
+std::shared_ptr<FieldImpl> Run::fit_repaired(const Cloud& cloud, std::shared_ptr<FieldImpl> field) {
+  if (!may_take_normals(cloud)) {
+    warn_of_normals(*field);
+    return field;
+  }
+  field.reset();
+  next_part(0.7);
+  own_ = cloud;
+  report_.normals = orient(own_, NormalMethod::automatic);
+  report_.normals_done = NormalsDone::repaired;
+  diagnose::warn_of_repair(*report_.normals, report_.warnings);
+  next_part(0.75);
+  return fit_outwards(own_);
+}
+
+NormalReport Run::orient(Cloud& cloud, NormalMethod method) {
+  NormalOptions options = options_.normal_estimation;
+  options.method = method;
+  options.confidence = false;
+  options.curvature = false;
+  if (options_.progress)
+    options.progress = [this](const Progress& progress) {
+      return options_.progress({progress.phase, from_ + progress.fraction * (until_ - from_)});
+    };
+  NormalEstimator estimator(device_);  // its memory is gone before the solve
+  estimator.orient(cloud, options);
+  return estimator.report();
+}
+
+void Run::extract(std::shared_ptr<FieldImpl> field, Mesh& mesh) {
+  own_ = Cloud();
+  if (options_.progress && !options_.progress({"extract", 0.8}))
+    throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
+  const bool is_solid_around = judge(*field) == NormalsVerdict::inside_out;
+  field->extract_and_release(mesh, report_);
+  if (report_.normals)
+    report_.device_peak_bytes = std::max(report_.device_peak_bytes, report_.normals->device_peak_bytes);
+  if (is_solid_around) return;  // which has been said
+  diagnose::warn_of_surface(diagnose::findings_of(field->seen()), {side_, report_.depth}, options_, report_.warnings);
+}
+
+std::vector<RunTimes> Run::repeat(const Cloud& cloud, int times) {
+  solve(cloud);
+  engine_options_.progress = options_.progress;
+  return engine_.repeat({own_.positions.empty() ? cloud : own_, turned_}, engine_options_, times);
+}
+
+}  // namespace pointskin::detail

@@ -1,0 +1,57 @@
+// One run of a Reconstructor: what is done about the points' normals, the solve, and what is said of both.
+#pragma once
+
+#include <pointskin/reconstruct.hpp>
+
+#include <memory>
+
+#include "diagnose/verdict.hpp"
+#include "pipeline/engine.hpp"
+
+namespace pointskin::detail {
+
+/// Solves with the normals that Options::point_normals asks for, and writes warnings into the report. What a run finds
+/// out about normals it finds out from the field: a second solve follows where they have to be others.
+class Run {
+ public:
+  /// @param options  with a depth that is settled
+  /// @param report   of the run; empty but for what was said before
+  Run(Engine& engine, const Device& device, const Options& options, RunReport& report);
+
+  /// @throws Error as Reconstructor::solve
+  std::shared_ptr<FieldImpl> solve(const Cloud& cloud);
+
+  /// The mesh of that field, which is gone then.
+  /// @throws Error as Field::extract
+  void extract(std::shared_ptr<FieldImpl> field, Mesh& mesh);
+
+  /// A solve, and then runs of the whole in-memory job, with the normals that it had in the end.
+  std::vector<RunTimes> repeat(const Cloud& cloud, int times);
+
+ private:
+  /// The part of the whole run that comes next. Options::progress sees no fraction twice.
+  void next_part(double until);
+  bool tell(const Progress& progress);
+
+  std::shared_ptr<FieldImpl> fit(const Cloud& cloud, bool turned);
+  std::shared_ptr<FieldImpl> fit_outwards(const Cloud& cloud);
+  std::shared_ptr<FieldImpl> fit_judged(const Cloud& cloud);
+  std::shared_ptr<FieldImpl> fit_repaired(const Cloud& cloud, std::shared_ptr<FieldImpl> field);
+  void warn_of_normals(const FieldImpl& field);
+  NormalReport orient(Cloud& cloud, NormalMethod method);
+  [[nodiscard]] double flipped_parts(const Cloud& cloud);
+  [[nodiscard]] bool may_take_normals(const Cloud& cloud) const;
+  [[nodiscard]] diagnose::NormalsVerdict judge(const FieldImpl& field) const;
+
+  Engine& engine_;
+  Device device_;
+  const Options& options_;  // the caller's
+  Options engine_options_;  // these, with a progress of the part that runs
+  RunReport& report_;
+  double from_ = 0, until_ = 0.8;
+  double side_ = 0;  // of the working cube
+  Cloud own_;        // with normals that are not the caller's; or empty
+  bool turned_ = false;
+};
+
+}  // namespace pointskin::detail

@@ -1,0 +1,35 @@
+#include "reconstruct/suggest_depth.hpp"
+
+#include "diagnose/warnings.hpp"
+
+namespace pointskin {
+namespace detail {
+
+DepthSuggestion suggest_depth(Engine& engine, const Device& device, const Cloud& cloud, const Options& options) {
+  const Detail detail = engine.measure_detail(cloud, options);
+  DepthSuggestion suggestion;
+  suggestion.spacing = detail.spacing;
+  suggestion.noise = detail.noise;
+  suggestion.supported = diagnose::supported_depth(detail.cube, detail.spacing, detail.noise);
+  suggestion.depth = suggestion.supported;
+  const std::int64_t memory = options.max_memory_bytes > 0 ? options.max_memory_bytes : device.available_bytes();
+  Options tried = options;
+  for (; suggestion.depth > 1; --suggestion.depth) {
+    tried.depth = suggestion.depth;
+    // The estimate from the points themselves sorts them: only where that from their number is not clearly enough.
+    if (estimate_device_bytes(cloud.size(), tried) <= memory / 2) break;
+    if (estimate_device_bytes(cloud, tried, device.threads) <= memory) break;
+  }
+  return suggestion;
+}
+
+}  // namespace detail
+
+DepthSuggestion suggest_depth(const Cloud& cloud, const Options& options, Device device) {
+  Options any = options;
+  any.depth = Options::kAutomaticDepth;
+  validate(any);
+  return detail::suggest_depth(*detail::make_engine(device), device, cloud, options);
+}
+
+}  // namespace pointskin

@@ -12,7 +12,7 @@ namespace pointskin::diagnose {
 /// Samples that are looked at, evenly spread over their Morton order.
 inline constexpr std::int64_t kSamples = 8192;
 
-/// Of those, every so manieth is looked at where a look costs a walk through the octree.
+/// Where a look costs a walk through the octree, one in so many of those is looked at.
 inline constexpr std::int64_t kSparse = 2;
 
 /// Samples that follow a sample in Morton order and are compared with it. Across the planes of coarse cells none
@@ -80,21 +80,34 @@ inline constexpr double kFraction = 0x1p40;
 
 inline double fraction(std::uint64_t sum) { return static_cast<double>(static_cast<std::int64_t>(sum)) / kFraction; }
 
-/// What one thread adds to Counts, at once.
+/// What one look adds to Counts: the sums from kFirst to before kEnd, as exec::for_each_by_lanes adds them up.
+template <int kFirst, int kEnd>
 class Tally {
  public:
-  PSK_HD void add(Sum which, std::uint64_t value = 1) { sums_[which] += value; }
+  PSK_HD void add(int which, std::uint64_t value) { set(which - kFirst, word(which - kFirst) + value); }
+  PSK_HD void count(int which, bool happened) { add(which, happened ? 1 : 0); }
   /// @param value  sums stay in (-2^23, 2^23)
-  PSK_HD void add_fraction(Sum which, double value) {
-    sums_[which] += static_cast<std::uint64_t>(static_cast<std::int64_t>(value * kFraction));
+  PSK_HD void add_fraction(int which, double value) {
+    add(which, static_cast<std::uint64_t>(static_cast<std::int64_t>(value * kFraction)));
+  }
+  PSK_HD Tally operator+(const Tally& other) const {
+    Tally sum;
+    PSK_UNROLL for (int i = 0; i < kEnd - kFirst; ++i) sum.set(i, word(i) + other.word(i));
+    return sum;
   }
   PSK_HD void flush(Counts* counts) const {
-    for (int i = 0; i < kSums; ++i)
-      if (sums_[i] != 0) exec::add(counts->sums + i, sums_[i]);
+    PSK_UNROLL for (int i = 0; i < kEnd - kFirst; ++i) if (word(i) != 0) exec::add(counts->sums + kFirst + i, word(i));
   }
 
  private:
-  std::uint64_t sums_[kSums] = {};
+  [[nodiscard]] PSK_HD std::uint64_t word(int i) const { return std::uint64_t{high_[i]} << 32 | low_[i]; }
+  PSK_HD void set(int i, std::uint64_t value) {
+    low_[i] = static_cast<std::uint32_t>(value);
+    high_[i] = static_cast<std::uint32_t>(value >> 32);
+  }
+
+  std::uint32_t low_[kEnd - kFirst] = {};
+  std::uint32_t high_[kEnd - kFirst] = {};
 };
 
 }  // namespace pointskin::diagnose

@@ -11,55 +11,65 @@
 namespace pointskin::diagnose {
 namespace look {
 
+/// All counts are words, which threads set and copy side by side.
+inline ArrayView<std::uint64_t> words_of(const exec::Buffer<Counts>& counts) {
+  return {reinterpret_cast<std::uint64_t*>(counts.data()), sizeof(Counts) / sizeof(std::uint64_t)};
+}
+
 /// `some` of `all` things, evenly spread: the i-th of them.
 struct Spread {
   std::int64_t some = 0, all = 0;
   PSK_HD std::int64_t operator()(std::int64_t i) const { return i * all / some; }
 };
 
-/// Calls f(i, tally) for i in [0, n), several to a thread where threads are few: they add to the counts at once.
+/// What looks at n things does to add up their tallies: a warp's are added at once.
 template <class F>
-struct Several {
+struct ByLanes {
+  static constexpr int kLanes = 32;
+  using Sum = typename F::Sums;
   F f;
-  std::int64_t n, each;
+  std::int64_t n;
   Counts* counts;
-  PSK_HD void operator()(std::int64_t part) const {
-    Tally tally;
-    const std::int64_t end = (part + 1) * each < n ? (part + 1) * each : n;
-    for (std::int64_t i = part * each; i < end; ++i) f(i, tally);
-    tally.flush(counts);
+  PSK_HD Sum part(std::int64_t group, int lane) const {
+    Sum sum;
+    if (group * kLanes + lane < n) f(group * kLanes + lane, sum);
+    return sum;
   }
+  PSK_HD void finish(std::int64_t, const Sum& sum) const { sum.flush(counts); }
 };
 template <exec::Space Exec, class F>
-void for_several(Exec& ex, const char* label, std::int64_t n, const F& f, Counts* counts) {
-  const std::int64_t each = Exec::kManyThreads ? 1 : 16;
-  for_each(ex, label, (n + each - 1) / each, Several<F>{f, n, each, counts});
+void look_at_each(Exec& ex, const char* label, std::int64_t n, const F& f, Counts* counts) {
+  constexpr std::int64_t kLanes = ByLanes<F>::kLanes;
+  for_each_by_lanes(ex, label, (n + kLanes - 1) / kLanes, ByLanes<F>{f, n, counts});
 }
 
 struct LookAtSample {
+  using Sums = Tally<kAlike, kFacesInside>;
   octree::OctreeView tree;
   poisson::DensityView density;  // without counts where it is not known
   poisson::SamplesView samples;
   Spread spread;
   Counts* counts;
 
-  PSK_HD void operator()(std::int64_t s, Tally& tally) const {
+  PSK_HD void operator()(std::int64_t s, Sums& tally) const {
     const std::int64_t n = samples.positions.size;
     const std::int64_t i = spread(s);
     for (int step = 1; step <= kFollowers && i + step < n; ++step) compare(i, i + step, tally);
-    compare_across(i, static_cast<int>(s % 3), tally);
     PSK_UNROLL for (int k = 0; k < kScatterSteps; ++k) {
       const std::int64_t other = i + (std::int64_t{1} << 2 * k);
       if (other < n) scatter(k, i, other, tally);
     }
     add_up(i, tally);
-    if (s % kSparse == 0 && density.counts != nullptr)
+    const std::int64_t warp = s / ByLanes<LookAtSample>::kLanes;  // each does the same thing with all of its lanes
+    if (warp % kSparse != 0)
+      compare_across(i, static_cast<int>(s % 3), tally);
+    else if (density.counts != nullptr)
       exec::add(counts->densities + DensityBin::of(density.samples_per_cell(tree, samples.positions[i])), 1);
   }
 
  private:
   /// With the first samples of the two cells beside that of sample i along an axis, cells that hold a few samples.
-  PSK_HD void compare_across(std::int64_t i, int axis, Tally& tally) const {
+  PSK_HD void compare_across(std::int64_t i, int axis, Sums& tally) const {
     constexpr std::int32_t kFew = 4;
     const Vec3f p = samples.positions[i];
     octree::Leaf at = octree::locate(tree, octree::point_key(p.x, p.y, p.z), tree.depth);
@@ -78,7 +88,7 @@ struct LookAtSample {
 
   /// Opposed normals are those of two sheets, or one of them is flipped. Sheets lie at different heights along the
   /// normals; two samples of one surface do so by chance, as often this way as that.
-  PSK_HD void compare(std::int64_t i, std::int64_t j, Tally& tally) const {
+  PSK_HD void compare(std::int64_t i, std::int64_t j, Sums& tally) const {
     constexpr double kAlikeCosine = 0.5;
     constexpr double kSteep = 0.35;  // across an edge, or from sheet to sheet
     const Double3 n = to_double(samples.normals[i]);
@@ -89,14 +99,16 @@ struct LookAtSample {
     const double limit = kSteep * kSteep * dot(d, d);
     if (!(along_n * along_n < limit && along_m * along_m < limit)) return;
     const double cosine = dot(n, m);
-    if (cosine > kAlikeCosine) tally.add(kAlike);
-    if (!(cosine < -kAlikeCosine)) return;
+    const bool opposed = cosine < -kAlikeCosine;
     const double behind = along_m - along_n;  // > 0: each lies behind the other
-    tally.add(behind > 0 ? kApart : behind < 0 ? kFacing : kAbreast);
+    tally.count(kAlike, cosine > kAlikeCosine);
+    tally.count(kApart, opposed && behind > 0);
+    tally.count(kFacing, opposed && behind < 0);
+    tally.count(kAbreast, opposed && behind == 0);
   }
 
   /// Half the squared distance across the surface, to which even curvature does not add (poisson/trust.hpp).
-  PSK_HD void scatter(int k, std::int64_t i, std::int64_t j, Tally& tally) const {
+  PSK_HD void scatter(int k, std::int64_t i, std::int64_t j, Sums& tally) const {
     constexpr double kAgreement = 0.8;
     constexpr double kMost = 512;  // finest cells^2
     const Double3 n = to_double(samples.normals[i]);
@@ -105,12 +117,12 @@ struct LookAtSample {
     const double across = 0.5 * static_cast<double>(std::int64_t{1} << tree.depth) *
                           dot(n + m, to_double(samples.positions[j]) - to_double(samples.positions[i]));
     const double half = 0.5 * across * across;
-    tally.add_fraction(static_cast<Sum>(kScatter + k), half < kMost ? half : kMost);
-    tally.add(static_cast<Sum>(kScatterPairs + k));
+    tally.add_fraction(kScatter + k, half < kMost ? half : kMost);
+    tally.add(kScatterPairs + k, 1);
   }
 
   /// What the sample adds to the area, the vector area and the volume that are enclosed.
-  PSK_HD void add_up(std::int64_t i, Tally& tally) const {
+  PSK_HD void add_up(std::int64_t i, Sums& tally) const {
     const double cell = 1.0 / static_cast<double>(std::int64_t{1} << tree.depth);
     const double stands_for = samples.areas.empty() ? 1.0 / static_cast<double>(samples.positions.size)
                                                     : static_cast<double>(samples.areas[i]) * cell * cell;
@@ -151,11 +163,12 @@ PSK_HD inline AtPoint look_at(const field::FieldView& field, const Vec3f& p) {
 }
 
 struct LookAtField {
+  using Sums = Tally<kFacesInside, kSurface>;
   field::FieldView field;
   poisson::SamplesView samples;
   Spread spread;
 
-  PSK_HD void operator()(std::int64_t i, Tally& tally) const {
+  PSK_HD void operator()(std::int64_t i, Sums& tally) const {
     if (i < kAllFacePoints)
       look_at_face(static_cast<int>(i), tally);
     else
@@ -163,35 +176,36 @@ struct LookAtField {
   }
 
  private:
-  PSK_HD void look_at_face(int i, Tally& tally) const {
+  PSK_HD void look_at_face(int i, Sums& tally) const {
     const int face = i / (kFacePoints * kFacePoints);
     const float u = (static_cast<float>(i % kFacePoints) + 0.5F) / kFacePoints;
     const float v = (static_cast<float>(i / kFacePoints % kFacePoints) + 0.5F) / kFacePoints;
     const float at = face % 2 == 0 ? 0.0F : 1.0F;
     const Vec3f p = face / 2 == 0 ? Vec3f{at, u, v} : face / 2 == 1 ? Vec3f{u, at, v} : Vec3f{u, v, at};
-    if (look_at(field, p).above >= 0) tally.add(kFacesInside);
+    tally.count(kFacesInside, look_at(field, p).above >= 0);
   }
 
   /// A sample is off where the level set is farther than two cells of the level that carries its normal.
-  PSK_HD void look_at_sample(std::int64_t i, Tally& tally) const {
+  PSK_HD void look_at_sample(std::int64_t i, Sums& tally) const {
     constexpr float kCells = 2;
     const int depth = samples.splat_depths.empty() ? field.tree.depth : static_cast<int>(samples.splat_depths[i]);
     const auto cell = static_cast<float>(std::int64_t{1} << (field.tree.depth - depth));
     const AtPoint at = look_at(field, samples.positions[i]);
     const float above = at.above < 0 ? -at.above : at.above;
-    tally.add(kSamplesSeen);
-    if (above > kCells * cell * at.slope) tally.add(kSamplesOff);
+    tally.add(kSamplesSeen, 1);
+    tally.count(kSamplesOff, above > kCells * cell * at.slope);
   }
 };
 
 struct LookAtTriangle {
+  using Sums = Tally<kSurface, kSums>;
   octree::OctreeView tree;
   int far_depth;
   ArrayView<const Vec3f> positions;
   ArrayView<const Triangle> triangles;
   Spread spread;
 
-  PSK_HD void operator()(std::int64_t i, Tally& tally) const {
+  PSK_HD void operator()(std::int64_t i, Sums& tally) const {
     const std::int32_t* v = triangles[spread(i)].data();
     const Vec3f a = positions[v[0]];
     const Vec3f b = positions[v[1]];
@@ -215,12 +229,14 @@ struct LookAtTriangle {
     const octree::Leaf leaf = octree::locate(tree, octree::point_key(p.x, p.y, p.z), far_depth);
     if (leaf.depth < far_depth) return true;  // cells are where samples are, and around
     const octree::LevelView& level = tree.levels[far_depth];
+    const auto is_occupied = [&](std::int32_t cell) {
+      return level.is_cell(cell) && level.point_begin[cell] < level.point_begin[cell + 1];
+    };
+    if (is_occupied(leaf.cell)) return false;  // of most
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy)
-        for (int dz = -1; dz <= 1; ++dz) {
-          const std::int32_t cell = level.neighbour(leaf.cell, dx, dy, dz);
-          if (level.is_cell(cell) && level.point_begin[cell] < level.point_begin[cell + 1]) return false;
-        }
+        for (int dz = -1; dz <= 1; ++dz)
+          if (is_occupied(level.neighbour(leaf.cell, dx, dy, dz))) return false;
     return true;
   }
 };
@@ -230,8 +246,7 @@ struct LookAtTriangle {
 template <exec::Space Exec>
 exec::Buffer<Counts> make_counts(Exec& ex) {
   auto counts = exec::make_buffer<Counts>(ex, 1);
-  constexpr std::int64_t kWords = sizeof(Counts) / sizeof(std::uint64_t);
-  exec::fill(ex, ArrayView<std::uint64_t>{reinterpret_cast<std::uint64_t*>(counts.data()), kWords}, std::uint64_t{0});
+  exec::fill(ex, look::words_of(counts), std::uint64_t{0});
   return counts;
 }
 
@@ -239,7 +254,7 @@ template <exec::Space Exec>
 void look_at_samples(Exec& ex, const octree::OctreeView& tree, const poisson::Density& density,
                      const poisson::SamplesView& samples, exec::Buffer<Counts>& counts) {
   const std::int64_t some = std::min(samples.positions.size, kSamples);
-  look::for_several(
+  look::look_at_each(
       ex, "look.samples", some,
       look::LookAtSample{
           tree, {density.depth, density.counts.data()}, samples, {some, samples.positions.size}, counts.data()},
@@ -250,15 +265,15 @@ template <exec::Space Exec>
 void look_at_field(Exec& ex, const field::FieldView& field, const poisson::SamplesView& samples,
                    exec::Buffer<Counts>& counts) {
   const std::int64_t some = std::min(samples.positions.size, kSamples / kSparse);
-  look::for_several(ex, "look.field", kAllFacePoints + some,
-                    look::LookAtField{field, samples, {some, samples.positions.size}}, counts.data());
+  look::look_at_each(ex, "look.field", kAllFacePoints + some,
+                     look::LookAtField{field, samples, {some, samples.positions.size}}, counts.data());
 }
 
 template <exec::Space Exec>
 void look_at_surface(Exec& ex, const octree::OctreeView& tree, int far_depth, const surface::Surface& surface,
                      const exec::Buffer<Counts>& counts) {
   const std::int64_t some = std::min(surface.triangles.size(), kTriangles);
-  look::for_several(
+  look::look_at_each(
       ex, "look.surface", some,
       look::LookAtTriangle{
           tree, far_depth, surface.positions.cview(), surface.triangles.cview(), {some, surface.triangles.size()}},
@@ -267,7 +282,9 @@ void look_at_surface(Exec& ex, const octree::OctreeView& tree, int far_depth, co
 
 template <exec::Space Exec>
 Counts read_counts(Exec& ex, const exec::Buffer<Counts>& counts) {
-  return exec::read_element(ex, counts.cview(), 0);
+  Counts host;
+  copy_to_host(ex, ArrayView<const std::uint64_t>(look::words_of(counts)), reinterpret_cast<std::uint64_t*>(&host));
+  return host;
 }
 
 }  // namespace pointskin::diagnose

@@ -38,7 +38,14 @@ class Gpu : public test::GpuTest {
     EXPECT_EQ(within.samples_outside, on_cpu.report().envelope.samples_outside);
     EXPECT_EQ(within.vertices_moved, on_cpu.report().envelope.vertices_moved);
     EXPECT_EQ(within.farthest_move, on_cpu.report().envelope.farthest_move);
+    EXPECT_EQ(on_gpu.report().depth, on_cpu.report().depth);
+    EXPECT_EQ(on_gpu.report().normals_done, on_cpu.report().normals_done);
+    ASSERT_EQ(on_gpu.report().warnings.size(), on_cpu.report().warnings.size());
+    for (std::size_t i = 0; i < on_cpu.report().warnings.size(); ++i)
+      EXPECT_EQ(on_gpu.report().warnings[i].text, on_cpu.report().warnings[i].text);
+    EXPECT_EQ(on_gpu.report().pieces.triangles_removed, on_cpu.report().pieces.triangles_removed);
     const TrimReport& trimmed = on_gpu.report().trim;
+    EXPECT_EQ(trimmed.quantile, on_cpu.report().trim.quantile);
     EXPECT_EQ(trimmed.density, on_cpu.report().trim.density);
     EXPECT_EQ(trimmed.area_removed, on_cpu.report().trim.area_removed);
     EXPECT_EQ(trimmed.triangles_split, on_cpu.report().trim.triangles_split);
@@ -120,9 +127,13 @@ std::vector<Options> options_to_try() {
     all.push_back({.depth = 6, .field = FieldKind::distance, .offset = offset});
   }
   all.push_back({.depth = 7, .density = true, .normals = false, .trim = 0.9, .island_ratio = 0});
+  all.push_back({.depth = Options::kAutomaticDepth});
+  all.push_back({.depth = 7, .trim = Options::kAutomaticTrim});
+  all.push_back({.depth = 7, .largest = true});
+  all.push_back({.depth = 7, .min_component = 0.1});
   return all;
 }
-constexpr int kOptions = 25;
+constexpr int kOptions = 29;
 
 class GpuWithOptions : public Gpu, public testing::WithParamInterface<int> {};
 
@@ -133,6 +144,30 @@ TEST_P(GpuWithOptions, GivesTheSameBytesAsTheCpu) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryOption, GpuWithOptions, testing::Range(0, kOptions));
+
+TEST_F(Gpu, LeavesOutTheSamePiecesAsTheCpu) {
+  Cloud cloud = test::sphere_cloud(20'000, 30);
+  test::append(cloud, test::sphere_cloud(3'000, 31, 0.4, {1.8, 0, 0}));
+  test::append(cloud, test::sphere_cloud(1'000, 32, 0.1, {1.8, 0.8, 0}));
+  expect_parity(cloud, {.depth = 7, .largest = true});
+  for (const double least : {0.02, 0.3, 2000.0}) expect_parity(cloud, {.depth = 7, .min_component = least});
+}
+
+TEST_F(Gpu, DoesTheSameAboutNormalsAsTheCpu) {
+  const Cloud torus = test::torus_cloud(20'000, 33);
+  Cloud flips = torus;
+  test::Random random(34);
+  for (Vec3f& n : flips.normals)
+    if (random.below(2) == 0) n = {-n.x, -n.y, -n.z};
+  Cloud part = torus;
+  for (std::size_t i = 0; i < part.positions.size(); ++i)
+    if (part.positions[i].x > 0) part.normals[i] = {-part.normals[i].x, -part.normals[i].y, -part.normals[i].z};
+  for (const Cloud& cloud : {test::flipped(torus), flips, part, test::plane_cloud(20'000, 35)}) {
+    for (const PointNormals policy : {PointNormals::automatic, PointNormals::given, PointNormals::repair})
+      expect_parity(cloud, {.depth = 6, .point_normals = policy});
+    expect_parity(cloud, {.depth = 6, .trim = Options::kAutomaticTrim});
+  }
+}
 
 TEST_P(GpuOnCloud, StaysInsideOfAnEnvelopeWithTheSameBytesAsTheCpu) {
   const auto [number, depth] = GetParam();

@@ -21,7 +21,7 @@ struct BooleanArgs : DeviceArgs {
   std::string shift = "auto";
   BooleanOptions booleans;  ///< but for the reconstruction
   SolveArgs solve;
-  bool quiet = false;
+  bool overwrite = false, quiet = false;
 };
 
 /// Defines the options on `command`, bound to `args`.

@@ -20,6 +20,7 @@
 #include "bench/table.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
 #include "progress.hpp"
@@ -83,16 +84,16 @@ struct Bench {
   Results results{};
 };
 
-void check_output(const std::string& option, const std::string& path, const BenchArgs& args) {
-  if (path.empty()) return;
-  if (path == "-") throw Error(ErrorCode::usage, option + ": stdout carries the table; name a file");
-  for (const std::string& input : args.inputs) {
-    std::error_code ignored;  // files that do not exist are not the same
-    if (std::filesystem::equivalent(input, path, ignored)) {
-      throw Error(ErrorCode::usage, fmt::format("{} would overwrite the input {}", option, input));
-    }
+/// The other program and the files that its command names are read, too.
+void check_outputs(const BenchArgs& args, const std::vector<std::string>& peer) {
+  std::vector<std::string> inputs = args.inputs;
+  for (const std::string& word : peer) {
+    if (word != "-") inputs.push_back(word);
+    if (word.find('=') != std::string::npos) inputs.push_back(word.substr(word.find('=') + 1));  // --config=FILE
   }
-  check_replaceable(path);
+  check_distinct(inputs, {{"--report", args.report, OutputKind::report}, {"--plot", args.plot, OutputKind::report}});
+  for (const std::string& file : {args.report, args.plot})
+    if (!file.empty()) check_replaceable(file);
 }
 
 void measure_depth(Bench& bench, const Cloud& cloud, int depth, BenchProgress& progress) {
@@ -148,10 +149,9 @@ void write_outputs(const Bench& bench) {
 /// Whatever can be refused is refused here, before the first measurement.
 void prepare(Bench& bench, const std::vector<CloudSource>& sources) {
   const BenchArgs& args = bench.args;
-  check_output("--report", args.report, args);
-  check_output("--plot", args.plot, args);
-  if (!args.peer.empty()) {
-    bench.peer = parse_peer(args.peer);
+  if (!args.peer.empty()) bench.peer = parse_peer(args.peer);
+  check_outputs(args, bench.peer);
+  if (!bench.peer.empty()) {
     bench.launcher.emplace();
     bench.folder.emplace();
   }

@@ -15,6 +15,7 @@
 #include "boolean_report.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
@@ -32,7 +33,10 @@ using Solid = std::variant<Cloud, Mesh>;
 
 /// Everything that can be found wrong before the inputs are opened.
 void check_files(const BooleanArgs& args) {
-  check_distinct({args.a, args.b}, {{"-o", args.output}, {"--cloud", args.cloud}, {"--report", args.report}});
+  check_distinct(
+      {args.a, args.b},
+      {{"-o", args.output}, {"--cloud", args.cloud, OutputKind::file}, {"--report", args.report, OutputKind::report}},
+      args.overwrite);
   check_mesh_output(args.output);
   if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
     throw_usage(fmt::format("--cloud: {} does not end in .ply", args.cloud));

@@ -11,6 +11,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "input.hpp"
 #include "output_check.hpp"
 #include "signals.hpp"
@@ -22,7 +23,7 @@ struct ConvertArgs {
   std::string input, output;
   std::string shift = "auto";
   int threads = 0;
-  bool quiet = false;
+  bool overwrite = false, quiet = false;
 };
 
 std::string write(const ConvertArgs& args, const Mesh& mesh) {
@@ -43,6 +44,7 @@ std::string write(const ConvertArgs& args, const Cloud& cloud) {
 int run(const ConvertArgs& args) {
   check_threads(args.threads);
   const ReadOptions options{.shift = parse_shift(args.shift), .threads = args.threads};
+  check_distinct({args.input}, {{"OUT", args.output}}, args.overwrite);
   check_mesh_output(args.output);
   const std::variant<Cloud, Mesh> content = read_cloud_or_mesh(args.input, options);
   on_interrupt(OnInterrupt::remember);
@@ -64,6 +66,7 @@ void add_convert(CLI::App& program, Job& job) {
       ->type_name("S")
       ->group("Input")
       ->capture_default_str();
+  add_overwrite_option(*command, args->overwrite);
   add_threads_option(*command, args->threads, "Limits");
   command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
   finish_command(*command, job, args, run);

@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "deform_script.hpp"
+#include "file_plan.hpp"
 #include "fit_args.hpp"
 #include "frame_files.hpp"
 #include "input.hpp"
@@ -35,7 +36,7 @@ struct DeformArgs : FitArgs, DeviceArgs {
   std::string script, output, cloud, report;  ///< empty: none
   std::string shift = "auto";
   int frames = 1;
-  bool frames_given = false, quiet = false;
+  bool frames_given = false, overwrite = false, quiet = false;
 };
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
@@ -44,8 +45,22 @@ std::string file_of(const DeformArgs& args, const std::string& pattern, int fram
   return args.frames_given ? frame_file(pattern, frame, args.frames) : pattern;
 }
 
+/// With --frames, a file a frame.
+void check_names(const DeformArgs& args) {
+  FilePlan plan{{{args.script}}, {{"--report", args.report, OutputKind::report}}, args.overwrite};
+  if (!args.envelope.empty()) plan.inputs.push_back({args.envelope});
+  for (const std::string& input : args.inputs) plan.inputs.push_back({input});
+  const std::vector<OutputFile> patterns = {{"-o", args.output}, {"--cloud", args.cloud}};
+  for (const OutputFile& pattern : patterns) {
+    for (int frame = 0; frame < args.frames && !pattern.file.empty(); ++frame)
+      plan.outputs.push_back(
+          {pattern.option, file_of(args, pattern.file, frame), pattern.kind, args.frames_given ? frame : kNoFrame});
+  }
+  check_files(plan);
+}
+
 /// Everything that can be found wrong before the input is opened.
-void check_files(const DeformArgs& args) {
+void check_outputs(const DeformArgs& args) {
   if (args.output.empty() && args.cloud.empty()) throw_usage("no output; name a mesh with -o or a cloud with --cloud");
   if (args.frames_given && (args.frames < 2 || args.frames > 100'000))
     throw_usage(fmt::format("--frames: {} is not in [2, 100000]", args.frames));
@@ -53,12 +68,7 @@ void check_files(const DeformArgs& args) {
     check_pattern(args.output, "-o", "--frames");
     check_pattern(args.cloud, "--cloud", "--frames");
   }
-  std::vector<std::string> inputs = args.inputs;
-  inputs.push_back(args.script);
-  if (!args.envelope.empty()) inputs.push_back(args.envelope);
-  std::vector<OutputFile> outputs = {{"-o", args.output}, {"--cloud", args.cloud}, {"--report", args.report}};
-  if (args.output.empty()) outputs.erase(outputs.begin());  // stdout may carry the cloud then
-  check_distinct(inputs, outputs);
+  check_names(args);
   if (!args.output.empty()) check_mesh_output(file_of(args, args.output, 0));
   if (!args.cloud.empty()) {
     if (args.cloud != "-" && !has_extension(args.cloud, ".ply"))
@@ -149,7 +159,7 @@ Json options_json(const DeformArgs& args, const Options& options) {
 int run(const DeformArgs& args) {
   Options options = fit_options(args);
   parse_shift(args.shift);
-  check_files(args);
+  check_outputs(args);
   const Device device = args.chosen();
   Deformation deformation = read_deformation(args.script);
   const Stopwatch reading;
@@ -199,6 +209,7 @@ void define_files(CLI::App& command, DeformArgs& args) {
   file("-o,--output", args.output, "OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout");
   file("--cloud", args.cloud, "OUT", "deformed points: .ply, - writes to stdout");
   file("--report", args.report, "FILE", "write what was done as JSON; also measures how far apart samples are");
+  add_overwrite_option(command, args.overwrite);
   file("--shift", args.shift, "S", "offset subtracted while working: auto, none or x,y,z in world units")
       ->capture_default_str();
   command.add_option("--frames", args.frames, "N frames from the rest pose to the deformation; {} in OUT: number")

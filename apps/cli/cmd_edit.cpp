@@ -1,5 +1,4 @@
 // pointskin edit: a cloud and a script of strokes, removals and copied parts in, mesh and what every step did out.
-#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "edit_script.hpp"
+#include "file_plan.hpp"
 #include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
@@ -30,16 +30,25 @@ struct EditArgs : FitArgs, DeviceArgs {
   std::string script;
   std::string output, save, cloud, report;  ///< empty: none
   std::string shift = "auto";
-  bool cold = false, quiet = false;
+  bool overwrite = false, cold = false, quiet = false;
 };
 
-void check_files(const EditArgs& args) {
+/// @param parts  files that the script names
+void check_names(const EditArgs& args, const std::vector<std::string>& parts) {
   std::vector<std::string> inputs = args.inputs;
-  inputs.push_back(args.script);
-  if (!args.envelope.empty()) inputs.push_back(args.envelope);
-  inputs.erase(std::remove(inputs.begin(), inputs.end(), args.save), inputs.end());  // a script may replace itself
+  inputs.insert(inputs.end(), {args.script, args.envelope});
+  inputs.insert(inputs.end(), parts.begin(), parts.end());
   check_distinct(inputs,
-                 {{"-o", args.output}, {"--save", args.save}, {"--cloud", args.cloud}, {"--report", args.report}});
+                 {{"-o", args.output},
+                  {"--save", args.save, OutputKind::file},
+                  {"--cloud", args.cloud, OutputKind::file},
+                  {"--report", args.report, OutputKind::report}},
+                 args.overwrite);
+}
+
+/// Everything that can be found wrong before an input is opened.
+void check_outputs(const EditArgs& args) {
+  check_names(args, {});
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
     throw Error(ErrorCode::usage, fmt::format("--cloud: {}: clouds are written as .ply only", args.cloud));
@@ -119,9 +128,10 @@ int run(const EditArgs& args) {
   options.reconstruction = fit_options(args);
   options.warm_start = !args.cold;
   parse_shift(args.shift);
-  check_files(args);
+  check_outputs(args);
   const Device device = args.chosen();
   const EditScript script(args.script);
+  check_names(args, script.parts());
   options.reconstruction.envelope = read_envelope(args.envelope, args.threads);
   Cloud base = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
   drop_unusable(base);
@@ -159,6 +169,7 @@ void define_files(CLI::App& command, EditArgs& args) {
   file("--cloud", args.cloud, "FILE", "write the edited points, with the property added, as PLY");
   file("--save", args.save, "FILE", "write the operations that are done, as a script");
   file("--report", args.report, "FILE", "write what every step did as JSON");
+  add_overwrite_option(command, args.overwrite);
   command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group(group)

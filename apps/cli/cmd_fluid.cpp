@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -20,6 +19,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "fluid_args.hpp"
 #include "frame_files.hpp"
 #include "json_text.hpp"
@@ -45,23 +45,26 @@ struct FluidFrameRecord {
   double read_ms = 0, surface_ms = 0, write_ms = 0, total_ms = 0;
 };
 
-void check_files(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
-  if (args.report == "-") throw Error(ErrorCode::usage, "--report: stdout carries the mesh only; name a file");
+/// A frame may take the place of its own particles; those of the others are still to be read.
+void check_names(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
+  FilePlan plan{{}, {{"--report", args.report, OutputKind::report}}, args.overwrite};
+  for (const FluidFrameRecord& frame : frames) {
+    const auto number = static_cast<std::int64_t>(plan.inputs.size());
+    plan.inputs.push_back({frame.input.path, number});
+    plan.outputs.push_back({"-o", frame.output, OutputKind::result, number});
+  }
+  check_files(plan);
+}
+
+void check_outputs(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
   if (!is_pattern(args.input) && is_pattern(args.output))
     throw Error(ErrorCode::usage, fmt::format("-o: {} has {{}}, but the input has none", args.output));
   if (is_pattern(args.input) && !is_pattern(args.output))
     throw Error(ErrorCode::usage,
                 fmt::format("-o: {} needs {{}}, where the frame's number goes, as the input has it", args.output));
   check_mesh_output(frames.front().output);
-  for (const FluidFrameRecord& frame : frames) {
-    std::error_code ignored;  // files that do not exist are not the same
-    for (const std::string& written : {frame.output, args.report})
-      if (!written.empty() && written != "-" && std::filesystem::equivalent(frame.input.path, written, ignored))
-        throw Error(ErrorCode::usage, "the input " + frame.input.path + " would be overwritten");
-  }
-  if (args.report.empty()) return;
-  if (args.report == args.output) throw Error(ErrorCode::usage, "--report names the same file as -o");
-  check_replaceable(args.report);
+  check_names(args, frames);
+  if (!args.report.empty()) check_replaceable(args.report);
 }
 
 /// Reads, makes and writes frames, with memory that is used again. One a thread.
@@ -294,7 +297,7 @@ int run(const FluidArgs& args) {
     frames.back().output = with_number(args.output, file.number);
     frames.back().input = std::move(file);
   }
-  check_files(args, frames);
+  check_outputs(args, frames);
 
   on_interrupt(OnInterrupt::remember);
   Sequence sequence(args, options, device, frames);

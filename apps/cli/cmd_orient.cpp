@@ -11,6 +11,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
@@ -28,11 +29,11 @@ struct OrientArgs : DeviceArgs {
   std::vector<std::string> inputs;
   std::string output, report;
   std::string shift = "auto";
-  bool no_confidence = false, quiet = false;
+  bool no_confidence = false, overwrite = false, quiet = false;
 };
 
 void check_files(const OrientArgs& args) {
-  check_distinct(args.inputs, {{"-o", args.output}, {"--report", args.report}});
+  check_distinct(args.inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
   if (args.output != "-" && !has_extension(args.output, ".ply"))
     throw Error(ErrorCode::usage,
                 fmt::format("-o: {} does not end in .ply; clouds are written as .ply only", args.output));
@@ -96,6 +97,7 @@ void add_orient(CLI::App& program, Job& job) {
       ->type_name("FILE")
       ->group("Files")
       ->check(needs_a_name);
+  add_overwrite_option(*command, args->overwrite);
   command->add_option("--shift", args->shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group("Files")

@@ -10,6 +10,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
@@ -31,7 +32,7 @@ void check_files(const ReconstructArgs& args) {
     throw_usage("no output; name it with -o");
   std::vector<std::string> inputs = args.inputs;
   if (!args.envelope.empty()) inputs.push_back(args.envelope);
-  check_distinct(inputs, {{"-o", args.output}, {"--report", args.report}});
+  check_distinct(inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
 }

@@ -15,4 +15,8 @@ void add_threads_option(CLI::App& command, int& threads, const std::string& grou
       ->capture_default_str();
 }
 
+void add_overwrite_option(CLI::App& command, bool& overwrite) {
+  command.add_flag("--overwrite", overwrite, "let an output replace an input, once that has been read")->group("Files");
+}
+
 }  // namespace pointskin::cli

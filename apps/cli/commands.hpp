@@ -32,6 +32,9 @@ CLI::App* add_command(CLI::App& program, const std::string& name, const std::str
 /// Adds `--threads N` bound to `threads`, in the group `group`.
 void add_threads_option(CLI::App& command, int& threads, const std::string& group);
 
+/// Adds `--overwrite` bound to `overwrite`: see FilePlan.
+void add_overwrite_option(CLI::App& command, bool& overwrite);
+
 /// Ends the definition of a command: what it does, and its --help (last in the list).
 template <class Args>
 void finish_command(CLI::App& command, Job& job, std::shared_ptr<Args> args, int (*run)(const Args&)) {

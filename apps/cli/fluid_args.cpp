@@ -17,6 +17,7 @@ void define_files(CLI::App& command, FluidArgs& args) {
   command.add_option("--report", args.report, "write what was done as JSON; also measures the meshes")
       ->type_name("FILE")
       ->group(group);
+  add_overwrite_option(command, args.overwrite);
   command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group(group)

@@ -22,7 +22,7 @@ struct FluidArgs : DeviceArgs {
   SimulateArgs simulation;  ///< with a scene: instead of `input`
   std::optional<std::int64_t> first, last;
   int at_once = 0;
-  bool no_normals = false, no_attributes = false, no_weights = false, quiet = false;
+  bool no_normals = false, no_attributes = false, no_weights = false, overwrite = false, quiet = false;
 };
 
 void define_fluid_options(CLI::App& command, FluidArgs& args);

@@ -12,6 +12,7 @@
 
 #include "args.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "fluid/simulation.hpp"
 #include "frame_files.hpp"
 #include "json_text.hpp"
@@ -29,6 +30,16 @@ using Json = nlohmann::ordered_json;
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
+void check_names(const SimulateArgs& args, const SimulateOutput& output) {
+  FilePlan plan{{}, {{"--report", output.report, OutputKind::report}}};
+  const std::vector<OutputFile> patterns = {{"-o", output.output}, {"--particles-out", args.particles_out}};
+  for (const OutputFile& pattern : patterns) {
+    for (int frame = 0; frame < args.frames && !pattern.file.empty(); ++frame)
+      plan.outputs.push_back({pattern.option, frame_file(pattern.file, frame, args.frames), pattern.kind, frame});
+  }
+  check_files(plan);
+}
+
 /// Everything that can be found wrong before the first frame.
 simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& output) {
   const auto kind = simulation::parse_scene(args.scene);
@@ -45,9 +56,7 @@ simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& outp
     throw_usage("no output; name meshes with -o, particles with --particles-out or a --report");
   check_pattern(output.output, "-o", "--simulate");
   check_pattern(args.particles_out, "--particles-out", "--simulate");
-  if (!output.output.empty() && output.output == args.particles_out)
-    throw_usage("-o and --particles-out name the same files");
-  if (output.report == "-") throw_usage("--report: stdout carries data only; name a file");
+  check_names(args, output);
   if (!output.output.empty()) check_mesh_output(frame_file(output.output, 0, args.frames));
   if (!args.particles_out.empty()) {
     if (!has_extension(args.particles_out, ".ply"))

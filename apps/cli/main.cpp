@@ -15,6 +15,7 @@
 #include "console.hpp"
 #include "help.hpp"
 #include "signals.hpp"
+#include "standard_files.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -96,6 +97,7 @@ int guarded_main(const std::vector<std::string>& args) {
 }  // namespace pointskin::cli
 
 int main(int argc, char** argv) {
+  pointskin::cli::hold_standard_files();
   pointskin::cli::install_signal_handlers();
   return pointskin::cli::guarded_main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
 }

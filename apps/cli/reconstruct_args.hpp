@@ -26,7 +26,8 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   double width_world = 0;        ///< > 0: chooses the depth
   int repeat = 0;
   bool width_given = false, repeat_given = false;
-  bool problems = false;  ///< list regions whose topology is doubtful; a mesh is not needed then
+  bool problems = false;   ///< list regions whose topology is doubtful; a mesh is not needed then
+  bool overwrite = false;  ///< results may replace inputs
   bool colors = false, dry_run = false, quiet = false, verbose = false;
 };
 

@@ -8,6 +8,7 @@
 #include <pointskin/boolean.hpp>
 
 #include "fit_args.hpp"
+#include "given_options.hpp"
 
 namespace pointskin::cli {
 
@@ -22,6 +23,7 @@ struct BooleanArgs : DeviceArgs {
   BooleanOptions booleans;  ///< but for the reconstruction
   SolveArgs solve;
   bool overwrite = false, quiet = false;
+  GivenOptions given;
 };
 
 /// Defines the options on `command`, bound to `args`.

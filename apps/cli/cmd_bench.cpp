@@ -25,6 +25,8 @@
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "signals.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -144,6 +146,8 @@ void write_outputs(const Bench& bench) {
   const BenchArgs& args = bench.args;
   if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(bench.results, args, bench.devices)));
   if (!args.plot.empty()) write_file_atomically(args.plot, plot(bench.results));
+  for (const std::string& file : {args.report, args.plot})
+    if (!file.empty() && !args.quiet) print_note(file_words(file) + "written");
 }
 
 /// Whatever can be refused is refused here, before the first measurement.
@@ -165,6 +169,7 @@ int run(const BenchArgs& args) {
   const std::vector<CloudSource> sources = cloud_sources(args);
   Bench bench{.args = args};
   prepare(bench, sources);
+  if (args.peer.empty()) warn_unused(args.given, {"--peer-repeat"}, "without --peer");
   BenchProgress progress(sources, !args.quiet && stderr_is_terminal());
   for (const Device& device : bench.devices) {
     if (!args.quiet) print_note(fmt::format("{}: {}", short_name(device), device.name()));

@@ -14,6 +14,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "deform_reach.hpp"
 #include "deform_script.hpp"
 #include "file_plan.hpp"
 #include "fit_args.hpp"
@@ -25,6 +26,8 @@
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -37,6 +40,7 @@ struct DeformArgs : FitArgs, DeviceArgs {
   std::string shift = "auto";
   int frames = 1;
   bool frames_given = false, overwrite = false, quiet = false;
+  GivenOptions given;
 };
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
@@ -100,7 +104,8 @@ class Frames {
 
   [[nodiscard]] const Json& json() const { return json_; }
   [[nodiscard]] double median_ms() const { return spread_of(frame_ms_).median; }
-  [[nodiscard]] std::int64_t triangles() const { return static_cast<std::int64_t>(mesh_.triangles.size()); }
+  /// Of the last frame; empty without meshes.
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
 
  private:
   void run_one(int frame) {
@@ -156,6 +161,33 @@ Json options_json(const DeformArgs& args, const Options& options) {
   return json;
 }
 
+/// Options that come to nothing, and parts of the script.
+void warn_about_unused(const DeformArgs& args, const Options& options, const Deformation& deformation,
+                       const Cloud& cloud) {
+  warn_about_unused(args.given, options, args.output, false);
+  warn_about_unused(args.given, options, cloud, args.output);
+  if (args.output.empty())
+    warn_unused(args.given,
+                {"--linear-fit", "--open", "--envelope", "--offset", "--trim", "--island-ratio", "--weakness",
+                 "--no-normals", "--density", "--keep-attributes"},
+                kNoMesh);
+  if (!moves_anything(deformation)) print_warning(fmt::format("{}: moves nothing", args.script));
+  for (const std::string& story : idle_parts(deformation, cloud))
+    print_warning(fmt::format("{}: {}", args.script, story));
+}
+
+/// The last line.
+std::string summary(const DeformArgs& args, const DeformReport& report, const Frames& frames) {
+  const std::string mesh = args.output.empty() ? ""
+                                               : fmt::format("; triangles {}, {}", frames.mesh().triangles.size(),
+                                                             shape_words(frames.mesh(), args.threads));
+  return fmt::format(
+      "{}points {}, of them inserted {}, thinned {}{}; {}: median {:.1f} ms, {:.1f} frames per second; memory {} host",
+      file_words(args.output.empty() ? args.cloud : args.output), report.points, report.inserted, report.thinned, mesh,
+      counted(args.frames, "frame"), frames.median_ms(), 1000 / frames.median_ms(),
+      format_bytes(static_cast<double>(host_peak_bytes())));
+}
+
 int run(const DeformArgs& args) {
   Options options = fit_options(args);
   parse_shift(args.shift);
@@ -168,6 +200,7 @@ int run(const DeformArgs& args) {
   drop_unusable(cloud);
   const double read_ms = reading.ms();
   deformation = checked(args, std::move(deformation), cloud.size());
+  warn_about_unused(args, options, deformation, cloud);
 
   on_interrupt(OnInterrupt::remember);
   options.progress = [](const Progress&) { return !interrupted(); };
@@ -190,12 +223,8 @@ int run(const DeformArgs& args) {
   json["ms"] = {
       {"read", read_ms}, {"upload", report.upload_ms}, {"rest", report.rest_ms}, {"frame_median", frames.median_ms()}};
   if (!args.report.empty()) write_file_atomically(args.report, json_text(json));
-  if (!args.quiet)
-    print_note(
-        fmt::format("points {}, of them inserted {}, thinned {}; triangles {}; {} frames: median {:.1f} ms, "
-                    "{:.1f} frames per second",
-                    report.points, report.inserted, report.thinned, frames.triangles(), args.frames, frames.median_ms(),
-                    1000 / frames.median_ms()));
+  warn_about_envelope(report.run.envelope, report.run.points);
+  if (!args.quiet) print_note(summary(args, report, frames));
   return 0;
 }
 

@@ -29,6 +29,7 @@
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -39,6 +40,8 @@ using Json = nlohmann::ordered_json;
 struct FluidFrameRecord {
   FrameFile input;
   std::string output;
+  bool is_last = false;
+  std::string shape;  ///< of the last mesh, in words
   std::int64_t particles = 0, dropped = 0, triangles = 0;
   FluidReport run;
   MeshReport mesh;  ///< with --report
@@ -97,6 +100,8 @@ class Worker {
     if (!frame.input.number.empty()) frame_was_written();
     frame.total_ms = start.ms();
     if (!args_.report.empty()) frame.mesh = measure(mesh_, threads_);
+    if (frame.is_last && !args_.quiet)
+      frame.shape = args_.report.empty() ? shape_words(mesh_, threads_) : shape_words(frame.mesh);
   }
 
  private:
@@ -150,7 +155,7 @@ class Sequence {
     const int threads = args_.threads > 0 ? args_.threads : static_cast<int>(std::thread::hardware_concurrency());
     const std::int64_t wanted = args_.at_once > 0 ? args_.at_once : std::max(1, threads);
     const std::int64_t memory =
-        args_.max_memory.empty() ? device_.available_bytes() / 5 * 4 : parse_bytes(args_.max_memory);
+        args_.max_memory.empty() ? device_.available_bytes() / 5 * 4 : parse_bytes(args_.max_memory, "--max-memory");
     // Frames grow: half as much again, and the file, the particles and the mesh on the host.
     const FluidFrameRecord& first = frames_.front();
     const std::int64_t each =
@@ -285,9 +290,10 @@ int run(const FluidArgs& args) {
   check_given(args);
   const FluidOptions options = library_options(args);
   if (!args.simulation.scene.empty())
-    return run_simulation(args.simulation, {args.output, args.report, args, args.quiet, options});
+    return run_simulation(args.simulation, {args.output, args.report, args, args.quiet, options,
+                                            [&args](bool on_gpu) { warn_about_unused(args, on_gpu); }});
   parse_shift(args.shift);
-  if (!args.max_memory.empty()) parse_bytes(args.max_memory);
+  if (!args.max_memory.empty()) parse_bytes(args.max_memory, "--max-memory");
   if (args.at_once < 0 || args.at_once > 4096)
     throw Error(ErrorCode::usage, fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
   const Device device = args.chosen();
@@ -298,6 +304,8 @@ int run(const FluidArgs& args) {
     frames.back().input = std::move(file);
   }
   check_outputs(args, frames);
+  warn_about_unused(args, device.kind == DeviceKind::cuda);
+  frames.back().is_last = true;
 
   on_interrupt(OnInterrupt::remember);
   Sequence sequence(args, options, device, frames);
@@ -308,9 +316,10 @@ int run(const FluidArgs& args) {
   std::vector<double> surface_ms;
   for (const FluidFrameRecord& frame : frames) surface_ms.push_back(frame.surface_ms);
   const FluidFrameRecord& last = frames.back();
-  print_note(fmt::format("{}particles {}, depth {}, triangles {}; ms: surface {:.1f}{}, total {:.1f}; {} at once",
+  print_note(fmt::format("{}{}particles {}, depth {}, triangles {}, {}; ms: surface {:.1f}{}, total {:.1f}; {} at once",
+                         file_words(args.output),
                          frames.size() > 1 ? fmt::format("frames {}; the last one: ", frames.size()) : "",
-                         last.particles, last.run.depth, last.triangles, spread_of(surface_ms).median,
+                         last.particles, last.run.depth, last.triangles, last.shape, spread_of(surface_ms).median,
                          frames.size() > 1 ? " in the middle" : "", total_ms, sequence.at_once()));
   return 0;
 }

@@ -19,6 +19,8 @@
 #include "report.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -44,16 +46,29 @@ NormalOptions normal_options_of(const ReconstructArgs& args) {
   return normal_options(normals, "--estimate-normals");
 }
 
-void warn_about_options(const ReconstructArgs& args) {
-  if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
+bool makes_normals(const ReconstructArgs& args) { return !args.estimate_normals.empty(); }
+
+/// Where the mesh goes, as far as it matters to properties of it: runs that are only timed make one, too.
+std::string mesh_file(const ReconstructArgs& args) {
+  return args.output.empty() && (args.dry_run || args.repeat_given) ? "-" : args.output;
 }
 
-bool makes_normals(const ReconstructArgs& args) { return !args.estimate_normals.empty(); }
+void warn_about_options(const ReconstructArgs& args, const Options& options) {
+  if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
+  warn_about_unused(args.given, options, mesh_file(args), !args.report.empty());
+  warn_about_ascii(args.given, args.output);
+  if (mesh_file(args).empty())
+    warn_unused(args.given, {"--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"},
+                kNoMesh);
+  if (!makes_normals(args)) warn_about_unused_normals(args.given);
+  warn_about_poisson_recon(args.given, args.poisson_recon);
+}
 
 /// Only what becomes part of the mesh.
 void drop_attributes(const ReconstructArgs& args, Cloud& cloud) {
-  if (!args.options.attributes && !args.colors) cloud.attributes.clear();
-  if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
+  const bool all = args.options.attributes || !args.poisson_recon.data.empty();
+  if (!all && !args.colors) cloud.attributes.clear();
+  if (!all && args.colors && !keep_colours_only(cloud))
     print_warning("--colors: the points have no red, green or blue");
 }
 
@@ -63,6 +78,7 @@ void make_normals(const ReconstructArgs& args, Record& record, Cloud& cloud) {
   options.confidence = false;
   on_interrupt(OnInterrupt::remember);
   record.normals = estimate_normals(cloud, options, record.device, args.quiet);
+  warn_about_unused_normals(args.given, record.normals->method);
   drop_attributes(args, cloud);
 }
 
@@ -131,15 +147,6 @@ void check_memory(std::int64_t estimate, std::int64_t limit) {
                           bytes_text(estimate), format_bytes(static_cast<double>(limit))));
 }
 
-void warn_about_strays(const Cloud& cloud, int threads) {
-  const Strays strays = find_strays(cloud.positions, threads);
-  if (strays.points.empty()) return;
-  const Vec3f& p = cloud.positions[static_cast<std::size_t>(strays.points.front())];
-  const Vec3d& origin = cloud.origin;
-  print_warning(strays_text(static_cast<std::int64_t>(strays.points.size()),
-                            {origin[0] + p.x, origin[1] + p.y, origin[2] + p.z}));
-}
-
 void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record, const Estimate& estimate) {
   const std::string with_cloud =
       estimate.cloud > 0 ? (args.envelope.empty() ? ", with the cloud " : ", with the cloud and the envelope ") +
@@ -160,6 +167,7 @@ nlohmann::ordered_json other_options(const ReconstructArgs& args) {
   json["repeat"] = args.repeat;
   json["inputs"] = args.inputs;
   json["output"] = or_null(args.output);
+  json["ascii"] = args.ascii;
   return json;
 }
 
@@ -177,6 +185,7 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   line.clear();
   record.run = reconstructor.report();
   if (record.run.strays > 0) print_warning(strays_text(record.run.strays, record.run.farthest_strays.front()));
+  warn_about_envelope(record.run.envelope, record.run.points);
   if (mesh.triangles.empty()) throw Error(ErrorCode::empty_result, "the surface has no triangles");
   if (args.repeat > 0) {
     options.residuals = false;  // They cost time and are not part of the job.
@@ -191,7 +200,7 @@ void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record)
   throw_if_interrupted();
   if (args.output.empty()) return;
   const Stopwatch watch;
-  write_mesh(args.output, mesh, args.threads);
+  write_mesh(args.output, mesh, {.ascii = args.ascii, .threads = args.threads});
   record.write_ms = watch.ms();
 }
 
@@ -213,7 +222,7 @@ int run(const ReconstructArgs& given) {
   parse_shift(args.shift);
   check_files(args);
   record.device = args.chosen();
-  warn_about_options(args);
+  warn_about_options(args, record.options);
 
   record.options.envelope = read_envelope(args.envelope, args.threads);
   Cloud cloud = read_input(args, record);
@@ -228,6 +237,7 @@ int run(const ReconstructArgs& given) {
 
   if (makes_normals(args)) make_normals(args, record, cloud);
   on_interrupt(OnInterrupt::remember);
+  warn_about_unused(args.given, record.options, cloud, mesh_file(args));
   const Mesh mesh = compute(args, cloud, record);
   cloud = Cloud();
   write_output(args, mesh, record);
@@ -236,14 +246,13 @@ int run(const ReconstructArgs& given) {
 
   if (record.options.weakness) record.problems = find_problems(mesh);
   record.mesh.triangles = static_cast<std::int64_t>(mesh.triangles.size());
-  if (!args.report.empty()) {
-    record.mesh = measure(mesh, args.threads);
-    write_file_atomically(args.report, json_text(to_json(record)));
-  }
+  if (!args.report.empty()) record.mesh = measure(mesh, args.threads);
+  if (!args.quiet) record.shape = args.report.empty() ? shape_words(mesh, args.threads) : shape_words(record.mesh);
+  if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(record)));
   if (args.problems && args.output == "-") print_note(problem_table(record.problems));
   if (args.problems && args.output != "-") write_stdout(problem_table(record.problems) + "\n");
   if (args.verbose) print_note(level_table(record));
-  if (!args.quiet) print_note(summary(record));
+  if (!args.quiet) print_note(file_words(args.output) + summary(record));
   return 0;
 }
 

@@ -62,7 +62,7 @@ RenderOptions library_options(const RenderArgs& args) {
   RenderOptions options = args.options;
   check_threads(options.threads);
   parse_size(args.size, options);
-  if (args.up != "y" && args.up != "z") throw Error(ErrorCode::usage, "--up: must be y or z");
+  if (args.up != "y" && args.up != "z") throw Error(ErrorCode::usage, "--up: " + not_one_of(args.up, {"y", "z"}));
   if (!args.target.empty()) options.target_world = parse_target(args.target);
   options.up = args.up == "z" ? UpAxis::z : UpAxis::y;
   options.projection = args.orthographic ? Projection::orthographic : Projection::perspective;

@@ -9,7 +9,9 @@
 #include <pointskin/reconstruct.hpp>
 
 #include "fit_args.hpp"
+#include "given_options.hpp"
 #include "normal_args.hpp"
+#include "poisson_recon.hpp"
 
 namespace pointskin::cli {
 
@@ -28,6 +30,9 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   bool width_given = false, repeat_given = false;
   bool problems = false;   ///< list regions whose topology is doubtful; a mesh is not needed then
   bool overwrite = false;  ///< results may replace inputs
+  bool ascii = false;      ///< PLY as text
+  PoissonReconArgs poisson_recon;
+  GivenOptions given;
   bool colors = false, dry_run = false, quiet = false, verbose = false;
 };
 

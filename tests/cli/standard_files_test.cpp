@@ -1,5 +1,9 @@
 // stdin, stdout and stderr that the caller has closed: nothing that is written takes their place.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -37,6 +41,26 @@ TEST_F(StandardFiles, WarningsDoNotLandInOutputs) {
     EXPECT_EQ(made_by(closed), expected_) << closed;
     const std::string report = read_file(folder_ / "r.json");
     EXPECT_TRUE(report.starts_with("{") && report.ends_with("}\n")) << closed << report.substr(0, 200);
+  }
+}
+
+/// While some frames are written, others are warned about: without a stderr the warnings would go to the files.
+TEST_F(StandardFiles, WarningsOfSomeFramesDoNotLandInOthers) {
+  constexpr int kFrames = 16;
+  for (int frame = 10; frame < 10 + kFrames; ++frame) {
+    std::vector<Sample> samples = sphere(900 + frame);
+    samples.push_back({{NAN, 0, 0}, {0, 0, 1}});
+    write_file(folder_ / ("p_" + std::to_string(frame) + ".ply"), ply_bytes(samples, false));
+  }
+  const std::string fluid = "exec \"$P\" fluid 'p_{}.ply' -r 0.06 --at-once 4 --threads 4 -q ";
+  const Result open = run_shell(fluid + "-o 'open_{}.ply'", folder_.path());
+  ASSERT_EQ(std::count(open.err.begin(), open.err.end(), '\n'), kFrames) << open.err;
+  for (const std::string closed : {"2>&-", "0<&- 1>&- 2>&-"}) {
+    ASSERT_EQ(run_shell(fluid + "-o 'closed_{}.ply' " + closed, folder_.path()).exit_code, 0);
+    for (int frame = 10; frame < 10 + kFrames; ++frame) {
+      const std::string number = std::to_string(frame) + ".ply";
+      EXPECT_TRUE(read_file(folder_ / ("closed_" + number)) == read_file(folder_ / ("open_" + number))) << number;
+    }
   }
 }
 

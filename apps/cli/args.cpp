@@ -46,33 +46,51 @@ std::optional<double> parse_number(const std::string& text) {
   return rest.empty() ? number : std::nullopt;
 }
 
-std::int64_t parse_bytes(const std::string& text) {
+std::int64_t parse_bytes(const std::string& text, const char* option) {
   std::string_view rest = text;
   const std::optional<double> number = take_number(rest);
   const int power = power_of(lower_case(std::string(rest)));
   const double bytes = number.value_or(0) * std::pow(1024.0, std::max(power, 0));
   if (!number || power < 0 || !(bytes >= 1) || !(bytes < 9e18)) {
-    throw Error(ErrorCode::usage,
-                fmt::format("'{}' is no amount of memory; write for example 8G, 512M or a number of bytes", text));
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("{}: '{}' is no amount of memory; write for example 8G, 512M or a number of bytes", option, text));
   }
   return static_cast<std::int64_t>(bytes);
 }
 
-std::optional<Vec3d> parse_shift(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  Vec3d shift{0, 0, 0};
-  if (text == "none") return shift;
+std::optional<Vec3d> parse_vector(const std::string& text) {
+  Vec3d vector{0, 0, 0};
   std::string_view rest = text;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis > 0 && rest.starts_with(',')) rest.remove_prefix(1);
     const std::optional<double> number = take_number(rest);
     const bool ends_well = axis == 2 ? rest.empty() : rest.starts_with(',');
-    if (!number || !ends_well) {
-      throw Error(ErrorCode::usage, fmt::format("--shift: '{}' is neither auto, none nor x,y,z", text));
-    }
-    shift[axis] = *number;
+    if (!number || !ends_well) return std::nullopt;
+    vector[axis] = *number;
   }
+  return vector;
+}
+
+std::optional<Vec3d> parse_shift(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  if (text == "none") return Vec3d{0, 0, 0};
+  const std::optional<Vec3d> shift = parse_vector(text);
+  if (!shift) throw Error(ErrorCode::usage, "--shift: " + not_one_of(text, {"auto", "none", "x,y,z"}));
   return shift;
+}
+
+std::string not_one_of(const std::string& text, const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    list += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return fmt::format("'{}' is not {}", text, list);
+}
+
+std::function<std::string(const std::string&)> is_one_of(const std::vector<std::string>& words) {
+  return [words](const std::string& text) {
+    return std::find(words.begin(), words.end(), text) == words.end() ? not_one_of(text, words) : std::string();
+  };
 }
 
 void check_threads(int threads) {
@@ -82,9 +100,14 @@ void check_threads(int threads) {
   }
 }
 
-Device parse_device(const std::string& text, int threads) {
+Device parse_device(const std::string& text, int threads, const char* option, const char* words) {
   check_threads(threads);
-  return Device::parse(text, threads);
+  try {
+    return Device::parse(text, threads);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage) throw;
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not {}", option, text, words));
+  }
 }
 
 std::vector<std::string> join_optional_values(std::vector<std::string> args) {
@@ -94,8 +117,9 @@ std::vector<std::string> join_optional_values(std::vector<std::string> args) {
     if (i + 1 == args.size()) break;
     const std::string& next = args[i + 1];
     const bool confidence = joined.back() == "--confidence" && parse_number(next).has_value();
+    const bool data = joined.back() == "--data" && parse_number(next).has_value();
     const bool linear_fit = joined.back() == "--linear-fit" && (next == "on" || next == "off");
-    if (confidence || linear_fit) joined.back() += "=" + args[++i];
+    if (confidence || data || linear_fit) joined.back() += "=" + args[++i];
   }
   return joined;
 }

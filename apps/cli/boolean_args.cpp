@@ -30,6 +30,7 @@ void define_files(CLI::App& command, BooleanArgs& args) {
       ->type_name("FILE")
       ->group(group)
       ->check(needs_a_name);
+  add_overwrite_option(command, args.overwrite);
   command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group(group)

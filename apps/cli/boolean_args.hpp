@@ -8,6 +8,7 @@
 #include <pointskin/boolean.hpp>
 
 #include "fit_args.hpp"
+#include "given_options.hpp"
 
 namespace pointskin::cli {
 
@@ -21,7 +22,8 @@ struct BooleanArgs : DeviceArgs {
   std::string shift = "auto";
   BooleanOptions booleans;  ///< but for the reconstruction
   SolveArgs solve;
-  bool quiet = false;
+  bool overwrite = false, quiet = false;
+  GivenOptions given;
 };
 
 /// Defines the options on `command`, bound to `args`.

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "console.hpp"
 #include "report.hpp"
+#include "summary_words.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -75,12 +75,11 @@ std::string summary(const BooleanRecord& record) {
     return fmt::format("{}: {} of {} points kept ({} flipped)", name, p.kept, p.points, p.flipped);
   };
   return fmt::format(
-      "{}; {}; {} added along {:.4g} units of crease; depth {}, triangles {}; ms: fits {:.1f}, classify {:.1f}, "
-      "crease {:.1f}, total {:.1f}; memory {} device, {} host",
+      "{}; {}; {} added along {:.4g} units of crease; depth {}, triangles {}, {}; ms: fits {:.1f}, classify {:.1f}, "
+      "crease {:.1f}, total {:.1f}; {}",
       part("A", run.a), part("B", run.b), run.added, run.curve_length, run.result.depth, record.mesh.triangles,
-      fit_ms(run.a.fit) + fit_ms(run.b.fit) + fit_ms(run.result), run.classify_ms, run.crease_ms, record.total_ms,
-      format_bytes(static_cast<double>(run.device_peak_bytes)),
-      format_bytes(static_cast<double>(record.host_peak_bytes)));
+      record.shape, fit_ms(run.a.fit) + fit_ms(run.b.fit) + fit_ms(run.result), run.classify_ms, run.crease_ms,
+      record.total_ms, memory_words(record.device, run.device_peak_bytes, record.host_peak_bytes));
 }
 
 }  // namespace pointskin::cli

@@ -20,6 +20,7 @@ struct BooleanRecord {
   BooleanOptions options;
   BooleanReport run;
   MeshReport mesh;
+  std::string shape;  ///< of the mesh, in words
   bool a_is_mesh = false, b_is_mesh = false;
   std::int64_t a_dropped = 0, b_dropped = 0;  ///< points left out on reading
   double read_ms = 0, write_ms = 0, total_ms = 0;

@@ -20,10 +20,13 @@
 #include "bench/table.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "signals.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -83,16 +86,16 @@ struct Bench {
   Results results{};
 };
 
-void check_output(const std::string& option, const std::string& path, const BenchArgs& args) {
-  if (path.empty()) return;
-  if (path == "-") throw Error(ErrorCode::usage, option + ": stdout carries the table; name a file");
-  for (const std::string& input : args.inputs) {
-    std::error_code ignored;  // files that do not exist are not the same
-    if (std::filesystem::equivalent(input, path, ignored)) {
-      throw Error(ErrorCode::usage, fmt::format("{} would overwrite the input {}", option, input));
-    }
+/// The other program and the files that its command names are read, too.
+void check_outputs(const BenchArgs& args, const std::vector<std::string>& peer) {
+  std::vector<std::string> inputs = args.inputs;
+  for (const std::string& word : peer) {
+    if (word != "-") inputs.push_back(word);
+    if (word.find('=') != std::string::npos) inputs.push_back(word.substr(word.find('=') + 1));  // --config=FILE
   }
-  check_replaceable(path);
+  check_distinct(inputs, {{"--report", args.report, OutputKind::report}, {"--plot", args.plot, OutputKind::report}});
+  for (const std::string& file : {args.report, args.plot})
+    if (!file.empty()) check_replaceable(file);
 }
 
 void measure_depth(Bench& bench, const Cloud& cloud, int depth, BenchProgress& progress) {
@@ -143,15 +146,16 @@ void write_outputs(const Bench& bench) {
   const BenchArgs& args = bench.args;
   if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(bench.results, args, bench.devices)));
   if (!args.plot.empty()) write_file_atomically(args.plot, plot(bench.results));
+  for (const std::string& file : {args.report, args.plot})
+    if (!file.empty() && !args.quiet) print_note(file_words(file) + "written");
 }
 
 /// Whatever can be refused is refused here, before the first measurement.
 void prepare(Bench& bench, const std::vector<CloudSource>& sources) {
   const BenchArgs& args = bench.args;
-  check_output("--report", args.report, args);
-  check_output("--plot", args.plot, args);
-  if (!args.peer.empty()) {
-    bench.peer = parse_peer(args.peer);
+  if (!args.peer.empty()) bench.peer = parse_peer(args.peer);
+  check_outputs(args, bench.peer);
+  if (!bench.peer.empty()) {
     bench.launcher.emplace();
     bench.folder.emplace();
   }
@@ -165,6 +169,7 @@ int run(const BenchArgs& args) {
   const std::vector<CloudSource> sources = cloud_sources(args);
   Bench bench{.args = args};
   prepare(bench, sources);
+  if (args.peer.empty()) warn_unused(args.given, {"--peer-repeat"}, "without --peer");
   BenchProgress progress(sources, !args.quiet && stderr_is_terminal());
   for (const Device& device : bench.devices) {
     if (!args.quiet) print_note(fmt::format("{}: {}", short_name(device), device.name()));

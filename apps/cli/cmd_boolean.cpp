@@ -15,6 +15,7 @@
 #include "boolean_report.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
@@ -22,6 +23,8 @@
 #include "report.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -32,7 +35,10 @@ using Solid = std::variant<Cloud, Mesh>;
 
 /// Everything that can be found wrong before the inputs are opened.
 void check_files(const BooleanArgs& args) {
-  check_distinct({args.a, args.b}, {{"-o", args.output}, {"--cloud", args.cloud}, {"--report", args.report}});
+  check_distinct(
+      {args.a, args.b},
+      {{"-o", args.output}, {"--cloud", args.cloud, OutputKind::file}, {"--report", args.report, OutputKind::report}},
+      args.overwrite);
   check_mesh_output(args.output);
   if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
     throw_usage(fmt::format("--cloud: {} does not end in .ply", args.cloud));
@@ -101,6 +107,7 @@ int run(const BooleanArgs& args) {
   parse_shift(args.shift);
   check_files(args);
   record.device = args.chosen();
+  warn_about_unused(args.given, record.options.reconstruction, args.output, false);
 
   Solid a = read_solid(args.a, args, record.a_dropped);
   Solid b = read_solid(args.b, args, record.b_dropped);
@@ -114,12 +121,14 @@ int run(const BooleanArgs& args) {
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
   record.mesh.triangles = static_cast<std::int64_t>(result.mesh.triangles.size());
+  if (!args.quiet) record.shape = shape_words(result.mesh, args.threads);
   if (!args.report.empty()) {
     record.files = {{"a", args.a}, {"b", args.b}, {"output", args.output}, {"cloud", or_null(args.cloud)}};
     record.mesh = measure(result.mesh, args.threads);
+    record.shape = shape_words(record.mesh);
     write_file_atomically(args.report, json_text(to_json(record)));
   }
-  if (!args.quiet) print_note(summary(record));
+  if (!args.quiet) print_note(file_words(args.output) + summary(record));
   return 0;
 }
 

@@ -11,9 +11,12 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "input.hpp"
 #include "output_check.hpp"
 #include "signals.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -22,12 +25,15 @@ struct ConvertArgs {
   std::string input, output;
   std::string shift = "auto";
   int threads = 0;
-  bool quiet = false;
+  bool ascii = false, overwrite = false, quiet = false;
+  GivenOptions given;
 };
 
 std::string write(const ConvertArgs& args, const Mesh& mesh) {
-  write_mesh(args.output, mesh, args.threads);
-  return fmt::format("{} vertices, {} triangles", mesh.vertices.size(), mesh.triangles.size());
+  write_mesh(args.output, mesh, {.ascii = args.ascii, .threads = args.threads});
+  if (args.quiet) return "";
+  return fmt::format("{} vertices, {} triangles, {}", mesh.vertices.size(), mesh.triangles.size(),
+                     shape_words(mesh, args.threads));
 }
 
 std::string write(const ConvertArgs& args, const Cloud& cloud) {
@@ -36,19 +42,21 @@ std::string write(const ConvertArgs& args, const Cloud& cloud) {
   }
   if (cloud.dropped > 0)
     print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
-  write_cloud(args.output, cloud, args.threads);
+  write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads});
   return fmt::format("{} points", cloud.size());
 }
 
 int run(const ConvertArgs& args) {
   check_threads(args.threads);
   const ReadOptions options{.shift = parse_shift(args.shift), .threads = args.threads};
+  check_distinct({args.input}, {{"OUT", args.output}}, args.overwrite);
   check_mesh_output(args.output);
+  warn_about_ascii(args.given, args.output);
   const std::variant<Cloud, Mesh> content = read_cloud_or_mesh(args.input, options);
   on_interrupt(OnInterrupt::remember);
   throw_if_interrupted();
   const std::string written = std::visit([&](const auto& held) { return write(args, held); }, content);
-  if (!args.quiet) print_note(fmt::format("{}: {}", args.output == "-" ? "stdout" : args.output, written));
+  if (!args.quiet) print_note(file_words(args.output) + written);
   return 0;
 }
 
@@ -64,6 +72,8 @@ void add_convert(CLI::App& program, Job& job) {
       ->type_name("S")
       ->group("Input")
       ->capture_default_str();
+  add_ascii_option(*command, args->ascii);
+  add_overwrite_option(*command, args->overwrite);
   add_threads_option(*command, args->threads, "Limits");
   command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
   finish_command(*command, job, args, run);

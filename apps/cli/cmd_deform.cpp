@@ -14,7 +14,9 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "deform_reach.hpp"
 #include "deform_script.hpp"
+#include "file_plan.hpp"
 #include "fit_args.hpp"
 #include "frame_files.hpp"
 #include "input.hpp"
@@ -24,6 +26,8 @@
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -35,7 +39,8 @@ struct DeformArgs : FitArgs, DeviceArgs {
   std::string script, output, cloud, report;  ///< empty: none
   std::string shift = "auto";
   int frames = 1;
-  bool frames_given = false, quiet = false;
+  bool frames_given = false, overwrite = false, quiet = false;
+  GivenOptions given;
 };
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
@@ -44,8 +49,22 @@ std::string file_of(const DeformArgs& args, const std::string& pattern, int fram
   return args.frames_given ? frame_file(pattern, frame, args.frames) : pattern;
 }
 
+/// With --frames, a file a frame.
+void check_names(const DeformArgs& args) {
+  FilePlan plan{{{args.script}}, {{"--report", args.report, OutputKind::report}}, args.overwrite};
+  if (!args.envelope.empty()) plan.inputs.push_back({args.envelope});
+  for (const std::string& input : args.inputs) plan.inputs.push_back({input});
+  const std::vector<OutputFile> patterns = {{"-o", args.output}, {"--cloud", args.cloud}};
+  for (const OutputFile& pattern : patterns) {
+    for (int frame = 0; frame < args.frames && !pattern.file.empty(); ++frame)
+      plan.outputs.push_back(
+          {pattern.option, file_of(args, pattern.file, frame), pattern.kind, args.frames_given ? frame : kNoFrame});
+  }
+  check_files(plan);
+}
+
 /// Everything that can be found wrong before the input is opened.
-void check_files(const DeformArgs& args) {
+void check_outputs(const DeformArgs& args) {
   if (args.output.empty() && args.cloud.empty()) throw_usage("no output; name a mesh with -o or a cloud with --cloud");
   if (args.frames_given && (args.frames < 2 || args.frames > 100'000))
     throw_usage(fmt::format("--frames: {} is not in [2, 100000]", args.frames));
@@ -53,12 +72,7 @@ void check_files(const DeformArgs& args) {
     check_pattern(args.output, "-o", "--frames");
     check_pattern(args.cloud, "--cloud", "--frames");
   }
-  std::vector<std::string> inputs = args.inputs;
-  inputs.push_back(args.script);
-  if (!args.envelope.empty()) inputs.push_back(args.envelope);
-  std::vector<OutputFile> outputs = {{"-o", args.output}, {"--cloud", args.cloud}, {"--report", args.report}};
-  if (args.output.empty()) outputs.erase(outputs.begin());  // stdout may carry the cloud then
-  check_distinct(inputs, outputs);
+  check_names(args);
   if (!args.output.empty()) check_mesh_output(file_of(args, args.output, 0));
   if (!args.cloud.empty()) {
     if (args.cloud != "-" && !has_extension(args.cloud, ".ply"))
@@ -90,7 +104,8 @@ class Frames {
 
   [[nodiscard]] const Json& json() const { return json_; }
   [[nodiscard]] double median_ms() const { return spread_of(frame_ms_).median; }
-  [[nodiscard]] std::int64_t triangles() const { return static_cast<std::int64_t>(mesh_.triangles.size()); }
+  /// Of the last frame; empty without meshes.
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
 
  private:
   void run_one(int frame) {
@@ -146,10 +161,37 @@ Json options_json(const DeformArgs& args, const Options& options) {
   return json;
 }
 
+/// Options that come to nothing, and parts of the script.
+void warn_about_unused(const DeformArgs& args, const Options& options, const Deformation& deformation,
+                       const Cloud& cloud) {
+  warn_about_unused(args.given, options, args.output, false);
+  warn_about_unused(args.given, options, cloud, args.output);
+  if (args.output.empty())
+    warn_unused(args.given,
+                {"--linear-fit", "--open", "--envelope", "--offset", "--trim", "--island-ratio", "--weakness",
+                 "--no-normals", "--density", "--keep-attributes"},
+                kNoMesh);
+  if (!moves_anything(deformation)) print_warning(fmt::format("{}: moves nothing", args.script));
+  for (const std::string& story : idle_parts(deformation, cloud))
+    print_warning(fmt::format("{}: {}", args.script, story));
+}
+
+/// The last line.
+std::string summary(const DeformArgs& args, const DeformReport& report, const Frames& frames) {
+  const std::string mesh = args.output.empty() ? ""
+                                               : fmt::format("; triangles {}, {}", frames.mesh().triangles.size(),
+                                                             shape_words(frames.mesh(), args.threads));
+  return fmt::format(
+      "{}points {}, of them inserted {}, thinned {}{}; {}: median {:.1f} ms, {:.1f} frames per second; memory {} host",
+      file_words(args.output.empty() ? args.cloud : args.output), report.points, report.inserted, report.thinned, mesh,
+      counted(args.frames, "frame"), frames.median_ms(), 1000 / frames.median_ms(),
+      format_bytes(static_cast<double>(host_peak_bytes())));
+}
+
 int run(const DeformArgs& args) {
   Options options = fit_options(args);
   parse_shift(args.shift);
-  check_files(args);
+  check_outputs(args);
   const Device device = args.chosen();
   Deformation deformation = read_deformation(args.script);
   const Stopwatch reading;
@@ -158,6 +200,7 @@ int run(const DeformArgs& args) {
   drop_unusable(cloud);
   const double read_ms = reading.ms();
   deformation = checked(args, std::move(deformation), cloud.size());
+  warn_about_unused(args, options, deformation, cloud);
 
   on_interrupt(OnInterrupt::remember);
   options.progress = [](const Progress&) { return !interrupted(); };
@@ -180,12 +223,8 @@ int run(const DeformArgs& args) {
   json["ms"] = {
       {"read", read_ms}, {"upload", report.upload_ms}, {"rest", report.rest_ms}, {"frame_median", frames.median_ms()}};
   if (!args.report.empty()) write_file_atomically(args.report, json_text(json));
-  if (!args.quiet)
-    print_note(
-        fmt::format("points {}, of them inserted {}, thinned {}; triangles {}; {} frames: median {:.1f} ms, "
-                    "{:.1f} frames per second",
-                    report.points, report.inserted, report.thinned, frames.triangles(), args.frames, frames.median_ms(),
-                    1000 / frames.median_ms()));
+  warn_about_envelope(report.run.envelope, report.run.points);
+  if (!args.quiet) print_note(summary(args, report, frames));
   return 0;
 }
 
@@ -199,6 +238,7 @@ void define_files(CLI::App& command, DeformArgs& args) {
   file("-o,--output", args.output, "OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout");
   file("--cloud", args.cloud, "OUT", "deformed points: .ply, - writes to stdout");
   file("--report", args.report, "FILE", "write what was done as JSON; also measures how far apart samples are");
+  add_overwrite_option(command, args.overwrite);
   file("--shift", args.shift, "S", "offset subtracted while working: auto, none or x,y,z in world units")
       ->capture_default_str();
   command.add_option("--frames", args.frames, "N frames from the rest pose to the deformation; {} in OUT: number")

@@ -1,5 +1,4 @@
 // pointskin edit: a cloud and a script of strokes, removals and copied parts in, mesh and what every step did out.
-#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "edit_script.hpp"
+#include "file_plan.hpp"
 #include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
@@ -19,6 +19,8 @@
 #include "report.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -30,16 +32,26 @@ struct EditArgs : FitArgs, DeviceArgs {
   std::string script;
   std::string output, save, cloud, report;  ///< empty: none
   std::string shift = "auto";
-  bool cold = false, quiet = false;
+  bool overwrite = false, cold = false, quiet = false;
+  GivenOptions given;
 };
 
-void check_files(const EditArgs& args) {
+/// @param parts  files that the script names
+void check_names(const EditArgs& args, const std::vector<std::string>& parts) {
   std::vector<std::string> inputs = args.inputs;
-  inputs.push_back(args.script);
-  if (!args.envelope.empty()) inputs.push_back(args.envelope);
-  inputs.erase(std::remove(inputs.begin(), inputs.end(), args.save), inputs.end());  // a script may replace itself
+  inputs.insert(inputs.end(), {args.script, args.envelope});
+  inputs.insert(inputs.end(), parts.begin(), parts.end());
   check_distinct(inputs,
-                 {{"-o", args.output}, {"--save", args.save}, {"--cloud", args.cloud}, {"--report", args.report}});
+                 {{"-o", args.output},
+                  {"--save", args.save, OutputKind::file},
+                  {"--cloud", args.cloud, OutputKind::file},
+                  {"--report", args.report, OutputKind::report}},
+                 args.overwrite);
+}
+
+/// Everything that can be found wrong before an input is opened.
+void check_outputs(const EditArgs& args) {
+  check_names(args, {});
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
     throw Error(ErrorCode::usage, fmt::format("--cloud: {}: clouds are written as .ply only", args.cloud));
@@ -93,10 +105,17 @@ std::string line_of(const StepReport& step, std::size_t number) {
                      step.before.genus, step.after.genus, step.total_ms);
 }
 
+/// Operations that were done and left the points as they were.
+void warn_if_nothing(const StepReport& step, std::size_t number, const EditArgs& args) {
+  if (step.added == 0 && step.removed == 0)
+    print_warning(fmt::format("operations[{}] of {}: the {} changes no point", number, args.script, step.operation));
+}
+
 void run_script(const EditScript& script, const EditArgs& args, EditSession& session) {
   const auto camera_of_picture = [&session](const RenderOptions& options) {
     return camera_of(session.mesh(), options);
   };
+  if (script.size() == 0) print_warning(fmt::format("{}: has no operations", args.script));
   for (std::size_t i = 0; i < script.size(); ++i) {
     throw_if_interrupted();
     const ScriptStep step = script.step(i, camera_of_picture);
@@ -109,8 +128,37 @@ void run_script(const EditScript& script, const EditArgs& args, EditSession& ses
     } catch (const Error& error) {
       throw error.while_doing(fmt::format("running operations[{}] of {}", i, args.script));
     }
-    if (!args.quiet && step.kind == ScriptStep::Kind::apply) print_note(line_of(session.steps().back(), i));
+    if (step.kind != ScriptStep::Kind::apply) continue;
+    const StepReport done = session.steps().back();
+    if (!args.quiet) print_note(line_of(done, i));
+    warn_if_nothing(done, i, args);
   }
+}
+
+void warn_about_options(const EditArgs& args, const Options& options) {
+  warn_about_unused(args.given, options, args.output, false);
+  if (!args.output.empty()) return;
+  warn_unused(args.given, {"--no-normals", "--density", "--weakness"}, kNoMesh);
+  if (args.cloud.empty()) warn_unused(args.given, {"--keep-attributes"}, "where neither mesh nor cloud is written");
+}
+
+/// Reads, merges and cleans the inputs, and says what is left out.
+Cloud read_base(const EditArgs& args, const Options& options) {
+  Cloud base = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
+  drop_unusable(base);
+  warn_about_unused(args.given, options, base, args.output);
+  if (!options.keep_strays) warn_about_strays(base, args.threads);
+  if (options.envelope != nullptr)  // the session does not tell how many are outside
+    warn_about_envelope({.samples_outside = count_outside_box(base, *options.envelope)}, base.size());
+  return base;
+}
+
+std::string summary(const EditSession& session, const EditArgs& args, double total_ms) {
+  const Mesh& mesh = session.mesh();
+  const std::string file = args.output.empty() ? args.cloud : args.output;
+  return fmt::format("{}operations {}, triangles {}, {}; ms: total {:.1f}; memory {} host", file_words(file),
+                     session.steps().size(), mesh.triangles.size(), shape_words(mesh, args.threads), total_ms,
+                     format_bytes(static_cast<double>(host_peak_bytes())));
 }
 
 int run(const EditArgs& args) {
@@ -119,12 +167,13 @@ int run(const EditArgs& args) {
   options.reconstruction = fit_options(args);
   options.warm_start = !args.cold;
   parse_shift(args.shift);
-  check_files(args);
+  check_outputs(args);
   const Device device = args.chosen();
   const EditScript script(args.script);
+  check_names(args, script.parts());
+  warn_about_options(args, options.reconstruction);
   options.reconstruction.envelope = read_envelope(args.envelope, args.threads);
-  Cloud base = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
-  drop_unusable(base);
+  Cloud base = read_base(args, options.reconstruction);
   Json json = {{"version", 1}, {"command", "edit"}, {"device", to_json(device)}};
   json["input"] = {{"points", base.size() + base.dropped}, {"dropped", base.dropped}};
   json["options"] = options_json(args, options);
@@ -139,12 +188,14 @@ int run(const EditArgs& args) {
   if (!args.cloud.empty()) write_cloud(args.cloud, session.cloud(), args.threads);
   if (!args.save.empty()) write_file_atomically(args.save, json_text(script_of(session.operations(), args.save)));
   if (!args.output.empty()) write_mesh(args.output, session.mesh(), args.threads);
-  json["ms"]["total"] = watch.ms();
+  const double total_ms = watch.ms();
+  json["ms"]["total"] = total_ms;
   if (!args.report.empty()) {
     describe(session, args, json);
     json["memory"]["host_peak_bytes"] = host_peak_bytes();
     write_file_atomically(args.report, json_text(json));
   }
+  if (!args.quiet) print_note(summary(session, args, total_ms));
   return 0;
 }
 
@@ -159,6 +210,7 @@ void define_files(CLI::App& command, EditArgs& args) {
   file("--cloud", args.cloud, "FILE", "write the edited points, with the property added, as PLY");
   file("--save", args.save, "FILE", "write the operations that are done, as a script");
   file("--report", args.report, "FILE", "write what every step did as JSON");
+  add_overwrite_option(command, args.overwrite);
   command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group(group)
@@ -172,6 +224,7 @@ void add_edit(CLI::App& program, Job& job) {
   auto args = std::make_shared<EditArgs>();
   define_files(*command, *args);
   define_fit_options(*command, *args);
+  command->remove_option(command->get_option("--offset"));  // a session has none
   define_device_options(*command, *args);
   command->add_flag("--cold", args->cold, "solve every surface anew, instead of from the one before")
       ->group(kSurfaceGroup);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -20,6 +19,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "fluid_args.hpp"
 #include "frame_files.hpp"
 #include "json_text.hpp"
@@ -29,6 +29,7 @@
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -39,29 +40,34 @@ using Json = nlohmann::ordered_json;
 struct FluidFrameRecord {
   FrameFile input;
   std::string output;
+  bool is_last = false;
+  std::string shape;  ///< of the last mesh, in words
   std::int64_t particles = 0, dropped = 0, triangles = 0;
   FluidReport run;
   MeshReport mesh;  ///< with --report
   double read_ms = 0, surface_ms = 0, write_ms = 0, total_ms = 0;
 };
 
-void check_files(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
-  if (args.report == "-") throw Error(ErrorCode::usage, "--report: stdout carries the mesh only; name a file");
+/// A frame may take the place of its own particles; those of the others are still to be read.
+void check_names(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
+  FilePlan plan{{}, {{"--report", args.report, OutputKind::report}}, args.overwrite};
+  for (const FluidFrameRecord& frame : frames) {
+    const auto number = static_cast<std::int64_t>(plan.inputs.size());
+    plan.inputs.push_back({frame.input.path, number});
+    plan.outputs.push_back({"-o", frame.output, OutputKind::result, number});
+  }
+  check_files(plan);
+}
+
+void check_outputs(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
   if (!is_pattern(args.input) && is_pattern(args.output))
     throw Error(ErrorCode::usage, fmt::format("-o: {} has {{}}, but the input has none", args.output));
   if (is_pattern(args.input) && !is_pattern(args.output))
     throw Error(ErrorCode::usage,
                 fmt::format("-o: {} needs {{}}, where the frame's number goes, as the input has it", args.output));
   check_mesh_output(frames.front().output);
-  for (const FluidFrameRecord& frame : frames) {
-    std::error_code ignored;  // files that do not exist are not the same
-    for (const std::string& written : {frame.output, args.report})
-      if (!written.empty() && written != "-" && std::filesystem::equivalent(frame.input.path, written, ignored))
-        throw Error(ErrorCode::usage, "the input " + frame.input.path + " would be overwritten");
-  }
-  if (args.report.empty()) return;
-  if (args.report == args.output) throw Error(ErrorCode::usage, "--report names the same file as -o");
-  check_replaceable(args.report);
+  check_names(args, frames);
+  if (!args.report.empty()) check_replaceable(args.report);
 }
 
 /// Reads, makes and writes frames, with memory that is used again. One a thread.
@@ -94,6 +100,8 @@ class Worker {
     if (!frame.input.number.empty()) frame_was_written();
     frame.total_ms = start.ms();
     if (!args_.report.empty()) frame.mesh = measure(mesh_, threads_);
+    if (frame.is_last && !args_.quiet)
+      frame.shape = args_.report.empty() ? shape_words(mesh_, threads_) : shape_words(frame.mesh);
   }
 
  private:
@@ -147,7 +155,7 @@ class Sequence {
     const int threads = args_.threads > 0 ? args_.threads : static_cast<int>(std::thread::hardware_concurrency());
     const std::int64_t wanted = args_.at_once > 0 ? args_.at_once : std::max(1, threads);
     const std::int64_t memory =
-        args_.max_memory.empty() ? device_.available_bytes() / 5 * 4 : parse_bytes(args_.max_memory);
+        args_.max_memory.empty() ? device_.available_bytes() / 5 * 4 : parse_bytes(args_.max_memory, "--max-memory");
     // Frames grow: half as much again, and the file, the particles and the mesh on the host.
     const FluidFrameRecord& first = frames_.front();
     const std::int64_t each =
@@ -282,9 +290,10 @@ int run(const FluidArgs& args) {
   check_given(args);
   const FluidOptions options = library_options(args);
   if (!args.simulation.scene.empty())
-    return run_simulation(args.simulation, {args.output, args.report, args, args.quiet, options});
+    return run_simulation(args.simulation, {args.output, args.report, args, args.quiet, options,
+                                            [&args](bool on_gpu) { warn_about_unused(args, on_gpu); }});
   parse_shift(args.shift);
-  if (!args.max_memory.empty()) parse_bytes(args.max_memory);
+  if (!args.max_memory.empty()) parse_bytes(args.max_memory, "--max-memory");
   if (args.at_once < 0 || args.at_once > 4096)
     throw Error(ErrorCode::usage, fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
   const Device device = args.chosen();
@@ -294,7 +303,9 @@ int run(const FluidArgs& args) {
     frames.back().output = with_number(args.output, file.number);
     frames.back().input = std::move(file);
   }
-  check_files(args, frames);
+  check_outputs(args, frames);
+  warn_about_unused(args, device.kind == DeviceKind::cuda);
+  frames.back().is_last = true;
 
   on_interrupt(OnInterrupt::remember);
   Sequence sequence(args, options, device, frames);
@@ -305,9 +316,10 @@ int run(const FluidArgs& args) {
   std::vector<double> surface_ms;
   for (const FluidFrameRecord& frame : frames) surface_ms.push_back(frame.surface_ms);
   const FluidFrameRecord& last = frames.back();
-  print_note(fmt::format("{}particles {}, depth {}, triangles {}; ms: surface {:.1f}{}, total {:.1f}; {} at once",
+  print_note(fmt::format("{}{}particles {}, depth {}, triangles {}, {}; ms: surface {:.1f}{}, total {:.1f}; {} at once",
+                         file_words(args.output),
                          frames.size() > 1 ? fmt::format("frames {}; the last one: ", frames.size()) : "",
-                         last.particles, last.run.depth, last.triangles, spread_of(surface_ms).median,
+                         last.particles, last.run.depth, last.triangles, last.shape, spread_of(surface_ms).median,
                          frames.size() > 1 ? " in the middle" : "", total_ms, sequence.at_once()));
   return 0;
 }

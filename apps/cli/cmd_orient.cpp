@@ -11,6 +11,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
@@ -19,6 +20,8 @@
 #include "report.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -28,11 +31,12 @@ struct OrientArgs : DeviceArgs {
   std::vector<std::string> inputs;
   std::string output, report;
   std::string shift = "auto";
-  bool no_confidence = false, quiet = false;
+  bool no_confidence = false, ascii = false, overwrite = false, quiet = false;
+  GivenOptions given;
 };
 
 void check_files(const OrientArgs& args) {
-  check_distinct(args.inputs, {{"-o", args.output}, {"--report", args.report}});
+  check_distinct(args.inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
   if (args.output != "-" && !has_extension(args.output, ".ply"))
     throw Error(ErrorCode::usage,
                 fmt::format("-o: {} does not end in .ply; clouds are written as .ply only", args.output));
@@ -71,13 +75,17 @@ int run(const OrientArgs& args) {
   times.read_ms = watch.ms();
   on_interrupt(OnInterrupt::remember);
   const NormalReport report = estimate_normals(cloud, options, device, args.quiet);
+  warn_about_unused_normals(args.given, report.method);
   throw_if_interrupted();
   const Stopwatch writing;
-  write_cloud(args.output, cloud, args.threads);
+  write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads});
   times.write_ms = writing.ms();
   times.total_ms = watch.ms();
   if (!args.report.empty())
     write_file_atomically(args.report, json_text(report_json(args, options, device, cloud, report, times)));
+  if (!args.quiet)
+    print_note(fmt::format("{}points {}; ms: total {:.1f}; {}", file_words(args.output), cloud.size(), times.total_ms,
+                           memory_words(device, report.device_peak_bytes, host_peak_bytes())));
   return 0;
 }
 
@@ -96,6 +104,8 @@ void add_orient(CLI::App& program, Job& job) {
       ->type_name("FILE")
       ->group("Files")
       ->check(needs_a_name);
+  add_ascii_option(*command, args->ascii);
+  add_overwrite_option(*command, args->overwrite);
   command->add_option("--shift", args->shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group("Files")

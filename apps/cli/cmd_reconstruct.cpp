@@ -10,6 +10,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
@@ -18,6 +19,8 @@
 #include "report.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -31,13 +34,9 @@ void check_files(const ReconstructArgs& args) {
     throw_usage("no output; name it with -o");
   std::vector<std::string> inputs = args.inputs;
   if (!args.envelope.empty()) inputs.push_back(args.envelope);
-  check_distinct(inputs, {{"-o", args.output}, {"--report", args.report}});
+  check_distinct(inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
-}
-
-void warn_about_options(const ReconstructArgs& args) {
-  if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
 }
 
 /// Points without a normal get one.
@@ -45,11 +44,28 @@ bool makes_normals(const Options& options) {
   return options.point_normals == PointNormals::repair || options.point_normals == PointNormals::estimate;
 }
 
+/// Where the mesh goes, as far as it matters to properties of it: runs that are only timed make one, too.
+std::string mesh_file(const ReconstructArgs& args) {
+  return args.output.empty() && (args.dry_run || args.repeat_given) ? "-" : args.output;
+}
+
+void warn_about_options(const ReconstructArgs& args, const Options& options) {
+  if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
+  warn_about_unused(args.given, options, mesh_file(args), !args.report.empty());
+  warn_about_ascii(args.given, args.output);
+  if (mesh_file(args).empty())
+    warn_unused(args.given, {"--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"},
+                kNoMesh);
+  if (options.point_normals == PointNormals::given) warn_about_unused_normals(args.given);
+  warn_about_poisson_recon(args.given, args.poisson_recon);
+}
+
 /// Only what becomes part of the mesh, or says where points were seen from.
 void drop_attributes(const ReconstructArgs& args, Cloud& cloud) {
+  const bool all = args.options.attributes || !args.poisson_recon.data.empty();
   const bool tells_views = args.normals_policy != "given" && has_view_attributes(cloud);
-  if (!args.options.attributes && !args.colors && !tells_views) cloud.attributes.clear();
-  if (!args.options.attributes && args.colors && !keep_colours_only(cloud))
+  if (!all && !args.colors && !tells_views) cloud.attributes.clear();
+  if (!all && args.colors && !keep_colours_only(cloud))
     print_warning("--colors: the points have no red, green or blue");
 }
 
@@ -117,15 +133,6 @@ void check_memory(std::int64_t estimate, std::int64_t limit) {
                           bytes_text(estimate), format_bytes(static_cast<double>(limit))));
 }
 
-void warn_about_strays(const Cloud& cloud, int threads) {
-  const Strays strays = find_strays(cloud.positions, threads);
-  if (strays.points.empty()) return;
-  const Vec3f& p = cloud.positions[static_cast<std::size_t>(strays.points.front())];
-  const Vec3d& origin = cloud.origin;
-  print_warning(strays_text(static_cast<std::int64_t>(strays.points.size()),
-                            {origin[0] + p.x, origin[1] + p.y, origin[2] + p.z}));
-}
-
 void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record, const Estimate& estimate) {
   const std::string with_cloud =
       estimate.cloud > 0 ? (args.envelope.empty() ? ", with the cloud " : ", with the cloud and the envelope ") +
@@ -146,11 +153,18 @@ nlohmann::ordered_json other_options(const ReconstructArgs& args, const Options&
   json["repeat"] = args.repeat;
   json["inputs"] = args.inputs;
   json["output"] = or_null(args.output);
+  json["ascii"] = args.ascii;
   return json;
 }
 
 /// The depth is what was asked for: nothing needs to be said of it.
 bool chose_depth(const ReconstructArgs& args) { return args.depth_given || args.width_given; }
+
+/// Options of the normals, where the run kept those that were given or made its own in another way.
+void warn_about_unused_normals(const ReconstructArgs& args, const RunReport& run) {
+  if (run.normals) return warn_about_unused_normals(args.given, run.normals->method);
+  if (args.normals_policy != "given") warn_about_unused_normals(args.given);
+}
 
 /// Runs the reconstruction, with progress, and the repeated runs, without.
 Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
@@ -168,6 +182,8 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   for (const Warning& warning : record.run.warnings)
     if (warning.kind != WarningKind::coarse_depth || !chose_depth(args)) print_warning(warning.text);
   if (record.run.normals && !args.quiet) print_note(summary(*record.run.normals));
+  warn_about_unused_normals(args, record.run);
+  warn_about_envelope(record.run.envelope, record.run.points);
   if (mesh.triangles.empty()) throw Error(ErrorCode::empty_result, "the surface has no triangles");
   if (args.repeat > 0) {
     options.residuals = false;  // They cost time and are not part of the job.
@@ -182,7 +198,7 @@ void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record)
   throw_if_interrupted();
   if (args.output.empty()) return;
   const Stopwatch watch;
-  write_mesh(args.output, mesh, args.threads);
+  write_mesh(args.output, mesh, {.ascii = args.ascii, .threads = args.threads});
   record.write_ms = watch.ms();
 }
 
@@ -218,7 +234,7 @@ int run(const ReconstructArgs& given) {
   parse_shift(args.shift);
   check_files(args);
   record.device = args.chosen();
-  warn_about_options(args);
+  warn_about_options(args, record.options);
 
   record.options.envelope = read_envelope(args.envelope, args.threads);
   Cloud cloud = read_input(args, record);
@@ -232,6 +248,7 @@ int run(const ReconstructArgs& given) {
   if (args.dry_run) return 0;
 
   on_interrupt(OnInterrupt::remember);
+  warn_about_unused(args.given, record.options, cloud, mesh_file(args));
   const Mesh mesh = compute(args, cloud, record);
   cloud = Cloud();
   write_output(args, mesh, record);
@@ -240,14 +257,13 @@ int run(const ReconstructArgs& given) {
 
   if (record.options.weakness) record.problems = find_problems(mesh);
   record.mesh.triangles = static_cast<std::int64_t>(mesh.triangles.size());
-  if (!args.report.empty()) {
-    record.mesh = measure(mesh, args.threads);
-    write_file_atomically(args.report, json_text(to_json(record)));
-  }
+  if (!args.report.empty()) record.mesh = measure(mesh, args.threads);
+  if (!args.quiet) record.shape = args.report.empty() ? shape_words(mesh, args.threads) : shape_words(record.mesh);
+  if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(record)));
   if (args.problems && args.output == "-") print_note(problem_table(record.problems));
   if (args.problems && args.output != "-") write_stdout(problem_table(record.problems) + "\n");
   if (args.verbose) print_note(level_table(record));
-  if (!args.quiet) print_note(summary(record));
+  if (!args.quiet) print_note(file_words(args.output) + summary(record));
   return 0;
 }
 

@@ -13,6 +13,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "output_check.hpp"
 #include "signals.hpp"
 
@@ -25,7 +26,7 @@ struct RenderArgs {
   std::string up = "y";
   std::string target;  ///< empty: the middle of the mesh
   RenderOptions options;
-  bool orthographic = false, flat = false, cull = false, no_colours = false, quiet = false;
+  bool orthographic = false, flat = false, cull = false, no_colours = false, overwrite = false, quiet = false;
 };
 
 /// Reads "1200x900" into `options`.
@@ -61,7 +62,7 @@ RenderOptions library_options(const RenderArgs& args) {
   RenderOptions options = args.options;
   check_threads(options.threads);
   parse_size(args.size, options);
-  if (args.up != "y" && args.up != "z") throw Error(ErrorCode::usage, "--up: must be y or z");
+  if (args.up != "y" && args.up != "z") throw Error(ErrorCode::usage, "--up: " + not_one_of(args.up, {"y", "z"}));
   if (!args.target.empty()) options.target_world = parse_target(args.target);
   options.up = args.up == "z" ? UpAxis::z : UpAxis::y;
   options.projection = args.orthographic ? Projection::orthographic : Projection::perspective;
@@ -76,6 +77,7 @@ int run(const RenderArgs& args) {
   if (!has_extension(args.picture, ".png")) {
     throw Error(ErrorCode::usage, fmt::format("{}: pictures are written as .png", args.picture));
   }
+  check_distinct({args.mesh}, {{"-o", args.picture, OutputKind::file}}, args.overwrite);
   check_replaceable(args.picture);
   const Mesh mesh = read_mesh(args.mesh, {.shift = std::nullopt, .threads = options.threads});
   if (mesh.triangles.empty()) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no triangles", args.mesh));
@@ -112,6 +114,7 @@ void add_render(CLI::App& program, Job& job) {
   auto args = std::make_shared<RenderArgs>();
   command->add_option("MESH", args->mesh, "mesh: PLY, OBJ, STL or OFF; - reads PLY from stdin")->required();
   command->add_option("-o,--output", args->picture, "picture, .png")->type_name("OUT")->group("Files")->required();
+  add_overwrite_option(*command, args->overwrite);
   define_view(*command, *args);
   add_threads_option(*command, args->options.threads, "Limits");
   command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");

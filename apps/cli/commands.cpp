@@ -15,4 +15,12 @@ void add_threads_option(CLI::App& command, int& threads, const std::string& grou
       ->capture_default_str();
 }
 
+void add_ascii_option(CLI::App& command, bool& ascii) {
+  command.add_flag("--ascii", ascii, "write PLY as text")->group("Files");
+}
+
+void add_overwrite_option(CLI::App& command, bool& overwrite) {
+  command.add_flag("--overwrite", overwrite, "let an output replace an input, once that has been read")->group("Files");
+}
+
 }  // namespace pointskin::cli

@@ -136,10 +136,15 @@ void read_box(const JsonReader& json, Insert& insert) {
   read("upper", insert.upper);
 }
 
+/// The file that an insertion names, seen from the script's folder.
+std::string source_at(const JsonReader& json, const std::filesystem::path& folder) {
+  return std::filesystem::absolute(folder / json.at("file").text()).lexically_normal().string();
+}
+
 Insert insert_at(const JsonReader& json, const std::filesystem::path& folder) {
   json.object({"op", "file", "box", "scale", "rotation", "translation", "snap"});
   Insert insert;
-  insert.source = std::filesystem::absolute(folder / json.at("file").text()).lexically_normal().string();
+  insert.source = source_at(json, folder);
   insert.part = std::make_shared<const Cloud>(read_cloud(insert.source));
   if (json.has("box")) read_box(json.at("box"), insert);
   if (json.has("scale")) insert.placement.scale = json.at("scale").number();
@@ -188,6 +193,8 @@ Json to_json(const Insert& insert, const std::filesystem::path& folder) {
   return json;
 }
 
+std::filesystem::path folder_of(const std::string& script) { return std::filesystem::path(script).parent_path(); }
+
 std::string op_of(const JsonReader& entry) {
   return entry.at("op").one_of({"guide", "remove", "insert", "undo", "redo"});
 }
@@ -216,6 +223,14 @@ EditScript::EditScript(const std::string& path) : path_(path), json_(parse_json(
   }
 }
 
+std::vector<std::string> EditScript::parts() const {
+  std::vector<std::string> files;
+  const JsonReader operations = operations_of(json_, path_);
+  for (std::size_t i = 0; i < operations.size(); ++i)
+    if (op_of(operations.at(i)) == "insert") files.push_back(source_at(operations.at(i), folder_of(path_)));
+  return files;
+}
+
 std::size_t EditScript::size() const { return json_["operations"].size(); }
 
 ScriptStep EditScript::step(std::size_t i, const CameraOfPicture& camera_of_picture) const {
@@ -225,7 +240,7 @@ ScriptStep EditScript::step(std::size_t i, const CameraOfPicture& camera_of_pict
   if (op == "redo") return {ScriptStep::Kind::redo, {}};
   if (op == "guide") return {ScriptStep::Kind::apply, guide_at(entry, camera_of_picture)};
   if (op == "remove") return {ScriptStep::Kind::apply, remove_at(entry, camera_of_picture)};
-  return {ScriptStep::Kind::apply, insert_at(entry, std::filesystem::path(path_).parent_path())};
+  return {ScriptStep::Kind::apply, insert_at(entry, folder_of(path_))};
 }
 
 nlohmann::ordered_json script_of(const std::vector<Operation>& operations, const std::string& path) {

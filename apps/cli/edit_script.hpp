@@ -26,6 +26,8 @@ class EditScript {
   explicit EditScript(const std::string& path);
 
   [[nodiscard]] std::size_t size() const;
+  /// The files that it inserts parts of.
+  [[nodiscard]] std::vector<std::string> parts() const;
   /// Step i.
   /// @param camera_of_picture  the camera of the picture that render() draws of the present surface
   /// @throws Error invalid_input; as read_cloud for a part that cannot be read

@@ -1,6 +1,9 @@
 #include "fluid_args.hpp"
 
+#include "args.hpp"
 #include "commands.hpp"
+#include "frame_files.hpp"
+#include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -17,6 +20,7 @@ void define_files(CLI::App& command, FluidArgs& args) {
   command.add_option("--report", args.report, "write what was done as JSON; also measures the meshes")
       ->type_name("FILE")
       ->group(group);
+  add_overwrite_option(command, args.overwrite);
   command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group(group)
@@ -34,7 +38,7 @@ void define_surface(CLI::App& command, FluidArgs& args) {
   value("-l,--smoothing-length", options.smoothing_length, "L", "half of the kernel's radius, 1 to 8")
       ->capture_default_str();
   value("--kernel", args.kernel, "K", "isotropic (Zhu & Bridson) or anisotropic (Yu & Turk)")
-      ->check(CLI::IsMember({"isotropic", "anisotropic"}))
+      ->check(is_one_of({"isotropic", "anisotropic"}))
       ->capture_default_str();
   value("-t,--surface-threshold", options.surface_threshold, "T",
         "isotropic: distance from the mean of particles, 0 to 2 [1];\n"
@@ -81,6 +85,27 @@ void define_fluid_options(CLI::App& command, FluidArgs& args) {
       ->type_name("SIZE")
       ->group(group);
   command.add_flag("-q,--quiet", args.quiet, "errors and warnings only")->group("Messages");
+}
+
+void warn_about_unused(const FluidArgs& args, bool on_gpu) {
+  const GivenOptions& given = args.given;
+  if (args.simulation.scene.empty()) {
+    warn_unused(given, {"--frames", "--particles", "--fps", "--iterations", "--viscosity", "--vorticity"},
+                "without --simulate");
+    if (!is_pattern(args.input))
+      warn_unused(given, {"--at-once", "--max-memory"}, "on a single frame");
+    else if (on_gpu)
+      warn_unused(given, {"--at-once", "--max-memory"}, "on a GPU, which takes one frame after another");
+  } else {
+    warn_unused(given, {"--shift", "--at-once", "--max-memory", "--overwrite"}, "with --simulate");
+    if (args.output.empty())
+      warn_unused(given,
+                  {"--particle-radius", "--cube-size", "--smoothing-length", "--kernel", "--surface-threshold",
+                   "--mesh-smoothing-iters", "--min-component", "--no-attributes", "--no-normals"},
+                  kNoMesh);
+  }
+  if (args.options.smoothing_iterations == 0)
+    warn_unused(given, {"--no-smoothing-weights"}, "without --mesh-smoothing-iters");
 }
 
 FluidOptions library_options(const FluidArgs& args) {

@@ -11,6 +11,7 @@
 
 #include "fit_args.hpp"
 #include "fluid_simulate.hpp"
+#include "given_options.hpp"
 
 namespace pointskin::cli {
 
@@ -22,10 +23,14 @@ struct FluidArgs : DeviceArgs {
   SimulateArgs simulation;  ///< with a scene: instead of `input`
   std::optional<std::int64_t> first, last;
   int at_once = 0;
-  bool no_normals = false, no_attributes = false, no_weights = false, quiet = false;
+  bool no_normals = false, no_attributes = false, no_weights = false, overwrite = false, quiet = false;
+  GivenOptions given;
 };
 
 void define_fluid_options(CLI::App& command, FluidArgs& args);
+
+/// Warns of options that the kind of run leaves without effect. @param on_gpu  the device is a GPU
+void warn_about_unused(const FluidArgs& args, bool on_gpu);
 
 /// The library's options. @throws Error usage if one is out of range
 FluidOptions library_options(const FluidArgs& args);

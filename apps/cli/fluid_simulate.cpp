@@ -12,6 +12,7 @@
 
 #include "args.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "fluid/simulation.hpp"
 #include "frame_files.hpp"
 #include "json_text.hpp"
@@ -21,6 +22,7 @@
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"
+#include "summary_words.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -29,25 +31,43 @@ using Json = nlohmann::ordered_json;
 
 [[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
+void check_ranges(const SimulateArgs& args) {
+  const auto check = [](const char* option, auto value, auto least, auto most) {
+    if (!(value >= least && value <= most))
+      throw_usage(fmt::format("{}: {} is not in [{}, {}]", option, value, least, most));
+  };
+  check("--frames", args.frames, 1, 1'000'000);
+  check("--fps", args.fps, 1.0, 10'000.0);
+  check("--particles", args.particles, simulation::kFewestParticles, simulation::kMostParticles);
+  check("--iterations", args.iterations, 1, 100);
+  check("--viscosity", args.viscosity, 0.0, 1.0);
+  check("--vorticity", args.vorticity, 0.0, 1e6);
+}
+
+void check_names(const SimulateArgs& args, const SimulateOutput& output) {
+  FilePlan plan{{}, {{"--report", output.report, OutputKind::report}}};
+  const std::vector<OutputFile> patterns = {{"-o", output.output}, {"--particles-out", args.particles_out}};
+  for (const OutputFile& pattern : patterns) {
+    for (int frame = 0; frame < args.frames && !pattern.file.empty(); ++frame)
+      plan.outputs.push_back({pattern.option, frame_file(pattern.file, frame, args.frames), pattern.kind, frame});
+  }
+  check_files(plan);
+}
+
 /// Everything that can be found wrong before the first frame.
 simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& output) {
   const auto kind = simulation::parse_scene(args.scene);
   if (!kind) {
-    std::string names;
-    for (const simulation::SceneKind known : simulation::all_scenes())
-      names += (names.empty() ? "" : ", ") + std::string(simulation::name_of(known));
-    throw_usage(fmt::format("--simulate: '{}' is no scene; there are {}", args.scene, names));
+    std::vector<std::string> names;
+    for (const simulation::SceneKind known : simulation::all_scenes()) names.emplace_back(simulation::name_of(known));
+    throw_usage("--simulate: " + not_one_of(args.scene, names));
   }
-  if (args.frames < 1 || args.frames > 1'000'000)
-    throw_usage(fmt::format("--frames: {} is not in [1, 1000000]", args.frames));
-  if (!(args.fps >= 1 && args.fps <= 10'000)) throw_usage(fmt::format("--fps: {} is not in [1, 10000]", args.fps));
+  check_ranges(args);
   if (output.output.empty() && args.particles_out.empty() && output.report.empty())
     throw_usage("no output; name meshes with -o, particles with --particles-out or a --report");
   check_pattern(output.output, "-o", "--simulate");
   check_pattern(args.particles_out, "--particles-out", "--simulate");
-  if (!output.output.empty() && output.output == args.particles_out)
-    throw_usage("-o and --particles-out name the same files");
-  if (output.report == "-") throw_usage("--report: stdout carries data only; name a file");
+  check_names(args, output);
   if (!output.output.empty()) check_mesh_output(frame_file(output.output, 0, args.frames));
   if (!args.particles_out.empty()) {
     if (!has_extension(args.particles_out, ".ply"))
@@ -99,7 +119,8 @@ class Frames {
   [[nodiscard]] const std::string& lines() const { return lines_; }
   [[nodiscard]] const std::vector<double>& step_ms() const { return step_ms_; }
   [[nodiscard]] const std::vector<double>& surface_ms() const { return surface_ms_; }
-  [[nodiscard]] std::int64_t triangles() const { return static_cast<std::int64_t>(mesh_.triangles.size()); }
+  /// Of the last frame; empty without meshes.
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
 
  private:
   void run_one(int frame) {
@@ -225,6 +246,7 @@ int run_simulation(const SimulateArgs& args, const SimulateOutput& output) {
   const simulation::SceneKind kind = check(args, output);
   const simulation::SimulationOptions options = simulation_options(args);
   const Device device = output.device.chosen();
+  if (output.warn) output.warn(device.kind == DeviceKind::cuda);
   on_interrupt(OnInterrupt::remember);
   simulation::Simulation fluid(simulation::make_scene(kind, args.particles), options, device);
   Frames frames(args, output, fluid);
@@ -235,11 +257,13 @@ int run_simulation(const SimulateArgs& args, const SimulateOutput& output) {
   if (!output.report.empty()) write_report(args, output, fluid, frames);
   if (output.quiet) return 0;
   const double step_ms = spread_of(frames.step_ms()).median;
-  std::string text = fmt::format("{}: {} particles, {} frames; simulation: median {:.1f} ms", args.scene,
-                                 fluid.report().particles, args.frames, step_ms);
+  std::string text = fmt::format("{}{}: {} particles, {}; simulation: median {:.1f} ms",
+                                 file_words(output.output.empty() ? args.particles_out : output.output), args.scene,
+                                 fluid.report().particles, counted(args.frames, "frame"), step_ms);
   if (!frames.surface_ms().empty())
-    text += fmt::format("; surface: median {:.1f} ms, last {} triangles", spread_of(frames.surface_ms()).median,
-                        frames.triangles());
+    text += fmt::format("; surface: median {:.1f} ms; the last one: triangles {}, {}",
+                        spread_of(frames.surface_ms()).median, frames.mesh().triangles.size(),
+                        shape_words(frames.mesh(), output.device.threads));
   print_note(text);
   return 0;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -30,6 +31,8 @@ struct SimulateOutput {
   DeviceArgs device;
   bool quiet = false;
   FluidOptions surface;  ///< particle_radius 0: half the scene's spacing
+  /// Called once everything has been checked. @param on_gpu  the device is a GPU
+  std::function<void(bool on_gpu)> warn{};
 };
 
 /// Adds the options of a simulation to `command`, in a group of their own.

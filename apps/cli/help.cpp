@@ -14,7 +14,8 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name, CLI:
 }
 
 std::string HelpFormatter::make_option_name(const CLI::Option* option, bool is_positional) const {
-  return CLI::detail::find_and_replace(Formatter::make_option_name(option, is_positional), ",", ", ");
+  std::string name = CLI::detail::find_and_replace(Formatter::make_option_name(option, is_positional), ",", ", ");
+  return name.substr(0, name.find('{'));  // what a flag stands for without a value is the description's to tell
 }
 
 std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {

@@ -10,6 +10,7 @@
 #include <pointskin/error.hpp>
 
 #include "console.hpp"
+#include "mesh_samples.hpp"
 #include "probe.hpp"
 
 namespace pointskin::cli {
@@ -115,7 +116,8 @@ Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& opti
     Cloud cloud = read_cloud(paths[i], options);
     const std::string name = paths[i] == "-" ? "stdin" : paths[i];
     check_not_empty(cloud, name);
-    if (missing == MissingNormals::refused && !cloud.has_normals()) {
+    if (missing == MissingNormals::refused && !cloud.has_normals() &&
+        !read_vertices_of_mesh(paths[i], options, cloud)) {
       throw Error(
           ErrorCode::no_normals,
           fmt::format("{}: has no normals; it needs outward normals nx, ny, nz; 'pointskin orient' and reconstruct's "
@@ -169,6 +171,15 @@ std::string strays_text(std::int64_t count, const Vec3d& farthest) {
       "{} stray points far from all others are left out, the farthest at {:.9g} {:.9g} {:.9g}; use "
       "--keep-strays to keep them",
       count, farthest[0], farthest[1], farthest[2]);
+}
+
+void warn_about_strays(const Cloud& cloud, int threads) {
+  const Strays strays = find_strays(cloud.positions, threads);
+  if (strays.points.empty()) return;
+  const Vec3f& p = cloud.positions[static_cast<std::size_t>(strays.points.front())];
+  const Vec3d& origin = cloud.origin;
+  print_warning(strays_text(static_cast<std::int64_t>(strays.points.size()),
+                            {origin[0] + p.x, origin[1] + p.y, origin[2] + p.z}));
 }
 
 bool keep_colours_only(Cloud& cloud) {

@@ -43,6 +43,9 @@ std::shared_ptr<const Mesh> read_envelope(const std::string& path, int threads);
 /// What to tell of strays that are left out: how many, where the farthest is in world units, and how to keep them.
 std::string strays_text(std::int64_t count, const Vec3d& farthest);
 
+/// Warns of the strays of `cloud`, if there are any.
+void warn_about_strays(const Cloud& cloud, int threads);
+
 /// Leaves only the attributes red, green and blue.
 /// @returns whether there are any
 bool keep_colours_only(Cloud& cloud);

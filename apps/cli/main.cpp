@@ -15,6 +15,8 @@
 #include "console.hpp"
 #include "help.hpp"
 #include "signals.hpp"
+#include "standard_files.hpp"
+#include "usage_errors.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -29,7 +31,7 @@ void define_program(CLI::App& program, Job& job) {
   program.formatter(std::make_shared<HelpFormatter>());
   program.name("pointskin");
   program.require_subcommand(1);
-  program.set_version_flag("--version", std::string("pointskin ") + POINTSKIN_VERSION, "print the version");
+  program.set_version_flag("--version", version_text(), "print the version");
   program.set_help_flag("-h,--help", "print this help");
   program.footer(kFooter);
   add_reconstruct(program, job);
@@ -45,13 +47,15 @@ void define_program(CLI::App& program, Job& job) {
   add_render(program, job);
   add_boolean(program, job);
   add_bench(program, job);
+  add_help(program, job);
+  add_version(program, job);
 }
 
 /// A usage error, with where to look.
 int report_usage(const CLI::App& program, const std::vector<std::string>& args, const std::string& story) {
-  const auto named = [&args](const CLI::App* command) { return !args.empty() && command->get_name() == args[0]; };
-  const bool known = !program.get_subcommands(named).empty();
-  print_error(fmt::format("{}; try 'pointskin{} --help'", story, known ? " " + args[0] : ""));
+  const char* const separator = story.ends_with('?') ? "" : ";";
+  const bool known = command_of(program, args) != nullptr && args[0] != "help";
+  print_error(fmt::format("{}{} try 'pointskin{} --help'", story, separator, known ? " " + args[0] : ""));
   return static_cast<int>(ErrorCode::usage);
 }
 
@@ -65,10 +69,10 @@ int run(CLI::App& program, const std::vector<std::string>& args, const Job& job)
   } catch (const CLI::CallForVersion& version) {
     write_stdout(version.what() + std::string("\n"));
   } catch (const CLI::Error& error) {
-    return report_usage(program, args, error.what());
+    return report_usage(program, args, story_of(program, args, error));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::usage) throw;
-    return report_usage(program, args, error.what());
+    return report_usage(program, args, story_of(command_of(program, args), error.what()));
   }
   return 0;
 }
@@ -96,6 +100,7 @@ int guarded_main(const std::vector<std::string>& args) {
 }  // namespace pointskin::cli
 
 int main(int argc, char** argv) {
+  pointskin::cli::hold_standard_files();
   pointskin::cli::install_signal_handlers();
   return pointskin::cli::guarded_main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
 }

@@ -50,7 +50,7 @@ NormalOptions normal_options(const NormalArgs& args, const std::string& option) 
   NormalOptions options = args.options;
   options.method = normal_method_of(args.method, option);
   for (const std::string& text : args.sensors) {
-    const std::optional<Vec3d> place = text == "auto" || text == "none" ? std::nullopt : parse_shift(text);
+    const std::optional<Vec3d> place = parse_vector(text);
     if (!place) throw Error(ErrorCode::usage, fmt::format("--sensor: '{}' is not X,Y,Z", text));
     options.sensors.push_back(*place);
   }

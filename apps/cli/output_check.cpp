@@ -16,6 +16,7 @@
 #include <pointskin/error.hpp>
 
 #include "args.hpp"
+#include "standard_files.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -58,24 +59,6 @@ void check_extension(const std::string& path) {
 
 }  // namespace
 
-void check_distinct(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs) {
-  const auto usage = [](const std::string& story) { throw Error(ErrorCode::usage, story); };
-  if (std::count(inputs.begin(), inputs.end(), "-") > 1) usage("stdin (-) can be read only once");
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const auto& [option, file] = outputs[i];
-    if (file.empty()) continue;
-    for (std::size_t j = 0; j < i; ++j)
-      if (outputs[j].file == file) usage(fmt::format("{} and {} name the same file", option, outputs[j].option));
-    if (i > 0 && file == "-")
-      usage(fmt::format("{}: stdout carries what {} asks for; name a file", option, outputs[0].option));
-    for (const std::string& input : inputs) {
-      std::error_code ignored;  // files that do not exist are not the same
-      if (i > 0 && std::filesystem::equivalent(input, file, ignored))
-        usage(fmt::format("{} would overwrite the input {}", option, input));
-    }
-  }
-}
-
 void check_replaceable(const std::string& path) {
   if (is_special_file(path)) return;
   std::error_code ignored;
@@ -98,6 +81,7 @@ void check_mesh_output(const std::string& path) {
     check_extension(path);
     return check_replaceable(path);
   }
+  if (!stdout_is_open()) throw Error(ErrorCode::output_not_written, "stdout: cannot be written: it is closed");
   if (isatty(STDOUT_FILENO) == 1) {
     throw Error(ErrorCode::usage, "stdout is a terminal, and PLY is binary; redirect it or name a file with -o");
   }

@@ -22,6 +22,8 @@ void define_files(CLI::App& command, ReconstructArgs& args) {
       ->type_name("FILE")
       ->group(group)
       ->check(needs_a_name);
+  add_ascii_option(command, args.ascii);
+  add_overwrite_option(command, args.overwrite);
   command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
       ->type_name("S")
       ->group(group)
@@ -70,6 +72,8 @@ void define_poisson_recon_names(CLI::App& command, ReconstructArgs& args) {
     CLI::Option* option = command.add_option(name, value, "same as " + ours)->type_name(type)->group(group);
     if (ours != "IN") option->excludes(command.get_option(ours));
   };
+  alias("--iters", args.options.iterations, "--iterations", "N");
+  command.add_flag("--linearFit", args.options.linear_fit, "same as --linear-fit")->group(group);
   command.add_option("--in", args.named_inputs, "same as IN")->type_name("FILE")->group(group)->allow_extra_args(false);
   alias("--out", args.output, "--output", "OUT");
   alias("--pointWeight", args.options.screening, "--screening", "W");
@@ -78,13 +82,24 @@ void define_poisson_recon_names(CLI::App& command, ReconstructArgs& args) {
       ->type_name("1|2|3")
       ->group(group)
       ->excludes(command.get_option("--boundary"))
-      ->check(CLI::IsMember({1, 2, 3}));
+      ->check(is_one_of({"1", "2", "3"}));
   command.add_option("--width", args.width_world, "widest finest cell, world units; chooses the depth")
       ->type_name("W")
       ->group(group)
       ->each([&args](const std::string&) { args.width_given = true; });
   command.add_flag("--colors", args.colors, "same as --keep-attributes, but for red, green and blue alone")
       ->group(group);
+  command.add_flag(fmt::format("--data{{{}}}", kDataAlone), args.poisson_recon.data, "same as --keep-attributes")
+      ->group(group);
+  command.add_flag("--showResidual", args.verbose, "same as --verbose")
+      ->group(group)
+      ->excludes(command.get_option("--quiet"));
+  command.add_option("--maxMemory", "same as --max-memory, in units of 2^30 bytes, 0: no limit")
+      ->type_name("GB")
+      ->group(group)
+      ->excludes(command.get_option("--max-memory"))
+      ->each([&args](const std::string& gb) { args.max_memory = parse_number(gb) == 0 ? "" : gb + "G"; });
+  if (!args.problems) define_ignored_options(command, args.poisson_recon);
 }
 
 PointNormals point_normals_of(const ReconstructArgs& args) {
@@ -113,6 +128,9 @@ void define_reconstruct_options(CLI::App& command, ReconstructArgs& args) {
   define_limits(command, args);
   define_messages(command, args);
   define_poisson_recon_names(command, args);
+  if (!args.problems) return;
+  // A list of problems has weakness, which is defined for the field poisson alone, and for no offset.
+  for (const char* const name : {"--field", "--offset", "--weakness"}) command.remove_option(command.get_option(name));
 }
 
 Options library_options(const ReconstructArgs& args) {
@@ -126,10 +144,10 @@ Options library_options(const ReconstructArgs& args) {
   if (args.boundary_type != 0) options.boundary = args.boundary_type == 2 ? Boundary::dirichlet : Boundary::free;
   options.point_normals = point_normals_of(args);
   options.normal_estimation = normal_estimation_of(args);
-  options.attributes = options.attributes || args.colors;
+  options.attributes = options.attributes || args.colors || !args.poisson_recon.data.empty();
   options.weakness = options.weakness || args.problems;
   options.residuals = args.verbose || !args.report.empty();
-  if (!args.max_memory.empty()) options.max_memory_bytes = parse_bytes(args.max_memory);
+  if (!args.max_memory.empty()) options.max_memory_bytes = parse_bytes(args.max_memory, "--max-memory");
   validate(options);
   return options;
 }

@@ -9,7 +9,9 @@
 #include <pointskin/reconstruct.hpp>
 
 #include "fit_args.hpp"
+#include "given_options.hpp"
 #include "normal_args.hpp"
+#include "poisson_recon.hpp"
 
 namespace pointskin::cli {
 
@@ -27,7 +29,11 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   double width_world = 0;        ///< > 0: chooses the depth
   int repeat = 0;
   bool width_given = false, repeat_given = false;
-  bool problems = false;  ///< list regions whose topology is doubtful; a mesh is not needed then
+  bool problems = false;   ///< list regions whose topology is doubtful; a mesh is not needed then
+  bool overwrite = false;  ///< results may replace inputs
+  bool ascii = false;      ///< PLY as text
+  PoissonReconArgs poisson_recon;
+  GivenOptions given;
   bool colors = false, dry_run = false, quiet = false, verbose = false;
 };
 

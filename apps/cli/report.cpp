@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "console.hpp"
 #include "normal_args.hpp"
 #include "statistics.hpp"
+#include "summary_words.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -188,11 +188,9 @@ std::string summary(const Record& record) {
   const RunReport& run = record.run;
   const double function_ms = run.splat_ms + run.solve_ms;
   std::string line = fmt::format(
-      "points {}, depth {}, triangles {}; ms: octree {:.1f}, function {:.1f}, surface {:.1f}, total {:.1f}; "
-      "memory {} device, {} host",
-      used(record), run.depth, record.mesh.triangles, run.octree_ms, function_ms, run.extract_ms, record.total_ms,
-      format_bytes(static_cast<double>(run.device_peak_bytes)),
-      format_bytes(static_cast<double>(record.host_peak_bytes)));
+      "points {}, depth {}, triangles {}, {}; ms: octree {:.1f}, function {:.1f}, surface {:.1f}, total {:.1f}; {}",
+      used(record), run.depth, record.mesh.triangles, record.shape, run.octree_ms, function_ms, run.extract_ms,
+      record.total_ms, memory_words(record.device, run.device_peak_bytes, record.host_peak_bytes));
   if (record.options.trim != 0 && run.trim.quantile == 0) line += "; nothing to trim: the surface is near the points";
   if (run.trim.quantile > 0) {
     const double share = run.trim.area_before > 0 ? run.trim.area_removed / run.trim.area_before : 0;

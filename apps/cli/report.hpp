@@ -27,6 +27,7 @@ struct Record {
   RunReport run;
   MeshReport mesh;
   std::string command = "reconstruct";
+  std::string shape;                    ///< of the mesh, in words: closed or not, components
   std::vector<ProblemRegion> problems;  ///< with Options::weakness
   double read_ms = 0, write_ms = 0, total_ms = 0;
   std::vector<double> repeat_ms;

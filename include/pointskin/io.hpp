@@ -40,6 +40,12 @@ Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 ///         over_limit for more than 2^31 - 1 vertices
 Mesh read_mesh(const std::string& path, const ReadOptions& options = {});
 
+struct WriteOptions {
+  bool ascii =
+      false;        ///< PLY as text, numbers in the fewest digits that read back equal; OBJ is text always, STL never
+  int threads = 0;  ///< CPU threads, 0: all
+};
+
 /// Writes `mesh`; the format follows the extension: .ply (binary little endian, `list uchar int vertex_indices`), .obj,
 /// .stl (binary). `path` "-" writes PLY to stdout. Vertices are float, or double when mesh.origin is not zero.
 /// The file appears by atomic rename from a temporary file in the same folder: on any failure the old file, or none, is
@@ -50,9 +56,11 @@ Mesh read_mesh(const std::string& path, const ReadOptions& options = {});
 /// @throws Error output_not_written (with the reason of the operating system); usage for an unknown extension or arrays
 ///         that do not fit together; invalid_input for a triangle that names a vertex that does not exist
 void write_mesh(const std::string& path, const Mesh& mesh, int threads = 0);
+void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options);
 
 /// Writes `cloud` as binary PLY (positions, normals, attributes); the same promises as write_mesh.
 void write_cloud(const std::string& path, const Cloud& cloud, int threads = 0);
+void write_cloud(const std::string& path, const Cloud& cloud, const WriteOptions& options);
 
 /// Replaces the file `path` by `bytes` atomically (see write_mesh); "-" is stdout.
 /// @throws Error output_not_written

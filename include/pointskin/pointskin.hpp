@@ -4,6 +4,7 @@
 #include <pointskin/boolean.hpp>
 #include <pointskin/camera.hpp>
 #include <pointskin/cloud.hpp>
+#include <pointskin/components.hpp>
 #include <pointskin/deform.hpp>
 #include <pointskin/device.hpp>
 #include <pointskin/edit.hpp>
@@ -18,3 +19,4 @@
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/render.hpp>
 #include <pointskin/vector.hpp>
+#include <pointskin/vertex_normals.hpp>

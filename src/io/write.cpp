@@ -47,23 +47,37 @@ void format_and_write(exec::Cpu& ex, const std::string& path, const Format& form
   }
 }
 
+/// PLY as `options` want it.
+io::Blocks format_ply(const WriteOptions& options, const io::VertexArrays& vertices,
+                      const std::vector<Triangle>* triangles) {
+  return options.ascii ? io::format_ply_ascii(vertices, triangles) : io::format_ply(vertices, triangles);
+}
+
 }  // namespace
 
 void write_mesh(const std::string& path, const Mesh& mesh, int threads) {
+  write_mesh(path, mesh, WriteOptions{.ascii = false, .threads = threads});
+}
+
+void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options) {
   const std::string extension = output_format(path);
-  exec::Cpu ex(threads);
+  exec::Cpu ex(options.threads);
   check_triangles(ex, mesh);
   format_and_write(ex, path, [&] {
     if (extension == ".obj") return io::format_obj(mesh);
     if (extension == ".stl") return io::format_stl(mesh);
-    return io::format_ply({mesh.origin, mesh.vertices, mesh.normals, mesh.attributes}, &mesh.triangles);
+    return format_ply(options, {mesh.origin, mesh.vertices, mesh.normals, mesh.attributes}, &mesh.triangles);
   });
 }
 
 void write_cloud(const std::string& path, const Cloud& cloud, int threads) {
-  exec::Cpu ex(threads);
+  write_cloud(path, cloud, WriteOptions{.ascii = false, .threads = threads});
+}
+
+void write_cloud(const std::string& path, const Cloud& cloud, const WriteOptions& options) {
+  exec::Cpu ex(options.threads);
   format_and_write(ex, path, [&] {
-    return io::format_ply({cloud.origin, cloud.positions, cloud.normals, cloud.attributes}, nullptr);
+    return format_ply(options, {cloud.origin, cloud.positions, cloud.normals, cloud.attributes}, nullptr);
   });
 }
 

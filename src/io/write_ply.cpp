@@ -30,9 +30,9 @@ std::string property_name(const std::string& name) {
   return word;
 }
 
-std::string vertex_header(const VertexArrays& v) {
+std::string vertex_header(const VertexArrays& v, const char* encoding) {
   const char* type = is_zero(v.origin) ? "float" : "double";
-  std::string header = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", v.positions.size());
+  std::string header = fmt::format("ply\nformat {} 1.0\nelement vertex {}\n", encoding, v.positions.size());
   std::unordered_set<std::string> names;
   const auto add = [&](const char* property_type, const std::string& name) {
     if (!names.insert(name).second)
@@ -64,10 +64,6 @@ std::size_t row_bytes_of(const VertexArrays& v) {
   return bytes;
 }
 
-std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::isnan(value) ? 0.0f : std::round(std::clamp(value, 0.0f, 255.0f)));
-}
-
 /// Writes the rows [first, last), the first one to `out`, column by column.
 void store_rows(const VertexArrays& v, std::size_t first, std::size_t last, std::size_t row_bytes, char* out) {
   const auto for_rows = [&](std::size_t bytes, const auto& put) {
@@ -97,13 +93,21 @@ void store_faces(const std::vector<Triangle>& triangles, std::size_t first, std:
 
 }  // namespace
 
-Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
+std::string ply_header(const VertexArrays& vertices, const std::vector<Triangle>* triangles, const char* encoding) {
   check_shapes(vertices);
-  std::string header = vertex_header(vertices);
+  std::string header = vertex_header(vertices, encoding);
   if (triangles != nullptr)
     fmt::format_to(std::back_inserter(header), "element face {}\nproperty list uchar int vertex_indices\n",
                    triangles->size());
-  header += "end_header\n";
+  return header + "end_header\n";
+}
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::isnan(value) ? 0.0f : std::round(std::clamp(value, 0.0f, 255.0f)));
+}
+
+Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
+  std::string header = ply_header(vertices, triangles, "binary_little_endian");
   const auto append_vertices = [vertices, row_bytes = row_bytes_of(vertices)](std::size_t first, std::size_t last,
                                                                               std::string& bytes) {
     const std::size_t before = bytes.size();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -25,6 +26,15 @@ struct VertexArrays {
 /// origin is not zero.
 /// @throws Error usage if an array has the wrong length or a name comes twice
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles);
+
+/// The same as ASCII PLY: a line per vertex and face, numbers in the fewest digits that read back equal.
+Blocks format_ply_ascii(const VertexArrays& vertices, const std::vector<Triangle>* triangles);
+
+/// The header of either. @param encoding  "ascii" or "binary_little_endian" @throws Error as format_ply
+std::string ply_header(const VertexArrays& vertices, const std::vector<Triangle>* triangles, const char* encoding);
+
+/// What a property of type uchar stores for `value`.
+std::uint8_t to_byte(float value);
 
 /// OBJ text: world coordinates in the fewest digits that read back equal. Colours, if red, green and blue are uint8
 /// attributes, follow the coordinates as numbers in [0, 1], as many programs read them.

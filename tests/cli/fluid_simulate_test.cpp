@@ -86,7 +86,7 @@ TEST_F(FluidSimulate, RefusesWhatIsOutOfRange) {
   const std::string output = folder_ / "m_{}.ply";
   expect_failure({}, 2, "no output");
   expect_failure({"-o", folder_ / "m.ply"}, 2, "{}");
-  expect_failure({"-o", output, "--particles-out", output}, 2, "same files");
+  expect_failure({"-o", output, "--particles-out", output}, 2, "same file");
   expect_failure({"-o", output, "--particles-out", folder_ / "p_{}.obj"}, 2, ".ply");
   expect_failure({"-o", output, "--frames", "0"}, 2, "--frames");
   expect_failure({"-o", output, "--fps", "0"}, 2, "--fps");

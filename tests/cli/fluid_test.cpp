@@ -127,7 +127,7 @@ TEST_F(FluidCommand, ReadsStdinAndWritesStdout) {
 
 TEST_F(FluidCommand, SaysWhatIsWrong) {
   expect_failure(one_, {"-o", output_, "-r", "0"}, 2, "particle_radius");
-  expect_failure(one_, {"-o", output_, "-c", "9"}, 2, "cube_size");
+  expect_failure(one_, {"-o", output_, "-c", "9"}, 2, "--cube-size");
   expect_failure(one_, {"-o", folder_ / "m_{}.ply"}, 2, "{}");
   expect_failure(all_, {"-o", output_}, 2, "{}");
   expect_failure(one_, {"-o", output_, "--first", "3"}, 2, "--first");

@@ -104,7 +104,10 @@ TEST_F(KeepAttributes, ColorsWarnsWhereThereAreNone) {
   const Result result = reconstruct({"--colors"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_NE(result.err.find("warning: --colors"), std::string::npos) << result.err;
-  EXPECT_TRUE(mesh_with({"--keep-attributes"}).attributes.empty());
+  const Result all = reconstruct({"--keep-attributes"});
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_NE(all.err.find("warning: --keep-attributes"), std::string::npos) << all.err;
+  EXPECT_TRUE(read_mesh(output_).attributes.empty());
 }
 
 TEST_F(KeepAttributes, OfOneInputAreThoseOfItsPoints) {  // two spheres apart, one of them without colours

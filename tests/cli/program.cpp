@@ -52,7 +52,7 @@ class Process {
   explicit Process(const Start& start) : start_(start) {
     if (start.terminal) open_terminal(err_);
     std::vector<std::string> args = start.args;
-    args.insert(args.begin(), POINTSKIN_PROGRAM);
+    args.insert(args.begin(), start.program.empty() ? POINTSKIN_PROGRAM : start.program);
     std::vector<char*> argv;
     for (std::string& arg : args) argv.push_back(arg.data());
     argv.push_back(nullptr);
@@ -160,6 +160,15 @@ class Process {
 Result run_program(const Start& start) {
   std::signal(SIGPIPE, SIG_IGN);  // A program that does not read its stdin must not end the test.
   return Process(start).wait();
+}
+
+Result run_shell(const std::string& script, const std::string& folder) {
+  Start start;
+  start.program = "/bin/sh";
+  start.args = {"-c", script};
+  start.environment = {std::string("P=") + POINTSKIN_PROGRAM};
+  start.folder = folder;
+  return run_program(start);
 }
 
 Result pointskin_run(const std::vector<std::string>& args) {

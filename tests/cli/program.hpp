@@ -27,6 +27,7 @@ struct Result {
 /// How to start the program; what a test does not set is quiet: empty stdin, no terminal.
 struct Start {
   std::vector<std::string> args;
+  std::string program;                        ///< empty: pointskin
   std::string input;                          ///< bytes on stdin
   bool keep_stdin_open = false;               ///< stdin never ends, as from a person who types nothing
   bool close_stdout = false;                  ///< the reader of stdout is gone
@@ -40,6 +41,9 @@ struct Start {
 };
 
 Result run_program(const Start& start);
+
+/// Runs `script` in a shell, in `folder`, with pointskin as "$P".
+Result run_shell(const std::string& script, const std::string& folder);
 
 /// run_program with arguments alone.
 Result pointskin_run(const std::vector<std::string>& args);

@@ -39,7 +39,7 @@ void append_devices(std::vector<Device>& devices, const std::string& name, int t
     devices.push_back(Device::cuda(0));  // tells why there is none
     append_gpus(devices);
   } else {
-    devices.push_back(parse_device(name, threads));
+    devices.push_back(parse_device(name, threads, "--devices", "all, cpu, cuda or cuda:N"));
   }
 }
 

@@ -8,6 +8,8 @@
 
 #include <pointskin/device.hpp>
 
+#include "given_options.hpp"
+
 namespace pointskin::cli {
 
 struct BenchArgs {
@@ -22,6 +24,7 @@ struct BenchArgs {
   int repeat = 10;
   int peer_repeat = 3;
   bool quiet = false;
+  GivenOptions given;
 };
 
 /// Defines the options on `command`, bound to `args`.

@@ -1,0 +1,71 @@
+// ASCII PLY: what format_ply writes, as text.
+#include <array>
+#include <charconv>
+
+#include "io/writers.hpp"
+
+namespace pointskin::io {
+namespace {
+
+/// Appends a blank and `value` in the fewest digits that read back equal.
+template <class Number>
+void append_number(std::string& bytes, Number value) {
+  std::array<char, 32> text;
+  text[0] = ' ';
+  bytes.append(text.data(), std::to_chars(text.data() + 1, text.data() + text.size(), value).ptr);
+}
+
+void append_position(std::string& bytes, const VertexArrays& v, std::size_t i) {
+  const Vec3f& p = v.positions[i];
+  if (is_zero(v.origin)) {
+    for (const float x : {p.x, p.y, p.z}) append_number(bytes, x);
+    return;
+  }
+  for (const double x : world(v.origin, p)) append_number(bytes, x);
+}
+
+void append_value(std::string& bytes, const Attribute& attribute, std::size_t i) {
+  const float value = attribute.values[i];
+  if (attribute.type == AttributeType::uint8)
+    append_number(bytes, unsigned{to_byte(value)});
+  else
+    append_number(bytes, value);
+}
+
+/// A line a row: add(i, bytes) appends its numbers, each behind a blank. Lines begin without one.
+template <class Add>
+void append_lines(std::size_t first, std::size_t last, std::string& bytes, const Add& add) {
+  std::string line;
+  for (std::size_t i = first; i < last; ++i) {
+    line.clear();
+    add(i, line);
+    bytes.append(line, 1);
+    bytes += '\n';
+  }
+}
+
+}  // namespace
+
+Blocks format_ply_ascii(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
+  const auto append_vertices = [vertices](std::size_t first, std::size_t last, std::string& bytes) {
+    append_lines(first, last, bytes, [&vertices](std::size_t i, std::string& line) {
+      append_position(line, vertices, i);
+      if (!vertices.normals.empty()) {
+        const Vec3f& n = vertices.normals[i];
+        for (const float x : {n.x, n.y, n.z}) append_number(line, x);
+      }
+      for (const Attribute& attribute : vertices.attributes) append_value(line, attribute, i);
+    });
+  };
+  const auto append_faces = [triangles](std::size_t first, std::size_t last, std::string& bytes) {
+    append_lines(first, last, bytes, [triangles](std::size_t t, std::string& line) {
+      line += " 3";
+      for (const std::int32_t v : (*triangles)[t]) append_number(line, v);
+    });
+  };
+  const std::size_t faces = triangles != nullptr ? triangles->size() : 0;
+  return cut_into_blocks(ply_header(vertices, triangles, "ascii"),
+                         {{vertices.positions.size(), append_vertices}, {faces, append_faces}});
+}
+
+}  // namespace pointskin::io

@@ -1,6 +1,7 @@
 // Triangle meshes on the host: the result type, its checker and its comparison.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -49,6 +50,41 @@ struct MeshReport {
 /// @param threads  CPU threads, 0: all
 /// @throws Error invalid_input if a triangle names a vertex that does not exist
 MeshReport measure(const Mesh& mesh, int threads = 0);
+
+struct SelfIntersectionOptions {
+  std::int64_t listed = 10;  ///< pairs to name, at most; >= 0
+  int threads = 0;           ///< CPU threads, 0: all
+};
+
+/// Two triangles that meet elsewhere than in what they share.
+struct IntersectingPair {
+  std::array<std::int32_t, 2> triangles{};  ///< ids, the smaller first
+  bool touching = false;                    ///< their insides do not meet: they have points of their borders in common
+  Vec3d place_world{};                      ///< a point of both, up to rounding
+};
+
+struct SelfIntersections {
+  std::int64_t pairs = 0;                ///< of triangles that meet, touching ones included
+  std::int64_t touching = 0;             ///< of these, those whose insides do not meet
+  std::int64_t triangles = 0;            ///< that are part of some pair
+  std::vector<IntersectingPair> listed;  ///< the pairs with the smallest ids, ascending
+};
+
+/// Finds the pairs of triangles of `mesh` that have more in common than the corners and edges that they share.
+///
+/// Triangles are closed sets: a corner of one that lies on the other counts, as `touching`. What two triangles share
+/// follows from the ids of their vertices: vertices at one place with different ids are not shared. Two triangles with
+/// the same three vertices are a pair. Triangles without area are segments or points, and count like all others; they
+/// have no inside, so they only touch.
+///
+/// Exact: every decision is the sign of a determinant of the floats in Mesh::vertices, computed without error
+/// (Shewchuk 1997). The origin does not matter. No pair is missed, and none is invented, also where triangles lie in
+/// one plane or touch. About O(t log t + candidates), candidates being pairs with overlapping boxes, in a mesh of a
+/// surface some 7 t: 0.4 us a triangle on two cores. Memory: 40 bytes a triangle of scratch at its peak, however many
+/// pairs there are. Deterministic for any `threads`.
+/// @throws Error invalid_input if a triangle names a vertex that does not exist, or one that is not finite; usage if an
+///         option is out of range
+SelfIntersections find_self_intersections(const Mesh& mesh, const SelfIntersectionOptions& options = {});
 
 struct CompareOptions {
   std::int64_t samples = 500'000;  ///< area-uniform samples drawn on each mesh, > 0

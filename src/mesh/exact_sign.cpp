@@ -1,8 +1,11 @@
 #include "mesh/exact_sign.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
 #include "mesh/vec3d.hpp"
 
@@ -79,6 +82,50 @@ int exact_side_of_plane(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Ve
   return sum.sign();
 }
 
+using Whole = __int128;
+
+/// Four points in whole multiples of one power of two, as differences from the first; see whole_differences.
+struct WholeDifferences {
+  std::array<std::array<std::int64_t, 3>, 3> rows{};
+
+  [[nodiscard]] int sign_of_determinant() const {
+    const auto& [u, v, w] = rows;
+    const auto minor = [&](std::size_t i, std::size_t j) { return Whole{u[i]} * v[j] - Whole{u[j]} * v[i]; };
+    const Whole det = w[0] * minor(1, 2) + w[1] * minor(2, 0) + w[2] * minor(0, 1);
+    return (det > 0) - (det < 0);
+  }
+};
+
+/// Adds the differences of one axis. @returns false if a coordinate is no whole multiple of 1 / scale
+bool add_whole_axis(const std::array<double, 4>& coordinates, double scale, std::size_t axis, WholeDifferences& whole) {
+  std::array<std::int64_t, 4> scaled{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double x = coordinates[i] * scale;  // exact: scale is a power of two
+    if (!(std::abs(x) < 0x1p62)) return false;
+    scaled[i] = static_cast<std::int64_t>(x);
+    if (static_cast<double>(scaled[i]) != x) return false;
+  }
+  for (std::size_t i = 0; i < 3; ++i) whole.rows[i][axis] = scaled[i + 1] - scaled[0];
+  return true;
+}
+
+/// The differences b - a, c - a, d - a, scaled so that all are below 2^41 and determinants fit into 126 bits; none if
+/// the coordinates are not whole then, which is rare among points of one mesh.
+/// @param largest  the largest difference of two coordinates, rounded
+std::optional<WholeDifferences> whole_differences(const std::array<Vec3f, 4>& points, double largest) {
+  const double scale = std::ldexp(1.0, 39 - std::ilogb(largest));  // rounding may have lost one bit
+  WholeDifferences whole;
+  const auto along = [&](float Vec3f::*axis) -> std::array<double, 4> {
+    return {points[0].*axis, points[1].*axis, points[2].*axis, points[3].*axis};
+  };
+  if (!add_whole_axis(along(&Vec3f::x), scale, 0, whole) || !add_whole_axis(along(&Vec3f::y), scale, 1, whole) ||
+      !add_whole_axis(along(&Vec3f::z), scale, 2, whole))
+    return std::nullopt;
+  return whole;
+}
+
+double largest_of(const Vec3d& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
+
 struct Point2 {
   double x, y;
 };
@@ -114,6 +161,8 @@ int side_of_plane(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d
   const double error = kPlaneError * size;
   // A size of 0 means that every term is 0: differences of floats are 0 only where the floats are equal.
   if (det > error || det < -error || size == 0) return sign_of(det);
+  if (const auto whole = whole_differences({a, b, c, d}, std::max({largest_of(u), largest_of(v), largest_of(w)})))
+    return whole->sign_of_determinant();
   return exact_side_of_plane(a, b, c, d);
 }
 

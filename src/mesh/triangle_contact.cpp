@@ -261,6 +261,25 @@ double middle_of_overlap(std::array<float, 3> a, std::array<float, 3> b) {
   return 0.5 * (static_cast<double>(std::max(a_low, b_low)) + static_cast<double>(std::min(a_high, b_high)));
 }
 
+/// The side of the edge from a to b that `inner` is on has nothing of t but corners that it shares with s: the quick
+/// way to part neighbours in one plane.
+bool edge_parts_strictly(const MeshTriangle& s, std::size_t k, const MeshTriangle& t, int axis) {
+  const Vec3f &a = s.corners[k], &b = s.corners[(k + 1) % 3];
+  const int inner = turn(a, b, s.corners[(k + 2) % 3], axis);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool on_edge = t.ids[i] == s.ids[k] || t.ids[i] == s.ids[(k + 1) % 3];
+    if (!on_edge && turn(a, b, t.corners[i], axis) * inner >= 0) return false;
+  }
+  return true;
+}
+
+/// Whether an edge of s, which has area and lies in one plane with t, has all of t beyond it, shared corners apart.
+bool any_edge_parts_strictly(const MeshTriangle& s, const Shape& s_shape, const MeshTriangle& t) {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (edge_parts_strictly(s, k, t, s_shape.across())) return true;
+  return false;
+}
+
 }  // namespace
 
 Vec3d place_of_contact(const MeshTriangle& s, const MeshTriangle& t) {
@@ -279,6 +298,9 @@ Vec3d place_of_contact(const MeshTriangle& s, const MeshTriangle& t) {
 Contact contact_of(const MeshTriangle& s, const MeshTriangle& t) {
   if (is_beside(t, s) || is_beside(s, t)) return Contact::none;
   const Shape s_shape(s.corners), t_shape(t.corners);
+  const bool in_plane = s_shape.has_area() && t_shape.has_area() && s_shape.sides_of(t_shape) == Signs{0, 0, 0};
+  if (in_plane && (any_edge_parts_strictly(s, s_shape, t) || any_edge_parts_strictly(t, t_shape, s)))
+    return Contact::none;
   if (!meet_beside_shared(s, t, s_shape, t_shape)) return Contact::none;
   return insides_meet(s_shape, t_shape) ? Contact::crossing : Contact::touching;
 }

@@ -103,6 +103,21 @@ TEST(SideOfPlane, IsThatOfWholeNumbersForCoordinatesOfAllSizes) {
   }
 }
 
+/// Axes of different scales: sides stay, and no power of two has all coordinates for whole multiples below 2^41.
+TEST(SideOfPlane, DoesNotDependOnTheScalesOfTheAxes) {
+  for (std::uint64_t seed = 1; seed <= 10'000; ++seed) {
+    Random random(seed);
+    const WholePoint a = any_point(random, kLimit), b = any_point(random, kLimit), c = any_point(random, kLimit);
+    const WholePoint d = near_plane(random, a, b, c);
+    std::array<int, 3> exponents{};
+    for (int& e : exponents) e = static_cast<int>(random.below(160)) - 80;
+    const auto f = [&](const WholePoint& p) -> Vec3f {
+      return {as_float(p, exponents[0]).x, as_float(p, exponents[1]).y, as_float(p, exponents[2]).z};
+    };
+    ASSERT_EQ(side_of_plane(f(a), f(b), f(c), f(d)), sign_of(determinant(a, b, c, d))) << "seed " << seed;
+  }
+}
+
 TEST(SideOfPlane, SeesATinyStepFromAHugePlane) {
   // Differences lose the step: 1e30 + 1e-30 is 1e30 in double.
   const Vec3f a{1e30F, 0, 0}, b{0, 1e30F, 0}, c{-1e30F, -1e30F, 0};

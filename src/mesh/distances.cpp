@@ -65,7 +65,7 @@ std::vector<double> distances(const ComparedSurface& surface, const ComparedSurf
     return measure_all(ex, positions_of(surface), offset, [&](const Vec3d& p, std::int32_t& hint) {
       const mesh_detail::SurfacePlace place = field.at(p, hint);
       hint = place.slot;
-      return -place.distance;
+      return 0.0 - place.distance;  // 0 stays above 0
     });
   }
   const auto side = mesh_detail::prepare(ex, reference, Vec3d{0, 0, 0});

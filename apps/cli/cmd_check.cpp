@@ -80,7 +80,10 @@ std::string human_text(const SelfIntersections& found) {
         fmt::format("            {} and {} {} at {:.9g} {:.9g} {:.9g}\n", pair.triangles[0], pair.triangles[1],
                     pair.touching ? "touch" : "cross", pair.place_world[0], pair.place_world[1], pair.place_world[2]);
   if (found.pairs > static_cast<std::int64_t>(found.listed.size())) text += "            ...\n";
-  return text;
+  return text +
+         "            (a mesh of `reconstruct` crosses itself in single cells of three rare kinds only, and touches "
+         "itself\n"
+         "            where float32 is too coarse for its cells; an envelope and smoothing may fold it: docs/cli.md)\n";
 }
 
 std::string human_text(const CheckArgs& args, const Findings& findings) {
@@ -119,9 +122,7 @@ constexpr char kFooter[] =
     "units^2. Exit code 0 only when watertight, 5 when not, 3 when the file cannot be read.\n\n"
     "--self-intersections: embedded means that no two triangles have a point in common beside the vertices and edges\n"
     "that they share by number. Exact, also for triangles that touch, lie in one plane or have no area. A mesh of\n"
-    "`reconstruct` passes itself in single cells of three rare kinds only (docs/cli.md); one that was trimmed, or "
-    "pressed\n"
-    "into an envelope, may elsewhere, too.";
+    "`reconstruct` crosses itself in single cells of three rare kinds only; an envelope and smoothing may fold it.";
 
 }  // namespace
 

@@ -79,9 +79,10 @@ struct SelfIntersections {
 ///
 /// Exact: every decision is the sign of a determinant of the floats in Mesh::vertices, computed without error
 /// (Shewchuk 1997). The origin does not matter. No pair is missed, and none is invented, also where triangles lie in
-/// one plane or touch. About O(t log t + candidates), candidates being pairs with overlapping boxes, in a mesh of a
-/// surface some 7 t: 0.4 us a triangle on two cores. Memory: 40 bytes a triangle of scratch at its peak, however many
-/// pairs there are. Deterministic for any `threads`.
+/// one plane or touch.
+/// O(t log t + pairs with overlapping boxes), of which a surface has about 7 t: 1 us a triangle and core, 3 to 5 us
+/// where triangles lie in one plane. Memory: 40 bytes a triangle, however many pairs there are. Deterministic for any
+/// `threads`.
 /// @throws Error invalid_input if a triangle names a vertex that does not exist, or one that is not finite; usage if an
 ///         option is out of range
 SelfIntersections find_self_intersections(const Mesh& mesh, const SelfIntersectionOptions& options = {});

@@ -1,6 +1,9 @@
-// pointskin compare: how far apart two meshes are.
+// pointskin compare: how far apart two surfaces are, meshes or clouds, and where.
 #include <memory>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,18 +14,34 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "input.hpp"
 #include "json_text.hpp"
+#include "output_check.hpp"
+#include "signals.hpp"
 
 namespace pointskin::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Content = std::variant<Cloud, Mesh>;
 
 struct CompareArgs {
-  std::string mesh, reference;
+  std::string a, b, heat;
   CompareOptions options;
   bool json = false;
+  bool with_sign = false;
 };
+
+/// Both files and what was found between them.
+struct Comparison {
+  Content a, b;
+  MeshComparison result;
+};
+
+ComparedSurface surface_of(const Content& content) {
+  if (const auto* mesh = std::get_if<Mesh>(&content)) return *mesh;
+  return std::get<Cloud>(content);
+}
 
 Json distances_json(const DistanceStatistics& d, double diagonal) {
   const double to_percent = 100 / diagonal;
@@ -36,21 +55,47 @@ Json distances_json(const DistanceStatistics& d, double diagonal) {
           {"max_percent", d.max * to_percent}};
 }
 
-Json to_json(const CompareArgs& args, const MeshComparison& c) {
-  return {{"version", 1},
-          {"command", "compare"},
-          {"mesh", args.mesh},
-          {"reference", args.reference},
-          {"samples", args.options.samples},
-          {"tau", args.options.tau},
-          {"reference_diagonal", c.reference_diagonal},
-          {"to_reference", distances_json(c.to_reference, c.reference_diagonal)},
-          {"from_reference", distances_json(c.from_reference, c.reference_diagonal)},
-          {"two_sided", distances_json(c.two_sided, c.reference_diagonal)},
-          {"normal_consistency", c.normal_consistency},
-          {"precision", c.precision},
-          {"recall", c.recall},
-          {"f_score", c.f_score}};
+Json side_json(const std::string& file, const Content& content, std::int64_t samples) {
+  Json json = {{"file", file}};
+  if (const auto* mesh = std::get_if<Mesh>(&content)) {
+    json.update({{"kind", "mesh"}, {"vertices", mesh->vertices.size()}, {"triangles", mesh->triangles.size()}});
+  } else {
+    const auto& cloud = std::get<Cloud>(content);
+    json.update({{"kind", "cloud"}, {"points", cloud.size()}, {"normals", cloud.has_normals()}});
+  }
+  json["samples"] = samples;
+  return json;
+}
+
+Json to_json(const CompareArgs& args, const Comparison& comparison) {
+  const MeshComparison& c = comparison.result;
+  Json json = {{"version", 1},
+               {"command", "compare"},
+               {"mesh", args.a},
+               {"reference", args.b},
+               {"a", side_json(args.a, comparison.a, c.samples)},
+               {"b", side_json(args.b, comparison.b, c.reference_samples)},
+               {"samples", args.options.samples},
+               {"tau", args.options.tau},
+               {"reference_diagonal", c.reference_diagonal},
+               {"to_reference", distances_json(c.to_reference, c.reference_diagonal)},
+               {"from_reference", distances_json(c.from_reference, c.reference_diagonal)},
+               {"two_sided", distances_json(c.two_sided, c.reference_diagonal)}};
+  json["normal_consistency"] = c.has_normals ? Json(c.normal_consistency) : Json(nullptr);
+  json.update({{"precision", c.precision}, {"recall", c.recall}, {"f_score", c.f_score}});
+  return json;
+}
+
+std::string side_text(const char* name, const std::string& file, const Content& content, std::int64_t samples) {
+  std::string what;
+  if (const auto* mesh = std::get_if<Mesh>(&content)) {
+    what = fmt::format("mesh, {} triangles, {} samples", mesh->triangles.size(), samples);
+  } else {
+    const auto& cloud = std::get<Cloud>(content);
+    what = fmt::format("cloud, {} points {} normals", cloud.size(), cloud.has_normals() ? "with" : "without");
+    if (samples < cloud.size()) what += fmt::format(", {} of them taken", samples);
+  }
+  return fmt::format("{:<16}{}: {}\n", name, file, what);
 }
 
 std::string distances_text(const char* name, const DistanceStatistics& d, double diagonal) {
@@ -60,46 +105,123 @@ std::string distances_text(const char* name, const DistanceStatistics& d, double
   return fmt::format("{:<16}{}{}{}{}\n", name, cell(d.mean), cell(d.rms), cell(d.p95), cell(d.max));
 }
 
-std::string human_text(const CompareArgs& args, const MeshComparison& c) {
-  std::string text =
-      fmt::format("distances in world units (in % of the reference's diagonal, {:.6g})\n", c.reference_diagonal);
+std::string human_text(const CompareArgs& args, const Comparison& comparison) {
+  const MeshComparison& c = comparison.result;
+  std::string text = side_text("A", args.a, comparison.a, c.samples);
+  text += side_text("B, reference", args.b, comparison.b, c.reference_samples);
+  text += fmt::format("distances in world units (in % of the reference's diagonal, {:.6g})\n", c.reference_diagonal);
   text += fmt::format("{:<16}{:>22}{:>22}{:>22}{:>22}\n", "", "mean", "rms", "p95", "max");
   text += distances_text("to reference", c.to_reference, c.reference_diagonal);
   text += distances_text("from reference", c.from_reference, c.reference_diagonal);
   text += distances_text("two-sided", c.two_sided, c.reference_diagonal);
-  text += fmt::format("normal consistency  {:.5f}\n", c.normal_consistency);
+  text += c.has_normals ? fmt::format("normal consistency  {:.5f}\n", c.normal_consistency)
+                        : std::string("normal consistency  none: a cloud has no normals\n");
   return text +
          fmt::format("F-score             {:.5f} (precision {:.5f}, recall {:.5f}; within {:g} of the diagonal)\n",
                      c.f_score, c.precision, c.recall, args.options.tau);
 }
 
-int run(const CompareArgs& args) {
+/// Everything that can be found wrong before the inputs are opened.
+void check(const CompareArgs& args) {
   check_threads(args.options.threads);
   if (args.options.samples < 1) throw Error(ErrorCode::usage, "--samples: must be at least 1");
   if (!(args.options.tau > 0)) throw Error(ErrorCode::usage, "--tau: must be above 0");
-  const ReadOptions read{.shift = std::nullopt, .threads = args.options.threads};
-  const Mesh mesh = read_mesh(args.mesh, read);
-  const MeshComparison comparison = compare(mesh, read_mesh(args.reference, read), args.options);
+  check_distinct({args.a, args.b}, {{"compare", "-"}, {"--heat", args.heat}});
+  if (args.with_sign && args.heat.empty())
+    throw Error(ErrorCode::usage, "--signed: changes what --heat writes, which is not given");
+  if (args.heat.empty()) return;
+  if (!has_extension(args.heat, ".ply"))
+    throw Error(ErrorCode::usage, fmt::format("--heat: {} does not end in .ply", args.heat));
+  check_replaceable(args.heat);
+}
+
+Content read(const std::string& file, const CompareArgs& args) {
+  Content content = read_cloud_or_mesh(file, {.shift = std::nullopt, .threads = args.options.threads});
+  const auto* cloud = std::get_if<Cloud>(&content);
+  const std::string name = file == "-" ? "stdin" : file;
+  if (cloud != nullptr && cloud->dropped > 0)
+    print_warning(fmt::format("{}: {} points were dropped: a coordinate is not finite", name, cloud->dropped));
+  if (cloud != nullptr && cloud->positions.empty())
+    throw Error(ErrorCode::invalid_input, fmt::format("{}: holds no points with finite coordinates", name));
+  return content;
+}
+
+/// Sets the attribute `name`, in the place of one that has it already.
+void set_attribute(std::vector<Attribute>& attributes, const std::string& name, const std::vector<double>& values) {
+  std::erase_if(attributes, [&](const Attribute& attribute) { return attribute.name == name; });
+  attributes.push_back({name, AttributeType::float32, {}});
+  attributes.back().values.reserve(values.size());
+  for (const double value : values) attributes.back().values.push_back(static_cast<float>(value));
+}
+
+void write_heat(const CompareArgs& args, Comparison& comparison, const std::vector<double>& values) {
+  const char* const name = args.with_sign ? "signed_distance" : "distance";
+  if (auto* mesh = std::get_if<Mesh>(&comparison.a)) {
+    set_attribute(mesh->attributes, name, values);
+    write_mesh(args.heat, *mesh, args.options.threads);
+  } else {
+    auto& cloud = std::get<Cloud>(comparison.a);
+    set_attribute(cloud.attributes, name, values);
+    write_cloud(args.heat, cloud, args.options.threads);
+  }
+}
+
+int run(const CompareArgs& args) {
+  check(args);
+  Content a = read(args.a, args);
+  Comparison comparison{std::move(a), read(args.b, args), {}};
+  const ComparedSurface surface = surface_of(comparison.a), reference = surface_of(comparison.b);
+  std::vector<double> heat;  // first: a reference without an inside is found before the longer part
+  if (!args.heat.empty())
+    heat = distances(surface, reference, {.with_sign = args.with_sign, .threads = args.options.threads});
+  comparison.result = compare(surface, reference, args.options);
+  on_interrupt(OnInterrupt::remember);
+  throw_if_interrupted();
+  if (!args.heat.empty()) write_heat(args, comparison, heat);
   write_stdout(args.json ? json_text(to_json(args, comparison)) : human_text(args, comparison));
   return 0;
+}
+
+constexpr char kFooter[] =
+    "Of a mesh, area-uniform samples are measured, and its triangles are what is near; of a cloud, its points are "
+    "both:\n"
+    "distances to a cloud are not below about half of its spacing. A PLY with faces, an OBJ, STL or OFF is a mesh, "
+    "all\n"
+    "else a cloud. --heat measures all vertices or points of A, not samples.";
+
+void add_measure_options(CLI::App& command, CompareArgs& args) {
+  command.add_option("--tau", args.options.tau, "F-score threshold, as a fraction of B's diagonal")
+      ->type_name("F")
+      ->group("Measure")
+      ->capture_default_str();
+  command.add_option("--samples", args.options.samples, "samples of each mesh, points of each cloud at most")
+      ->type_name("N")
+      ->group("Measure")
+      ->capture_default_str();
+}
+
+void add_output_options(CLI::App& command, CompareArgs& args) {
+  command.add_flag("--json", args.json, "print JSON")->group("Output");
+  command.add_option("--heat", args.heat, "also write A with the property `distance` from B, in world units: .ply")
+      ->type_name("FILE")
+      ->group("Output");
+  command
+      .add_flag("--signed", args.with_sign,
+                "with --heat: `signed_distance` instead, above 0 outside of B, which must be a watertight mesh")
+      ->group("Output");
 }
 
 }  // namespace
 
 void add_compare(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "compare", "Measure how far a mesh is from a reference mesh, both ways.");
+  CLI::App* command =
+      add_command(program, "compare", "Measure how far a mesh or cloud is from a reference, both ways.");
   auto args = std::make_shared<CompareArgs>();
-  command->add_option("MESH", args->mesh, "mesh: PLY, OBJ, STL or OFF")->required();
-  command->add_option("REF", args->reference, "reference mesh")->required();
-  command->add_option("--tau", args->options.tau, "F-score threshold, as a fraction of REF's diagonal")
-      ->type_name("F")
-      ->group("Measure")
-      ->capture_default_str();
-  command->add_option("--samples", args->options.samples, "samples on each mesh")
-      ->type_name("N")
-      ->group("Measure")
-      ->capture_default_str();
-  command->add_flag("--json", args->json, "print JSON")->group("Output");
+  command->footer(kFooter);
+  command->add_option("A", args->a, "mesh or cloud; - reads stdin")->required();
+  command->add_option("B", args->b, "the reference: mesh or cloud")->required();
+  add_measure_options(*command, *args);
+  add_output_options(*command, *args);
   add_threads_option(*command, args->options.threads, "Limits");
   finish_command(*command, job, args, run);
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace pointskin::mesh_detail {
 
@@ -13,6 +14,7 @@ struct Direction {
   DistanceStatistics distances;   ///< world units
   double normal_consistency = 0;  ///< mean of |n . n'|, in [0, 1]
   double share_near = 0;          ///< samples within the threshold, in [0, 1]
+  std::int64_t samples = 0;
 };
 
 /// @param diagonal  of the reference's bounding box, world units
@@ -21,6 +23,8 @@ inline MeshComparison both_ways(const Direction& to_reference, const Direction& 
   const DistanceStatistics& b = from_reference.distances;
   MeshComparison result;
   result.reference_diagonal = diagonal;
+  result.samples = to_reference.samples;
+  result.reference_samples = from_reference.samples;
   result.to_reference = a;
   result.from_reference = b;
   result.two_sided = {(a.mean + b.mean) / 2, std::sqrt((a.rms * a.rms + b.rms * b.rms) / 2), std::max(a.p95, b.p95),

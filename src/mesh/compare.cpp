@@ -1,4 +1,4 @@
-// Distances between two meshes, sampled on each and measured to the other, and the scores derived from them.
+// Distances between two surfaces, sampled on each and measured to the other, and the scores derived from them.
 // Source of the scores: Knapitsch et al., "Tanks and Temples", ACM TOG 36, 2017 (precision, recall, F-score);
 // Mescheder et al., "Occupancy Networks", CVPR 2019 (normal consistency).
 #include <pointskin/error.hpp>
@@ -12,42 +12,32 @@
 
 #include "exec/cpu_primitives.hpp"
 #include "mesh/both_ways.hpp"
-#include "mesh/mesh_checks.hpp"
-#include "mesh/surface_samples.hpp"
-#include "mesh/triangle_tree.hpp"
+#include "mesh/compared_side.hpp"
 
 namespace pointskin {
 namespace {
 
 using exec::Cpu;
+using mesh_detail::ComparedSide;
 using mesh_detail::Direction;
 using mesh_detail::dot;
+using mesh_detail::minus;
 using mesh_detail::SurfaceSample;
-using mesh_detail::SurfaceSampler;
-using mesh_detail::TriangleTree;
 
-/// Samples per block: neighbours in a block start their search at each other's nearest triangle.
+/// Samples per block: neighbours in a block start their search at each other's nearest triangle or point.
 constexpr std::int64_t kSampleBlock = 1024;
-
-/// One mesh prepared for both directions.
-struct Side {
-  SurfaceSampler sampler;
-  TriangleTree tree;
-
-  Side(Cpu& ex, const Mesh& mesh, const Vec3d& offset) : sampler(ex, mesh, offset), tree(ex, mesh, offset) {}
-};
 
 struct Sums {
   double distance = 0, squared = 0, largest = 0, cosine = 0;
   std::int64_t near = 0;     ///< samples within the threshold
-  std::int64_t cosines = 0;  ///< pairs of faces that both have a normal
+  std::int64_t cosines = 0;  ///< pairs that both have a normal
 };
 
-/// Measures samples on one mesh to the nearest points of another.
+/// Measures samples of one surface to the nearest points of another.
 class OneWay {
  public:
-  OneWay(const SurfaceSampler& from, const TriangleTree& to, std::int64_t samples, double threshold)
-      : from_(from), to_(to), samples_(samples), threshold_(threshold) {}
+  OneWay(const ComparedSide& from, const ComparedSide& to, std::int64_t samples, double threshold)
+      : from_(from), to_(to), samples_(from.samples(samples)), threshold_(threshold) {}
 
   [[nodiscard]] Direction measure(Cpu& ex) const {
     exec::Buffer<double> distances(ex.pool(), samples_);
@@ -75,7 +65,7 @@ class OneWay {
       sums.squared += nearest.squared_distance;
       sums.largest = std::max(sums.largest, distance);
       sums.near += distance <= threshold_ ? 1 : 0;
-      const Vec3d normal = mesh_detail::normalized(to_.triangle(nearest.slot).area_vector());
+      const Vec3d normal = to_.normal(nearest.slot);
       if (sample.normal == Vec3d{0, 0, 0} || normal == Vec3d{0, 0, 0}) continue;
       sums.cosine += std::min(1.0, std::abs(dot(sample.normal, normal)));
       ++sums.cosines;
@@ -102,11 +92,12 @@ class OneWay {
     result.distances = {all.distance / n, std::sqrt(all.squared / n), *p95, all.largest};
     result.normal_consistency = all.cosines > 0 ? all.cosine / static_cast<double>(all.cosines) : 0;
     result.share_near = static_cast<double>(all.near) / n;
+    result.samples = samples_;
     return result;
   }
 
-  const SurfaceSampler& from_;
-  const TriangleTree& to_;
+  const ComparedSide& from_;
+  const ComparedSide& to_;
   std::int64_t samples_;
   double threshold_;
 };
@@ -117,36 +108,28 @@ void check_options(const CompareOptions& options) {
     throw Error(ErrorCode::usage, "tau must be a positive fraction of the reference's diagonal");
 }
 
-/// @returns the box of `mesh`, whose role in the comparison is `role`
-mesh_detail::CornerBounds check_mesh(Cpu& ex, const Mesh& mesh, const std::string& role) {
-  if (mesh.triangles.empty()) throw Error(ErrorCode::invalid_input, role + " has no triangle");
-  try {
-    mesh_detail::check_indices(ex, mesh);
-  } catch (const Error& error) {
-    throw error.while_doing("checking " + role);
-  }
-  const mesh_detail::CornerBounds box = mesh_detail::corner_bounds(ex, mesh);
-  if (!box.finite) throw Error(ErrorCode::invalid_input, role + " has a vertex that is not finite");
-  return box;
-}
+bool has_normals(const ComparedSurface& surface) { return surface.mesh() != nullptr || surface.cloud()->has_normals(); }
 
 }  // namespace
 
-MeshComparison compare(const Mesh& mesh, const Mesh& reference, const CompareOptions& options) {
+MeshComparison compare(const ComparedSurface& surface, const ComparedSurface& reference,
+                       const CompareOptions& options) {
   check_options(options);
   Cpu ex(options.threads);
-  check_mesh(ex, mesh, "the mesh");
-  const double diagonal = check_mesh(ex, reference, "the reference").diagonal();
+  mesh_detail::checked_diagonal(ex, surface, surface.mesh() != nullptr ? "the mesh" : "the cloud");
+  const double diagonal = mesh_detail::checked_diagonal(ex, reference, "the reference");
   if (!(diagonal > 0))
     throw Error(ErrorCode::invalid_input, "the reference has no extent; distances cannot be compared with its size");
   const double threshold = options.tau * diagonal;
 
   // Both live in the reference's coordinates; only a difference of origins, taken in double, enters them.
-  const Side ours(ex, mesh, mesh_detail::minus(mesh.origin, reference.origin));
-  const Side theirs(ex, reference, Vec3d{0, 0, 0});
-  const Direction there = OneWay(ours.sampler, theirs.tree, options.samples, threshold).measure(ex);
-  const Direction back = OneWay(theirs.sampler, ours.tree, options.samples, threshold).measure(ex);
-  return mesh_detail::both_ways(there, back, diagonal);
+  const auto ours = mesh_detail::prepare(ex, surface, minus(surface.origin(), reference.origin()));
+  const auto theirs = mesh_detail::prepare(ex, reference, Vec3d{0, 0, 0});
+  const Direction there = OneWay(*ours, *theirs, options.samples, threshold).measure(ex);
+  const Direction back = OneWay(*theirs, *ours, options.samples, threshold).measure(ex);
+  MeshComparison result = mesh_detail::both_ways(there, back, diagonal);
+  result.has_normals = has_normals(surface) && has_normals(reference);
+  return result;
 }
 
 }  // namespace pointskin

@@ -4,9 +4,10 @@
 #include <pointskin/mesh.hpp>
 
 #include <cstdint>
-#include <limits>
 
 #include "exec/cpu_primitives.hpp"
+#include "mesh/box_tree.hpp"
+#include "mesh/nearest.hpp"
 #include "mesh/triangle_distance.hpp"
 
 namespace pointskin::mesh_detail {
@@ -14,14 +15,12 @@ namespace pointskin::mesh_detail {
 /// Triangle `id` of `mesh`, its corners moved by `offset`.
 EdgedTriangle edged_triangle(const Mesh& mesh, const Vec3d& offset, std::int64_t id);
 
-/// What TriangleTree::nearest found.
-struct Nearest {
-  double squared_distance = std::numeric_limits<double>::infinity();
-  std::int32_t slot = -1;  ///< place of the triangle in the tree, see TriangleTree::triangle and id
-};
+/// A BoxTree over the triangles of `mesh`, by the means of their corners, which are moved by `offset`.
+/// Without an offset the boxes are exact.
+/// @param mesh  at least one triangle, ids in range, corners finite
+BoxTree tree_of_triangles(exec::Cpu& ex, const Mesh& mesh, const Vec3d& offset);
 
-/// A binary tree over the triangles of a mesh, halved at the median of the longest axis, a few triangles a leaf.
-/// Memory: 76 bytes a triangle and 32 bytes a node, a node for every two triangles.
+/// The triangles of a mesh, searched from points. Memory: 72 bytes a triangle and those of a BoxTree.
 class TriangleTree {
  public:
   /// @param mesh    at least one triangle, ids in range, corners finite
@@ -35,19 +34,11 @@ class TriangleTree {
   [[nodiscard]] Nearest nearest(const Vec3d& p, std::int32_t hint = -1) const;
 
   [[nodiscard]] const EdgedTriangle& triangle(std::int32_t slot) const { return triangles_.data()[slot]; }
-  [[nodiscard]] std::int32_t id(std::int32_t slot) const { return ids_.data()[slot]; }
-
-  /// A box and what it holds. Nodes lie in preorder: the left child of an inner node follows it.
-  struct Node {
-    float lower[3], upper[3];  ///< rounded outwards
-    std::int32_t right;        ///< right child, or -1 for a leaf
-    std::int32_t first;        ///< leaf: its first slot
-  };
+  [[nodiscard]] std::int32_t id(std::int32_t slot) const { return tree_.id(slot); }
 
  private:
-  exec::Buffer<std::int32_t> ids_;         // shape (t), slot to id
+  BoxTree tree_;
   exec::Buffer<EdgedTriangle> triangles_;  // shape (t), by slot
-  exec::Buffer<Node> nodes_;
 };
 
 }  // namespace pointskin::mesh_detail

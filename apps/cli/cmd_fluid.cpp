@@ -47,11 +47,7 @@ struct FluidFrameRecord {
 
 void check_files(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
   if (args.report == "-") throw Error(ErrorCode::usage, "--report: stdout carries the mesh only; name a file");
-  if (!is_pattern(args.input) && is_pattern(args.output))
-    throw Error(ErrorCode::usage, fmt::format("-o: {} has {{}}, but the input has none", args.output));
-  if (is_pattern(args.input) && !is_pattern(args.output))
-    throw Error(ErrorCode::usage,
-                fmt::format("-o: {} needs {{}}, where the frame's number goes, as the input has it", args.output));
+  check_patterns(args.input, args.output, "-o");
   check_mesh_output(frames.front().output);
   for (const FluidFrameRecord& frame : frames) {
     std::error_code ignored;  // files that do not exist are not the same

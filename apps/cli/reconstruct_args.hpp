@@ -10,6 +10,7 @@
 
 #include "fit_args.hpp"
 #include "normal_args.hpp"
+#include "problem_pictures.hpp"
 
 namespace pointskin::cli {
 
@@ -27,6 +28,7 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   int repeat = 0;
   bool width_given = false, repeat_given = false;
   bool problems = false;  ///< list regions whose topology is doubtful; a mesh is not needed then
+  ProblemPictureArgs pictures;
   bool colors = false, dry_run = false, quiet = false, verbose = false;
 };
 

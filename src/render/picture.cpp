@@ -107,7 +107,7 @@ class Painter {
   /// Averages the samples of pixel row `row`.
   void resolve(const Band& band, std::int32_t row, Image& image, Shares& shares) const {
     const Colour behind_all = background(1 - (row + 0.5) / options_.height);
-    const std::array<std::uint8_t, 3> empty = encoded(behind_all);
+    const std::array<std::uint8_t, 3> empty = background_bytes(behind_all, row);
     std::uint8_t* out =
         image.rgb.data() + std::size_t{3} * static_cast<std::size_t>(row) * static_cast<std::size_t>(options_.width);
     for (std::int32_t column = 0; column < options_.width; ++column, out += 3) {
@@ -116,6 +116,15 @@ class Painter {
           parts.covered == 0 ? empty : encoded(colour_of(parts, {column, row}, behind_all, shares));
       std::copy(rgb.begin(), rgb.end(), out);
     }
+  }
+
+  /// Rows round at four places in turn, so that the tones of the background pass into each other without bands.
+  [[nodiscard]] static std::array<std::uint8_t, 3> background_bytes(const Colour& colour, std::int32_t row) {
+    constexpr std::array<double, 4> kRound = {0.125, 0.625, 0.375, 0.875};
+    std::array<std::uint8_t, 3> bytes{};
+    for (std::size_t k = 0; k < 3; ++k)
+      bytes[k] = static_cast<std::uint8_t>(255 * encode_srgb(colour[k]) + kRound[static_cast<std::size_t>(row) & 3U]);
+    return bytes;
   }
 
   [[nodiscard]] std::array<std::uint8_t, 3> encoded(const Colour& colour) const {

@@ -51,20 +51,12 @@ struct FluidFrameRecord {
 /// A frame may take the place of its own particles; those of the others are still to be read.
 void check_names(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
   FilePlan plan{{}, {{"--report", args.report, OutputKind::report}}, args.overwrite};
-  for (const FluidFrameRecord& frame : frames) {
-    const auto number = static_cast<std::int64_t>(plan.inputs.size());
-    plan.inputs.push_back({frame.input.path, number});
-    plan.outputs.push_back({"-o", frame.output, OutputKind::result, number});
-  }
+  for (const FluidFrameRecord& frame : frames) plan.add_frame(frame.input.path, frame.output, OutputKind::result);
   check_files(plan);
 }
 
 void check_outputs(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
-  if (!is_pattern(args.input) && is_pattern(args.output))
-    throw Error(ErrorCode::usage, fmt::format("-o: {} has {{}}, but the input has none", args.output));
-  if (is_pattern(args.input) && !is_pattern(args.output))
-    throw Error(ErrorCode::usage,
-                fmt::format("-o: {} needs {{}}, where the frame's number goes, as the input has it", args.output));
+  check_patterns(args.input, args.output, "-o");
   check_mesh_output(frames.front().output);
   check_names(args, frames);
   if (!args.report.empty()) check_replaceable(args.report);

@@ -37,6 +37,7 @@ void check_files(const ReconstructArgs& args) {
   check_distinct(inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
+  check_problem_pictures(args.pictures);
 }
 
 /// Points without a normal get one.
@@ -151,6 +152,7 @@ nlohmann::ordered_json other_options(const ReconstructArgs& args, const Options&
   json["envelope"] = or_null(args.envelope);
   if (makes_normals(options)) json["estimate_normals"] = to_json(options.normal_estimation);
   json["repeat"] = args.repeat;
+  if (args.problems) json.update(to_json(args.pictures));
   json["inputs"] = args.inputs;
   json["output"] = or_null(args.output);
   json["ascii"] = args.ascii;
@@ -255,7 +257,8 @@ int run(const ReconstructArgs& given) {
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
 
-  if (record.options.weakness) record.problems = find_problems(mesh);
+  if (record.options.weakness) record.problems = find_problems(mesh, problem_options(args.pictures, args.threads));
+  record.pictures = write_problem_pictures(mesh, record.problems, args.pictures, args.threads, !args.quiet);
   record.mesh.triangles = static_cast<std::int64_t>(mesh.triangles.size());
   if (!args.report.empty()) record.mesh = measure(mesh, args.threads);
   if (!args.quiet) record.shape = args.report.empty() ? shape_words(mesh, args.threads) : shape_words(record.mesh);
@@ -275,6 +278,7 @@ void add_problems(CLI::App& program, Job& job) {
   auto args = std::make_shared<ReconstructArgs>();
   args->problems = true;
   define_reconstruct_options(*command, *args);
+  define_problem_options(*command, args->pictures);
   finish_command(*command, job, args, run);
 }
 

@@ -1,8 +1,10 @@
-// pointskin render: a picture of a mesh.
-#include <cmath>
+// pointskin render: a picture of a mesh or a cloud, or of every frame of a sequence.
+#include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,110 +16,179 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
+#include "frame_files.hpp"
+#include "input.hpp"
 #include "output_check.hpp"
+#include "progress.hpp"
+#include "render_args.hpp"
 #include "signals.hpp"
 
 namespace pointskin::cli {
 namespace {
 
-struct RenderArgs {
-  std::string mesh, picture;
-  std::string size = "1200x900";
-  std::string up = "y";
-  std::string target;  ///< empty: the middle of the mesh
-  RenderOptions options;
-  bool orthographic = false, flat = false, cull = false, no_colours = false, overwrite = false, quiet = false;
+using CloudOrMesh = std::variant<Cloud, Mesh>;
+
+struct PictureFile {
+  FrameFile input;
+  std::string output;
 };
 
-/// Reads "1200x900" into `options`.
-void parse_size(const std::string& text, RenderOptions& options) {
-  const std::size_t x = text.find('x');
-  const double width = parse_number(text.substr(0, x)).value_or(0);
-  const double height = x == std::string::npos ? 0 : parse_number(text.substr(x + 1)).value_or(0);
-  constexpr double kMost = 16384;
-  const auto good = [](double pixels) { return pixels >= 1 && pixels <= kMost && pixels == static_cast<int>(pixels); };
-  if (!good(width) || !good(height)) {
-    throw Error(ErrorCode::usage, fmt::format("--size: '{}' is not like 1200x900, each side in [1, {}]", text, kMost));
+std::vector<PictureFile> pictures_of(const RenderArgs& args) {
+  check_patterns(args.input, args.picture, "-o");
+  if (!has_extension(args.picture, ".png"))
+    throw Error(ErrorCode::usage, fmt::format("{}: pictures are written as .png", args.picture));
+  if (!is_pattern(args.input)) check_replaceable(args.picture);  // before the input is looked for
+  std::vector<PictureFile> pictures;
+  FilePlan plan{{}, {}, args.overwrite};
+  for (const FrameFile& file : find_frames(args.input, args.first, args.last)) {
+    pictures.push_back({file, with_number(args.picture, file.number)});
+    plan.add_frame(file.path, pictures.back().output, OutputKind::file);
   }
-  options.width = static_cast<int>(width);
-  options.height = static_cast<int>(height);
+  check_files(plan);
+  for (const PictureFile& picture : pictures) check_replaceable(picture.output);
+  return pictures;
 }
 
-/// Reads "x,y,z".
-Vec3d parse_target(const std::string& text) {
-  Vec3d target{};
-  std::size_t from = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::size_t comma = text.find(',', from);
-    const std::optional<double> value = parse_number(text.substr(from, comma - from));
-    if (!value || !std::isfinite(*value) || (comma == std::string::npos) != (a == 2))
-      throw Error(ErrorCode::usage, fmt::format("--target: '{}' is not like x,y,z", text));
-    target[a] = *value;
-    from = comma + 1;
+CloudOrMesh read(const std::string& path, const RenderArgs& args) {
+  CloudOrMesh what = read_cloud_or_mesh(path, {.shift = std::nullopt, .threads = args.options.threads});
+  const std::string name = path == "-" ? "stdin" : path;
+  if (const Cloud* cloud = std::get_if<Cloud>(&what)) {
+    check_not_empty(*cloud, name);
+    if (args.options.wireframe)
+      throw Error(ErrorCode::usage, fmt::format("--wireframe: {} holds points, which have no edges", name));
+  } else if (args.options.point_size > 0) {
+    throw Error(ErrorCode::usage, fmt::format("--point-size: {} is a mesh; it is for points", name));
   }
-  return target;
+  return what;
 }
 
-RenderOptions library_options(const RenderArgs& args) {
-  RenderOptions options = args.options;
-  check_threads(options.threads);
-  parse_size(args.size, options);
-  if (args.up != "y" && args.up != "z") throw Error(ErrorCode::usage, "--up: " + not_one_of(args.up, {"y", "z"}));
-  if (!args.target.empty()) options.target_world = parse_target(args.target);
-  options.up = args.up == "z" ? UpAxis::z : UpAxis::y;
-  options.projection = args.orthographic ? Projection::orthographic : Projection::perspective;
-  options.smooth = !args.flat;
-  options.back_faces = !args.cull;
-  options.colours = !args.no_colours;
-  return options;
+/// What the pictures of a sequence have shown, for warnings.
+struct Shown {
+  int pictures = 0, with_backs = 0, empty = 0;
+  double most_behind = 0;
+  std::int64_t strays = 0, dropped = 0;
+  bool points = false;
+
+  void add(const CloudOrMesh& what, const RenderReport& report) {
+    const Cloud* cloud = std::get_if<Cloud>(&what);
+    // Through a gap between points one sees the back of what is behind them: more of that means nothing.
+    const double noticeable = cloud != nullptr ? 0.05 : 0.01;
+    ++pictures;
+    points = cloud != nullptr;
+    if (report.covered == 0) ++empty;
+    if (report.behind >= noticeable) ++with_backs;
+    most_behind = std::max(most_behind, report.behind);
+    strays = std::max(strays, report.strays);
+    if (cloud != nullptr) dropped += cloud->dropped;
+  }
+};
+
+std::string backs_text(const Shown& shown) {
+  const int percent = std::max(1, static_cast<int>(100 * shown.most_behind + 0.5));
+  const std::string where =
+      shown.pictures > 1 ? fmt::format("in {} of {} pictures, up to {} %", shown.with_backs, shown.pictures, percent)
+                         : fmt::format("{} %", percent);
+  if (shown.points)
+    return where +
+           " of what is seen are points turned away from the viewer, drawn red: they are seen from behind, or their "
+           "normals point inwards; --cull leaves them out, --flat ignores normals";
+  return where +
+         " of what is seen is the back of the surface, drawn red: the surface is open, or its normals point inwards; "
+         "--cull leaves backs out";
+}
+
+void warn(const Shown& shown) {
+  if (shown.dropped > 0)
+    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", shown.dropped));
+  if (shown.strays > 0)
+    print_warning(fmt::format("{} stray points far from all others do not count for the camera", shown.strays));
+  if (shown.with_backs > 0) print_warning(backs_text(shown));
+  if (shown.empty > 0)
+    print_warning(shown.pictures > 1
+                      ? fmt::format("{} of {} pictures are empty: nothing is in view", shown.empty, shown.pictures)
+                      : "the picture is empty: nothing is in view");
+}
+
+/// Says which frame was wrong.
+template <class F>
+auto with_name(const PictureFile& picture, const F& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    if (picture.input.number.empty() || error.code() == ErrorCode::interrupted) throw;
+    const std::string story = error.what();
+    if (story.find(picture.input.path) != std::string::npos) throw;
+    throw Error(error.code(), fmt::format("{}: {}", picture.input.path, story));
+  }
+}
+
+/// One camera and one range for all frames, which are read for it once more.
+void unite(const std::vector<PictureFile>& pictures, const RenderArgs& args, ProgressLine& line,
+           RenderOptions& options) {
+  std::optional<WorldBox> box;
+  std::optional<ValueRange> range;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    throw_if_interrupted();
+    with_name(pictures[i], [&] {
+      const CloudOrMesh what = read(pictures[i].input.path, args);
+      std::visit(
+          [&](const auto& w) {
+            if (const auto more = fitted_box(w, options.threads)) {
+              if (!box) box = more;
+              for (std::size_t a = 0; a < 3; ++a) {
+                box->lower[a] = std::min(box->lower[a], more->lower[a]);
+                box->upper[a] = std::max(box->upper[a], more->upper[a]);
+              }
+            }
+            if (options.colour_by.empty() || options.range) return;
+            const auto more = value_range(w, options.colour_by);
+            if (more && !range) range = more;
+            if (more) range = {std::min(range->low, more->low), std::max(range->high, more->high)};
+          },
+          what);
+    });
+    line.update({"looking", static_cast<double>(i + 1) / static_cast<double>(pictures.size()) / 3});
+  }
+  options.fit_world = box;
+  if (range && range->low < range->high) options.range = range;
 }
 
 int run(const RenderArgs& args) {
-  const RenderOptions options = library_options(args);
-  if (!has_extension(args.picture, ".png")) {
-    throw Error(ErrorCode::usage, fmt::format("{}: pictures are written as .png", args.picture));
+  RenderOptions options = library_options(args);
+  const std::vector<PictureFile> pictures = pictures_of(args);
+  const bool sequence = !pictures.front().input.number.empty();
+  ProgressLine line(!args.quiet && stderr_is_terminal());
+  if (sequence) on_interrupt(OnInterrupt::remember);
+  if (sequence) unite(pictures, args, line, options);
+  Shown shown;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    with_name(pictures[i], [&] {
+      const CloudOrMesh what = read(pictures[i].input.path, args);
+      RenderReport report;
+      const Image image = std::visit([&](const auto& w) { return render(w, options, &report); }, what);
+      on_interrupt(OnInterrupt::remember);
+      throw_if_interrupted();
+      write_png(pictures[i].output, image);
+      if (sequence) frame_was_written();
+      if (options.point_size == 0) options.point_size_world = report.point_size_world;  // the same in all frames
+      shown.add(what, report);
+    });
+    line.update({"frames", 1.0 / 3 + 2.0 / 3 * static_cast<double>(i + 1) / static_cast<double>(pictures.size())});
   }
-  check_distinct({args.mesh}, {{"-o", args.picture, OutputKind::file}}, args.overwrite);
-  check_replaceable(args.picture);
-  const Mesh mesh = read_mesh(args.mesh, {.shift = std::nullopt, .threads = options.threads});
-  if (mesh.triangles.empty()) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no triangles", args.mesh));
-  const Image image = render(mesh, options);
-  on_interrupt(OnInterrupt::remember);
-  throw_if_interrupted();
-  write_png(args.picture, image);
-  if (!args.quiet) print_note(fmt::format("{}: {} x {} pixels", args.picture, image.width, image.height));
+  line.clear();
+  warn(shown);
+  if (args.quiet) return 0;
+  print_note(fmt::format("{}: {} x {} pixels{}", args.picture, options.width, options.height,
+                         sequence ? fmt::format(", {} frames", pictures.size()) : ""));
   return 0;
-}
-
-void define_view(CLI::App& command, RenderArgs& args) {
-  const std::string group = "View";
-  const auto value = [&](const char* name, auto& target, const char* type, const char* description) {
-    command.add_option(name, target, description)->type_name(type)->group(group)->capture_default_str();
-  };
-  value("--size", args.size, "WxH", "width and height in pixels, each 1 to 16384");
-  value("--azimuth", args.options.azimuth_degrees, "DEG", "camera about the up axis, degrees; 0 sees the front");
-  value("--elevation", args.options.elevation_degrees, "DEG", "camera above the horizon, degrees, -90 to 90");
-  command.add_option("--target", args.target, "point in the middle of the picture [default the middle of the mesh]")
-      ->type_name("X,Y,Z")
-      ->group(group);
-  value("--up", args.up, "AXIS", "axis that points up: y (front is +z) or z (front is -y)");
-  command.add_flag("--orthographic", args.orthographic, "parallel instead of perspective projection")->group(group);
-  command.add_flag("--flat", args.flat, "shade by faces even if the mesh has vertex normals")->group(group);
-  command.add_flag("--cull", args.cull, "leave out triangles that are seen from behind")->group(group);
-  command.add_flag("--no-colours", args.no_colours, "ignore red, green and blue of the mesh")->group(group);
 }
 
 }  // namespace
 
 void add_render(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "render", "Draw a picture of a mesh.");
+  CLI::App* command = add_command(program, "render", "Draw a picture of a mesh or a cloud.");
   auto args = std::make_shared<RenderArgs>();
-  command->add_option("MESH", args->mesh, "mesh: PLY, OBJ, STL or OFF; - reads PLY from stdin")->required();
-  command->add_option("-o,--output", args->picture, "picture, .png")->type_name("OUT")->group("Files")->required();
-  add_overwrite_option(*command, args->overwrite);
-  define_view(*command, *args);
-  add_threads_option(*command, args->options.threads, "Limits");
-  command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
+  define_render_options(*command, *args);
   finish_command(*command, job, args, run);
 }
 

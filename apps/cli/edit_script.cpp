@@ -11,6 +11,7 @@
 #include <pointskin/io.hpp>
 
 #include "json_reader.hpp"
+#include "render_args.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -32,16 +33,25 @@ int pixels_at(const JsonReader& json, const char* key, int otherwise) {
   return json.has(key) ? static_cast<int>(json.at(key).whole_number(1, kMost)) : otherwise;
 }
 
+UpAxis up_at(const JsonReader& json) {
+  return parse_up(json.one_of({"x", "y", "z", "-x", "-y", "-z", "+x", "+y", "+z"}), "up");
+}
+
 /// As the options of `pointskin render`.
 RenderOptions picture_at(const JsonReader& json) {
-  json.object({"azimuth", "elevation", "up", "orthographic", "width", "height"});
+  json.object({"azimuth", "elevation", "up", "orthographic", "width", "height", "target", "fit", "zoom", "fov"});
   RenderOptions options;
+  options.fit = Fit::sphere;  // as before there was another
+  if (json.has("fit") && json.at("fit").one_of({"sphere", "box"}) == "box") options.fit = Fit::box;
+  if (json.has("target")) options.target_world = json.at("target").vector();
+  if (json.has("zoom")) options.zoom = json.at("zoom").number();
+  if (json.has("fov")) options.field_of_view_degrees = json.at("fov").number();
   options.width = pixels_at(json, "width", options.width);
   options.height = pixels_at(json, "height", options.height);
   if (json.has("azimuth")) options.azimuth_degrees = json.at("azimuth").number();
   if (json.has("elevation")) options.elevation_degrees = json.at("elevation").number();
   if (json.has("orthographic") && json.at("orthographic").boolean()) options.projection = Projection::orthographic;
-  if (json.has("up")) options.up = json.at("up").one_of({"y", "z"}) == "z" ? UpAxis::z : UpAxis::y;
+  if (json.has("up")) options.up = up_at(json.at("up"));
   return options;
 }
 

@@ -83,6 +83,12 @@ class Comparison {
 
 }  // namespace
 
+void FilePlan::add_frame(const std::string& input, const std::string& output, OutputKind kind) {
+  const auto frame = static_cast<std::int64_t>(inputs.size());
+  inputs.push_back({input, frame});
+  outputs.push_back({"-o", output, kind, frame});
+}
+
 void check_files(const FilePlan& plan) {
   check_stdin(plan.inputs);
   check_stdout(plan.outputs);

@@ -34,6 +34,9 @@ struct FilePlan {
   std::vector<InputFile> inputs;
   std::vector<OutputFile> outputs;
   bool overwrite = false;  ///< --overwrite: results may replace inputs, those of a frame the frame's own
+
+  /// Adds a frame of a sequence: what is read and, with -o, written.
+  void add_frame(const std::string& input, const std::string& output, OutputKind kind);
 };
 
 /// Compares all outputs with all inputs and with each other, by what their names stand for (see FileIdentity).

@@ -51,6 +51,14 @@ void check_pattern(const std::string& pattern, const char* option, const char* b
               fmt::format("{}: {} needs {{}}, where the frame's number goes, because of {}", option, pattern, because));
 }
 
+void check_patterns(const std::string& input, const std::string& output, const char* option) {
+  if (!is_pattern(input) && is_pattern(output))
+    throw Error(ErrorCode::usage, fmt::format("{}: {} has {{}}, but the input has none", option, output));
+  if (is_pattern(input) && !is_pattern(output))
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: {} needs {{}}, where the frame's number goes, as the input has it", option, output));
+}
+
 std::vector<FrameFile> find_frames(const std::string& pattern, std::optional<std::int64_t> first,
                                    std::optional<std::int64_t> last) {
   if (!is_pattern(pattern)) {

@@ -28,6 +28,9 @@ std::string frame_file(const std::string& pattern, int frame, int frames);
 /// @throws Error usage
 void check_pattern(const std::string& pattern, const char* option, const char* because);
 
+/// Checks that an output has {} if and only if the input has it. @param option  of the output @throws Error usage
+void check_patterns(const std::string& input, const std::string& output, const char* option);
+
 /// The files that `pattern` stands for, in the order of their numbers (of equal ones, that with fewer digits first);
 /// `pattern` itself if it has no {}.
 /// @param first, last  only frames with these numbers and those between

@@ -78,13 +78,6 @@ void keep_where(std::vector<T>& values, const std::vector<bool>& keep) {
   values.resize(kept);
 }
 
-void check_not_empty(const Cloud& cloud, const std::string& name) {
-  if (cloud.size() > 0) return;
-  if (cloud.dropped == 0) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no points", name));
-  throw Error(ErrorCode::invalid_input,
-              fmt::format("{}: none of its {} points has finite coordinates", name, cloud.dropped));
-}
-
 Cloud vertices_as_cloud(Mesh&& mesh) {
   Cloud cloud;
   cloud.origin = mesh.origin;
@@ -108,6 +101,13 @@ void append(Cloud& to, Cloud&& from) {
   append(to.normals, from.normals);
   if (!normals) to.normals.clear();
   to.dropped += from.dropped;
+}
+
+void check_not_empty(const Cloud& cloud, const std::string& name) {
+  if (cloud.size() > 0) return;
+  if (cloud.dropped == 0) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no points", name));
+  throw Error(ErrorCode::invalid_input,
+              fmt::format("{}: none of its {} points has finite coordinates", name, cloud.dropped));
 }
 
 Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options, MissingNormals missing) {

@@ -27,6 +27,10 @@ enum class MissingNormals { refused, allowed };
 Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options,
                   MissingNormals missing = MissingNormals::refused);
 
+/// @param name  of the file, for the story
+/// @throws Error empty_result if the cloud has no points, invalid_input if all were dropped on reading
+void check_not_empty(const Cloud& cloud, const std::string& name);
+
 /// Removes points whose normal has zero length and counts them in Cloud::dropped.
 /// @returns how many
 /// @throws Error no_normals if the cloud has no normals, or none that is not zero

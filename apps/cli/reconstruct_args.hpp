@@ -12,6 +12,7 @@
 #include "given_options.hpp"
 #include "normal_args.hpp"
 #include "poisson_recon.hpp"
+#include "problem_pictures.hpp"
 
 namespace pointskin::cli {
 
@@ -32,6 +33,7 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   bool problems = false;   ///< list regions whose topology is doubtful; a mesh is not needed then
   bool overwrite = false;  ///< results may replace inputs
   bool ascii = false;      ///< PLY as text
+  ProblemPictureArgs pictures;
   PoissonReconArgs poisson_recon;
   GivenOptions given;
   bool colors = false, dry_run = false, quiet = false, verbose = false;

@@ -82,15 +82,25 @@ Json pieces_json(const PiecesReport& pieces) {
           {"triangles_removed", pieces.triangles_removed}};
 }
 
-Json problems_json(const std::vector<ProblemRegion>& problems) {
+/// @param pictures  of the views; empty: there are none
+Json views_json(const std::vector<ProblemView>& views, const PictureNames& pictures) {
   Json list = Json::array();
-  for (const ProblemRegion& region : problems) {
-    Json views = Json::array();
-    for (const ProblemView& view : region.views)
-      views.push_back({{"azimuth", view.azimuth_degrees},
-                       {"elevation", view.elevation_degrees},
-                       {"target", view.target_world},
-                       {"matrix", view.matrix}});
+  for (std::size_t v = 0; v < views.size(); ++v)
+    list.push_back({{"azimuth", views[v].azimuth_degrees},
+                    {"elevation", views[v].elevation_degrees},
+                    {"target", views[v].target_world},
+                    {"zoom", views[v].zoom},
+                    {"visible", views[v].visible},
+                    {"matrix", views[v].matrix},
+                    {"picture", v < pictures.size() ? Json(pictures[v]) : Json(nullptr)}});
+  return list;
+}
+
+Json problems_json(const Record& record) {
+  Json list = Json::array();
+  for (std::size_t r = 0; r < record.problems.size(); ++r) {
+    const ProblemRegion& region = record.problems[r];
+    const Json views = views_json(region.views, r < record.pictures.size() ? record.pictures[r] : PictureNames());
     list.push_back({{"score", region.score},
                     {"peak", region.peak},
                     {"area", region.area},
@@ -176,7 +186,7 @@ Json to_json(const Record& record) {
   if (record.options.offset != 0) json["offset"] = offset_json(record);
   if (record.options.trim != 0) json["trim"] = trim_json(record.run.trim);
   if (record.options.largest || record.options.min_component > 0) json["pieces"] = pieces_json(record.run.pieces);
-  if (record.options.weakness) json["problems"] = problems_json(record.problems);
+  if (record.options.weakness) json["problems"] = problems_json(record);
   json["mesh"] = to_json(record.mesh);
   json["ms"] = ms_json(record);
   if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
@@ -207,13 +217,14 @@ std::string summary(const Record& record) {
 
 std::string problem_table(const std::vector<ProblemRegion>& problems) {
   if (problems.empty()) return "no region whose topology is doubtful";
-  std::string table = "rank       score    peak        area  azimuth  elevation  target";
+  std::string table = "rank       score    peak        area  azimuth  elevation    zoom  target";
   int rank = 0;
   for (const ProblemRegion& region : problems) {
     const ProblemView& view = region.views.front();
     const Vec3d& at = view.target_world;
-    table += fmt::format("\n{:4}{:12.4g}{:8.3f}{:12.4g}{:9.1f}{:11.1f}  {:.6g},{:.6g},{:.6g}", ++rank, region.score,
-                         region.peak, region.area, view.azimuth_degrees, view.elevation_degrees, at[0], at[1], at[2]);
+    table += fmt::format("\n{:4}{:12.4g}{:8.3f}{:12.4g}{:9.1f}{:11.1f}{:8.2f}  {:.6g},{:.6g},{:.6g}", ++rank,
+                         region.score, region.peak, region.area, view.azimuth_degrees, view.elevation_degrees,
+                         view.zoom, at[0], at[1], at[2]);
   }
   return table;
 }

@@ -15,6 +15,8 @@
 #include <pointskin/problems.hpp>
 #include <pointskin/reconstruct.hpp>
 
+#include "problem_pictures.hpp"
+
 namespace pointskin::cli {
 
 /// Facts of one `pointskin reconstruct`.
@@ -29,6 +31,7 @@ struct Record {
   std::string command = "reconstruct";
   std::string shape;                    ///< of the mesh, in words: closed or not, components
   std::vector<ProblemRegion> problems;  ///< with Options::weakness
+  std::vector<PictureNames> pictures;   ///< of their views; empty: none are drawn
   double read_ms = 0, write_ms = 0, total_ms = 0;
   std::vector<double> repeat_ms;
   std::int64_t host_peak_bytes = 0;

@@ -26,8 +26,9 @@ using Pixel = std::array<double, 2>;
 /// @throws Error usage, saying what is wrong, unless `camera` is as described above, finite, and has pixels
 void validate(const Camera& camera);
 
-/// The camera of the picture that render() draws of `mesh`. O(t).
+/// The camera of the picture that render() draws of `mesh`, or of `cloud`. O(v + t), O(n).
 /// @throws Error as render()
 Camera camera_of(const Mesh& mesh, const RenderOptions& options = {});
+Camera camera_of(const Cloud& cloud, const RenderOptions& options = {});
 
 }  // namespace pointskin

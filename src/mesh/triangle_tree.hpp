@@ -1,4 +1,4 @@
-// Nearest triangle of a mesh to a point, by a tree of boxes.
+// Nearest triangle of a mesh to a point, and triangles in the way of a line, by a tree of boxes.
 #pragma once
 
 #include <pointskin/mesh.hpp>
@@ -32,6 +32,11 @@ class TriangleTree {
   /// @param hint  slot of a triangle that may be near, or -1; changes the time taken, not the answer
   /// About O(log t) for points near the surface; more where many triangles are about equally far.
   [[nodiscard]] Nearest nearest(const Vec3d& p, std::int32_t hint = -1) const;
+
+  /// True if a triangle, of either side, crosses the line between two places. About O(log t).
+  /// Source: Moller & Trumbore, "Fast, minimum storage ray/triangle intersection", Journal of Graphics Tools 2(1),
+  /// 1997.
+  [[nodiscard]] bool is_between(const Vec3d& from, const Vec3d& to) const;
 
   [[nodiscard]] const EdgedTriangle& triangle(std::int32_t slot) const { return triangles_.data()[slot]; }
   [[nodiscard]] std::int32_t id(std::int32_t slot) const { return tree_.id(slot); }

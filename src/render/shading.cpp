@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace pointskin::render_detail {
 namespace {
@@ -12,48 +11,19 @@ using mesh_detail::normalized;
 using mesh_detail::plus;
 using mesh_detail::times;
 
-Colour from_srgb(double r, double g, double b) { return {decode_srgb(r), decode_srgb(g), decode_srgb(b)}; }
-
-Colour multiply(const Colour& a, const Colour& b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2]}; }
-
-Colour mix(const Colour& a, const Colour& b, double t) { return plus(times(1 - t, a), times(t, b)); }
-
 /// Light that wraps a little around the edge of what it lights, as that of a large lamp does; 1 when facing it.
 double wrapped(double cosine, double wrap) {
   const double x = std::max(0.0, (cosine + wrap) / (1 + wrap));
   return x * x;
 }
 
-const Attribute* find_attribute(const Mesh& mesh, const std::string& name) {
-  for (const Attribute& attribute : mesh.attributes)
-    if (attribute.name == name && attribute.values.size() == mesh.vertices.size()) return &attribute;
-  return nullptr;
-}
-
-bool counts_to_255(const Attribute& channel) {
-  return channel.type == AttributeType::uint8 ||
-         std::any_of(channel.values.begin(), channel.values.end(), [](float v) { return v > 1; });
+/// x^24, without a call.
+double power_24(double x) {
+  const double x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
+  return x8 * x8 * x8;
 }
 
 }  // namespace
-
-double decode_srgb(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-SrgbEncoder::SrgbEncoder() {
-  for (std::size_t i = 0; i <= kTableSize; ++i) {
-    const double linear = static_cast<double>(i) / static_cast<double>(kTableSize);
-    const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-    table_[i] = static_cast<std::uint8_t>(std::lround(255 * encoded));
-  }
-}
-
-std::uint8_t SrgbEncoder::operator()(double linear) const {
-  // A comparison that fails for NaN comes first.
-  const double clamped = linear > 0 ? std::min(linear, 1.0) : 0;
-  return table_[static_cast<std::size_t>(clamped * static_cast<double>(kTableSize) + 0.5)];
-}
 
 Colour background(double height) {
   static const Colour kTop = from_srgb(0.985, 0.988, 0.992);
@@ -61,39 +31,28 @@ Colour background(double height) {
   return mix(kBottom, kTop, std::clamp(height, 0.0, 1.0));
 }
 
-Colour clay() { return from_srgb(0.80, 0.775, 0.745); }
+Vec3d key_light_direction() { return normalized({-0.55, 0.70, 0.65}); }
 
-Colour behind() { return from_srgb(0.80, 0.36, 0.25); }
-
-Colour shade(const Colour& albedo, const Vec3d& normal, const Vec3d& up) {
-  static const Vec3d kKey = normalized({-0.55, 0.70, 0.65});
+Colour shade(const Colour& albedo, const Vec3d& normal, const Light& light, const Lighting& lighting) {
+  static const Vec3d kKey = key_light_direction();
   static const Vec3d kFill = normalized({0.85, 0.10, 0.45});
   static const Vec3d kKeyHalf = normalized(plus(kKey, {0, 0, 1}));
   constexpr Colour kKeyLight{1.00, 0.96, 0.90}, kFillLight{0.14, 0.17, 0.22};
   constexpr Colour kSky{0.27, 0.30, 0.35}, kGround{0.11, 0.10, 0.09};
 
-  const double skyward = 0.5 + 0.5 * dot(normal, up);
-  Colour light = mix(kGround, kSky, skyward);
-  light = plus(light, times(wrapped(dot(normal, kKey), 0.15), kKeyLight));
-  light = plus(light, times(wrapped(dot(normal, kFill), 0.4), kFillLight));
-  const double sheen = 0.06 * std::pow(std::max(0.0, dot(normal, kKeyHalf)), 24);
-  return plus(multiply(albedo, light), times(sheen, kKeyLight));
-}
-
-std::vector<Vec3f> vertex_colours(const Mesh& mesh) {
-  const Attribute* const red = find_attribute(mesh, "red");
-  const Attribute* const green = find_attribute(mesh, "green");
-  const Attribute* const blue = find_attribute(mesh, "blue");
-  if (red == nullptr || green == nullptr || blue == nullptr) return {};
-  const bool to_255 = counts_to_255(*red) || counts_to_255(*green) || counts_to_255(*blue);
-  const auto linear = [&](float value) {
-    const double encoded = to_255 ? static_cast<double>(value) / 255 : static_cast<double>(value);
-    return static_cast<float>(decode_srgb(std::clamp(encoded, 0.0, 1.0)));
-  };
-  std::vector<Vec3f> colours(mesh.vertices.size());
-  for (std::size_t v = 0; v < colours.size(); ++v)
-    colours[v] = {linear(red->values[v]), linear(green->values[v]), linear(blue->values[v])};
-  return colours;
+  const double skyward = 0.5 + 0.5 * dot(normal, lighting.up);
+  const double key = wrapped(dot(normal, kKey), 0.15);
+  if (lighting.even) {
+    const double facing = std::max(0.0, normal[2]);
+    return times((0.42 + 0.16 * skyward + 0.34 * key + 0.16 * facing) * light.open, albedo);
+  }
+  Colour sum = times(light.open, mix(kGround, kSky, skyward));
+  // Shadows keep a part of the lamp, so that what lies in them is seen; hollows hide some of it, too.
+  const double shadow = 0.35 + 0.65 * light.key;
+  sum = plus(sum, times(key * shadow * (0.45 + 0.55 * light.open), kKeyLight));
+  sum = plus(sum, times(wrapped(dot(normal, kFill), 0.4) * light.open, kFillLight));
+  const double sheen = 0.06 * power_24(std::max(0.0, dot(normal, kKeyHalf)));
+  return plus(multiply(albedo, sum), times(sheen * light.open * light.key, kKeyLight));
 }
 
 }  // namespace pointskin::render_detail

@@ -111,16 +111,67 @@ TEST_F(FieldOptions, ProblemsAreListedWithViewsThatRenderUnderstands) {
   EXPECT_LT(worst["centroid"][2].get<double>(), 0.1);  // where there are no points
   ASSERT_EQ(worst["views"].size(), 3U);
   const Json& view = worst["views"][0];
+  EXPECT_TRUE(view["picture"].is_null());
+  EXPECT_GT(view["visible"].get<double>(), 0.5);
   EXPECT_EQ(view["matrix"].size(), 16U);
   const auto number = [](const Json& v) { return std::to_string(v.get<double>()); };
   const Json& at = view["target"];
-  const Result picture = pointskin_run({"render", output_, "-o", folder_ / "p.png", "--size", "40x30", "--azimuth",
-                                        number(view["azimuth"]), "--elevation", number(view["elevation"]), "--target",
-                                        number(at[0]) + "," + number(at[1]) + "," + number(at[2])});
+  const Result picture =
+      pointskin_run({"render", output_, "-o", folder_ / "p.png", "--size", "40x30", "--azimuth",
+                     number(view["azimuth"]), "--elevation", number(view["elevation"]), "--fit", "sphere", "--zoom",
+                     number(view["zoom"]), "--target", number(at[0]) + "," + number(at[1]) + "," + number(at[2])});
   EXPECT_EQ(picture.exit_code, 0) << picture.err;
   const Mesh mesh = read_mesh(output_);
   ASSERT_EQ(mesh.attributes.size(), 1U);
   EXPECT_EQ(mesh.attributes[0].name, "weakness");
+}
+
+TEST_F(FieldOptions, ProblemsAreDrawnIntoAFolderThatIsMade) {
+  write_file(input_, ply_bytes(half_sphere()));
+  const std::string pictures = folder_ / "new/pictures";
+  const Json report = report_of("problems", {"--pictures", pictures, "--up", "z"});
+  EXPECT_EQ(report["options"]["pictures"], pictures);
+  EXPECT_EQ(report["options"]["up"], "z");
+  ASSERT_FALSE(report["problems"].empty());
+  std::size_t files = 0;
+  for (std::size_t r = 0; r < report["problems"].size(); ++r)
+    for (std::size_t v = 0; v < report["problems"][r]["views"].size(); ++v) {
+      const std::string name = pictures + "/problem_0" + std::to_string(r + 1) + "_" + std::to_string(v + 1) + ".png";
+      EXPECT_EQ(report["problems"][r]["views"][v]["picture"], name);
+      const std::string png = read_file(name);
+      ASSERT_GT(png.size(), 1000U);
+      EXPECT_EQ(png.substr(1, 3), "PNG");
+      EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
+      ++files;
+    }
+  std::size_t present = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(pictures)) ++present;
+  EXPECT_EQ(present, files);
+}
+
+TEST_F(FieldOptions, ProblemsAreDrawnAsManyAsAskedFor) {
+  std::vector<Sample> two = half_sphere();  // two half spheres, apart: a guess each
+  for (const Sample& s : half_sphere()) two.push_back({{s.position.x + 4, s.position.y, s.position.z}, s.normal});
+  write_file(input_, ply_bytes(two));
+  const Json report = report_of("problems", {"--pictures", folder_ / "p", "--pictures-most", "1"});
+  ASSERT_GE(report["problems"].size(), 2U);
+  EXPECT_TRUE(report["problems"][0]["views"][0]["picture"].is_string());
+  EXPECT_TRUE(report["problems"][1]["views"][0]["picture"].is_null());
+}
+
+TEST_F(FieldOptions, ProblemPicturesThatCannotBeWrittenAreFoundBeforeTheWork) {
+  write_file(folder_ / "file", "");
+  for (const std::string& folder : {folder_ / "file", folder_ / "file/in", std::string("/proc/pictures")}) {
+    const Result result = pointskin_run({"problems", "missing.ply", "--pictures", folder});
+    EXPECT_EQ(result.exit_code, 8) << folder << result.err;
+    EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
+  }
+  for (const Args& wrong : {Args{"--pictures-most", "0"}, Args{"--up", "w"}}) {
+    Args args = {"problems", "missing.ply"};
+    args.insert(args.end(), wrong.begin(), wrong.end());
+    EXPECT_EQ(pointskin_run(args).exit_code, 2) << wrong[0];
+  }
+  EXPECT_EQ(pointskin_run({"reconstruct", input_, "-o", output_, "--pictures", folder_ / "p"}).exit_code, 2);
 }
 
 TEST_F(FieldOptions, ProblemsNeedNoOutputAndComeAsATable) {

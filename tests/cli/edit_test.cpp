@@ -1,5 +1,6 @@
 // pointskin edit: scripts that part two fingers, are undone, saved and replayed; what is refused.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,47 @@ TEST_F(EditCommand, PartsWhatReconstructJoinsAndReportsIt) {
   EXPECT_EQ(json["steps"][0]["before"]["components"], 1);
   EXPECT_EQ(json["steps"][0]["after"]["components"], 2);
   EXPECT_TRUE(json["mesh"]["closed"]);
+}
+
+/// The cameras of a script of strokes through empty corners of the picture, as matrices.
+Json cameras_of(const std::string& saved) {
+  Json cameras = Json::array();
+  const Json script = Json::parse(read_file(saved));
+  for (const Json& operation : script["operations"]) cameras.push_back(operation["camera"]);
+  return cameras;
+}
+
+TEST_F(EditCommand, CamerasOfPicturesFitASphereUnlessTheyAskForAnother) {
+  const auto with = [](const std::string& camera) {
+    return R"({"op": "guide", "camera": )" + camera + R"(, "stroke": [[600, 450], [604, 400]], "inside_only": false})";
+  };
+  const std::string saved = folder_ / "saved.json";
+  ASSERT_EQ(edit(script_with(with(R"({"azimuth": 10})")), {"--save", saved}).exit_code, 0);
+  const Json plain = cameras_of(saved)[0];
+  // R / sin(14 degrees) from the middle of the box of the surface.
+  ASSERT_EQ(pointskin_run({"reconstruct", input_, "-o", folder_ / "plain.ply", "--depth", "6"}).exit_code, 0);
+  const Mesh mesh = read_mesh(folder_ / "plain.ply");
+  const Bounds box = bounds_of(mesh.vertices);
+  const double middle[3] = {(double{box.lower.x} + box.upper.x) / 2, (double{box.lower.y} + box.upper.y) / 2,
+                            (double{box.lower.z} + box.upper.z) / 2};
+  double radius = 0;
+  for (const Vec3f& v : mesh.vertices)
+    radius = std::max(radius, std::hypot(v.x - middle[0], v.y - middle[1], v.z - middle[2]));
+  double depth = plain["view"][11].get<double>();
+  for (std::size_t a = 0; a < 3; ++a) depth += plain["view"][8 + a].get<double>() * middle[a];
+  EXPECT_NEAR(-depth, radius / std::sin(14 * std::acos(-1.0) / 180), 1e-6);
+  EXPECT_NEAR(plain["projection"][5].get<double>(), 0.92 / std::tan(14 * std::acos(-1.0) / 180), 1e-9);
+  ASSERT_EQ(edit(script_with(with(R"({"azimuth": 10, "fit": "sphere", "zoom": 1})")), {"--save", saved}).exit_code, 0);
+  EXPECT_EQ(cameras_of(saved)[0], plain);
+  for (const char* other :
+       {R"("fit": "box")", R"("zoom": 2)", R"("fov": 50)", R"("up": "-y")", R"("target": [0, 1, 0])"}) {
+    const std::string camera = std::string(R"({"azimuth": 10, )") + other + "}";
+    ASSERT_EQ(edit(script_with(with(camera)), {"--save", saved}).exit_code, 0) << other;
+    EXPECT_NE(cameras_of(saved)[0], plain) << other;
+  }
+  std::filesystem::remove(output_);
+  expect_failure(script_with(with(R"({"fit": "tight"})")), 3, "fit");
+  expect_failure(script_with(with(R"({"up": "w"})")), 3, "up");
 }
 
 TEST_F(EditCommand, WithoutOperationsGivesTheBytesOfReconstruct) {

@@ -31,7 +31,8 @@ LAYERS = {
     "boolean": PARTS | {"pipeline", "boolean"},
     "fluid": {"core", "exec", "octree", "field", "surface", "pipeline", "mesh", "fluid"},
     "normals": PARTS | {"pipeline", "normals"},
-    "render": {"core", "exec", "mesh", "render"},
+    "render": {"core", "exec", "octree", "mesh", "render"},
+    "problems": {"core", "exec", "mesh", "render", "problems"},
 }
 SOURCES = {".hpp", ".cpp", ".cuh", ".cu", ".h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "property/reconstruction.hpp"
+#include "support/pictures.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin {
@@ -122,6 +123,108 @@ TEST(FindProblems, MeasuresAndRanksRegions) {
   EXPECT_NEAR(seen(view.target_world, 1), 0, 1e-9);
   EXPECT_LT(seen(view.target_world, 2), -1.5);
   EXPECT_GT(seen({112, 0.5, 1}, 2), seen(view.target_world, 2));  // nearer to the viewer
+}
+
+double angle_degrees(const ProblemView& a, const ProblemView& b) {
+  double cosine = 0;
+  for (std::size_t k = 8; k < 11; ++k) cosine += a.matrix[k] * b.matrix[k];
+  return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::acos(-1.0);
+}
+
+TEST(FindProblems, ViewsDifferByFortyDegreesAndSeeThePlace) {
+  const std::vector<ProblemRegion> regions =
+      find_problems(reconstructed(two_fingers(60'000, 1), weakness_options(7)), {.up = UpAxis::z});
+  ASSERT_FALSE(regions.empty());
+  for (const ProblemRegion& region : regions) {
+    ASSERT_EQ(region.views.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_GE(region.views[i].visible, 0.05);
+      EXPECT_GE(region.views[i].zoom, 1);
+      for (std::size_t j = 0; j < i; ++j) EXPECT_GE(angle_degrees(region.views[i], region.views[j]), 39.9);
+    }
+  }
+}
+
+/// A weak square at the origin that faces +z, and a wall in front of it, which leaves only sides free.
+Mesh behind_a_wall(bool wall) {
+  Mesh mesh = test::translated(test::patch_mesh(4, 0.4), {-0.2F, -0.2F, 0});
+  const std::size_t weak = mesh.vertices.size();
+  if (wall) test::append(mesh, test::translated(test::patch_mesh(4, 1), {-0.5F, -0.5F, 0.6F}));
+  Attribute weakness{"weakness", AttributeType::float32, std::vector<float>(mesh.vertices.size(), 0)};
+  std::fill(weakness.values.begin(), weakness.values.begin() + static_cast<std::ptrdiff_t>(weak), 0.8F);
+  mesh.attributes = {weakness};
+  return mesh;
+}
+
+TEST(FindProblems, ViewsLookPastWhatIsInTheWay) {
+  const ProblemRegion free = find_problems(behind_a_wall(false)).at(0);
+  EXPECT_NEAR(free.views.at(0).azimuth_degrees, 0, 1e-9);
+  EXPECT_NEAR(free.views.at(0).elevation_degrees, 0, 1e-9);
+  EXPECT_EQ(free.views.at(0).visible, 1);
+  const ProblemRegion hidden = find_problems(behind_a_wall(true)).at(0);
+  ASSERT_EQ(hidden.views.size(), 3U);
+  for (const ProblemView& view : hidden.views) {
+    // The wall reaches 0.5 to either side at a height of 0.6: the middle is seen from 40 degrees off the normal on.
+    EXPECT_LT(view.matrix[10], std::cos(35 * std::acos(-1.0) / 180));
+    EXPECT_GT(view.visible, 0.3);
+  }
+}
+
+TEST(FindProblems, ViewsThatWouldSeeNothingAreLeftOut) {
+  // At the bottom of a deep shaft: only along it.
+  Mesh mesh = behind_a_wall(false);
+  Mesh shaft = test::box_mesh({-0.21, -0.21, -0.01}, {0.21, 0.21, 3});
+  shaft.triangles.erase(std::remove_if(shaft.triangles.begin(), shaft.triangles.end(),
+                                       [&](const Triangle& t) {
+                                         return std::all_of(t.begin(), t.end(), [&](std::int32_t id) {
+                                           return shaft.vertices[static_cast<std::size_t>(id)].z > 1;
+                                         });
+                                       }),
+                        shaft.triangles.end());
+  const std::vector<float> none(shaft.vertices.size(), 0);
+  mesh.attributes[0].values.insert(mesh.attributes[0].values.end(), none.begin(), none.end());
+  const std::vector<Attribute> kept = mesh.attributes;
+  mesh.attributes.clear();
+  test::append(mesh, shaft);
+  mesh.attributes = kept;
+  const ProblemRegion region = find_problems(mesh).at(0);
+  EXPECT_EQ(region.views.size(), 1U);
+  EXPECT_GT(region.views[0].visible, 0.9);
+}
+
+TEST(FindProblems, AreTheSameForAnyNumberOfThreads) {
+  const Mesh mesh = reconstructed(two_fingers(30'000, 1), weakness_options(6));
+  const std::vector<ProblemRegion> one = find_problems(mesh, {.threads = 1}),
+                                   four = find_problems(mesh, {.threads = 4});
+  ASSERT_EQ(one.size(), four.size());
+  for (std::size_t r = 0; r < one.size(); ++r)
+    for (std::size_t v = 0; v < one[r].views.size(); ++v) {
+      EXPECT_EQ(one[r].views[v].matrix, four[r].views[v].matrix);
+      EXPECT_EQ(one[r].views[v].visible, four[r].views[v].visible);
+    }
+}
+
+TEST(RenderProblem, ShowsTheRegionTintedInTheMiddleAndARingAroundIt) {
+  const Mesh mesh = behind_a_wall(true);
+  const ProblemRegion region = find_problems(mesh).at(0);
+  RenderOptions options;
+  options.width = 400;
+  options.height = 300;
+  for (std::size_t v = 0; v < region.views.size(); ++v) {
+    const Image image = render_problem(mesh, region, v, options);
+    const test::Rgb at = test::middle(image);
+    EXPECT_GT(at[0], at[1] + 40) << v;  // orange to magenta; clay is grey
+    int white = 0;
+    for (int y = 0; y < 300; ++y)
+      for (int x = 0; x < 400; ++x) {
+        const double r = std::hypot(x + 0.5 - 200, y + 0.5 - 150);
+        if (r > 50 && r < 142 && test::lightness(test::pixel(image, x, y)) > 240) ++white;
+      }
+    EXPECT_GT(white, 100) << v;
+    EXPECT_NE(render_problem(mesh, region, v, options, "problem 1").rgb, image.rgb);
+  }
+  EXPECT_EQ(error_of([&] { (void)render_problem(mesh, region, 3, options); }), ErrorCode::usage);
+  EXPECT_EQ(error_of([&] { (void)render_problem(test::box_mesh(), region, 0, options); }), ErrorCode::usage);
 }
 
 TEST(FindProblems, ThresholdAndLeastAreaDecide) {

@@ -6,19 +6,16 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "mesh/vec3d.hpp"
+#include "problems/views.hpp"
 
 namespace pointskin {
 namespace {
 
 using namespace mesh_detail;
-
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kHalfFieldOfView = 14 * kDegree;  // of the view matrices; as render's
 
 void check(const Mesh& mesh, const ProblemOptions& options) {
   if (!(options.threshold > 0 && options.threshold <= 1))
@@ -96,45 +93,14 @@ void add(const Piece& piece, Sums& sums) {
   sums.weakest_normal = normalized(piece.area_vector);
 }
 
-/// Between the mesh's axes and those with y up and the front at +z, as render turns them.
-Vec3d to_y_up(const Vec3d& v, UpAxis up) { return up == UpAxis::y ? v : Vec3d{v[0], v[2], -v[1]}; }
-Vec3d from_y_up(const Vec3d& v, UpAxis up) { return up == UpAxis::y ? v : Vec3d{v[0], -v[2], v[1]}; }
-
-ProblemView view_from(double azimuth, double elevation, const Vec3d& target, double radius, UpAxis up) {
-  ProblemView view{azimuth / kDegree, elevation / kDegree, target, {}};
-  const Vec3d back = from_y_up(
-      {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)}, up);
-  const Vec3d right = from_y_up({std::cos(azimuth), 0, -std::sin(azimuth)}, up);
-  const Vec3d rows[3] = {right, cross(back, right), back};
-  const double distance = radius / std::sin(kHalfFieldOfView);
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) view.matrix[4 * r + c] = rows[r][c];
-    view.matrix[4 * r + 3] = -dot(rows[r], target) - (r == 2 ? distance : 0);
-  }
-  view.matrix[15] = 1;
-  return view;
-}
-
-/// Along the normal, then 50 degrees to both sides of it.
-void suggest_views(const Sums& sums, double radius, UpAxis up, ProblemRegion& region) {
-  constexpr double kLeastMean = 0.2;  // a shorter mean normal says nothing: sides face away from each other
-  constexpr double kAside = 50 * kDegree;
-  const Vec3d towards =
-      to_y_up(length(region.mean_normal) > kLeastMean ? normalized(region.mean_normal) : sums.weakest_normal, up);
-  const double elevation = std::asin(std::clamp(towards[1], -1.0, 1.0));
-  const double azimuth = std::atan2(towards[0], towards[2]);
-  for (const double aside : {0.0, kAside, -kAside})
-    region.views.push_back(view_from(azimuth + aside, elevation, region.centroid_world, radius, up));
-}
-
-ProblemRegion finished(const Mesh& mesh, const std::vector<float>& weakness, const Sums& sums, UpAxis up) {
+/// The views are left out.
+ProblemRegion finished(const Mesh& mesh, const std::vector<float>& weakness, const Sums& sums) {
   ProblemRegion region = sums.region;
   const Vec3d centre = times(1 / region.score, sums.weighted_centre);
   region.centroid_world = plus(mesh.origin, centre);
   region.mean_normal = times(1 / region.score, sums.weighted_normal);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3d lower{kInfinity, kInfinity, kInfinity}, upper{-kInfinity, -kInfinity, -kInfinity};
-  double radius = 0;
   for (const std::size_t t : sums.triangles)
     for (const std::int32_t id : mesh.triangles[t]) {
       const Vec3d p = to_double(mesh.vertices[static_cast<std::size_t>(id)]);
@@ -142,13 +108,28 @@ ProblemRegion finished(const Mesh& mesh, const std::vector<float>& weakness, con
         lower[a] = std::min(lower[a], p[a]);
         upper[a] = std::max(upper[a], p[a]);
       }
-      radius = std::max(radius, length(minus(p, centre)));
       region.peak = std::max(region.peak, double{weakness[static_cast<std::size_t>(id)]});
     }
   region.lower_world = plus(mesh.origin, lower);
   region.upper_world = plus(mesh.origin, upper);
-  suggest_views(sums, radius, up, region);
   return region;
+}
+
+/// The place of a region, for its views.
+problems::Place place_of(const Mesh& mesh, const std::vector<float>& weakness, const Sums& sums,
+                         const ProblemRegion& region) {
+  constexpr double kLeastMean = 0.2;  // a shorter mean normal says nothing: sides face away from each other
+  problems::Place place;
+  place.centre = minus(region.centroid_world, mesh.origin);
+  place.towards = length(region.mean_normal) > kLeastMean ? normalized(region.mean_normal) : sums.weakest_normal;
+  for (const std::size_t t : sums.triangles) {
+    const Piece piece = piece_of(mesh, weakness, mesh.triangles[t]);
+    place.patches.push_back({piece.centre, piece.area_vector, piece.area * piece.weakness});
+    for (const std::int32_t id : mesh.triangles[t])
+      place.radius =
+          std::max(place.radius, length(minus(to_double(mesh.vertices[static_cast<std::size_t>(id)]), place.centre)));
+  }
+  return place;
 }
 
 }  // namespace
@@ -180,10 +161,15 @@ std::vector<ProblemRegion> find_problems(const Mesh& mesh, const ProblemOptions&
     add(piece_of(mesh, weakness, mesh.triangles[t]), sums);
     sums.triangles.push_back(t);
   }
+  std::erase_if(all, [&](const Sums& sums) { return sums.region.area < options.least_area * mesh_area; });
   std::vector<ProblemRegion> regions;
-  for (const Sums& sums : all)
-    if (sums.region.area >= options.least_area * mesh_area)
-      regions.push_back(finished(mesh, weakness, sums, options.up));
+  if (all.empty()) return regions;
+  exec::Cpu ex(options.threads);
+  const problems::ViewFinder finder(ex, mesh, options.up);
+  for (const Sums& sums : all) {
+    regions.push_back(finished(mesh, weakness, sums));
+    regions.back().views = finder.views_of(ex, place_of(mesh, weakness, sums, regions.back()));
+  }
   std::stable_sort(regions.begin(), regions.end(),
                    [](const ProblemRegion& a, const ProblemRegion& b) { return a.score > b.score; });
   return regions;

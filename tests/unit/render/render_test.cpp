@@ -3,10 +3,8 @@
 #include <pointskin/error.hpp>
 #include <pointskin/render.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,43 +12,17 @@
 #include <numbers>
 #include <string>
 
+#include "support/pictures.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin {
 namespace {
 
-using Pixel = std::array<int, 3>;
-
-/// A small picture straight from the front.
-RenderOptions front_view(int width = 200, int height = 150) {
-  RenderOptions options;
-  options.width = width;
-  options.height = height;
-  options.azimuth_degrees = 0;
-  options.elevation_degrees = 0;
-  options.projection = Projection::orthographic;
-  return options;
-}
-
-Pixel pixel(const Image& image, int x, int y) {
-  const std::size_t at =
-      3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
-  return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
-}
-
-Pixel middle(const Image& image) { return pixel(image, image.width / 2, image.height / 2); }
-
-/// Pixels of which a channel differs by more than `tolerance`.
-int differing(const Image& a, const Image& b, int tolerance = 0) {
-  int count = 0;
-  for (int y = 0; y < a.height; ++y)
-    for (int x = 0; x < a.width; ++x) {
-      const Pixel p = pixel(a, x, y), q = pixel(b, x, y);
-      if (std::abs(p[0] - q[0]) > tolerance || std::abs(p[1] - q[1]) > tolerance || std::abs(p[2] - q[2]) > tolerance)
-        ++count;
-    }
-  return count;
-}
+using test::differing;
+using test::front_view;
+using test::middle;
+using test::pixel;
+using Pixel = test::Rgb;
 
 /// The square [-1, 1]^2 at height z, facing +z, all of one colour.
 Mesh coloured_square(float z, int red, int green, int blue) {

@@ -6,17 +6,22 @@
 #include <pointskin/vector.hpp>
 
 #include "core/array_view.hpp"
+#include "core/host_device.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
 #include "octree/view.hpp"
 
 namespace pointskin::octree {
 
-/// The tree with its points in key order.
+/// The tree with its points in key order, or with some of them.
 struct SearchView {
   OctreeView tree;
-  ArrayView<const Vec3f> positions;   ///< (n) in the unit cube
-  ArrayView<const std::int32_t> ids;  ///< (n) the caller's ids
+  ArrayView<const Vec3f> positions;        ///< (n) in the unit cube
+  ArrayView<const std::int32_t> ids;       ///< (n) the caller's ids; empty: 0, 1, ..., n - 1
+  ArrayView<const std::int32_t> before{};  ///< (points of the tree + 1) how many of the n points come before each of
+                                           ///< them; empty: the n points are those of the tree
+
+  [[nodiscard]] PSK_HD std::int32_t id_of(std::int32_t i) const { return ids.empty() ? i : ids[i]; }
 };
 
 /// ids[q k + i], squared[q k + i]: the i-th nearest point of query q and its squared distance, by ascending

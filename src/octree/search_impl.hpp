@@ -49,8 +49,12 @@ PSK_HD void walk(const SearchView& points, const Vec3f& q, const Prune& prune, c
   while (top > 0) {
     const Entry entry = stack[--top];
     const LevelView& level = points.tree.levels[entry.depth];
-    const std::int32_t first = level.point_begin[entry.cell];
-    const std::int32_t last = level.point_begin[entry.cell + 1];
+    std::int32_t first = level.point_begin[entry.cell];
+    std::int32_t last = level.point_begin[entry.cell + 1];
+    if (!points.before.empty()) {
+      first = points.before[first];
+      last = points.before[last];
+    }
     if (first == last) continue;
     const Coordinates c = decode(level.node_key(entry.cell));
     if (prune(squared_distance_to_cell(q, c, entry.depth))) continue;
@@ -82,7 +86,7 @@ struct FindNearest {
     const auto prune = [&](float d) { return found == k && d > distance[k - 1]; };
     walk(points, q, prune, [&](std::int32_t first, std::int32_t last) {
       for (std::int32_t p = first; p < last; ++p)
-        found = insert(points.ids[p], squared_distance(q, points.positions[p]), id, distance, found);
+        found = insert(points.id_of(p), squared_distance(q, points.positions[p]), id, distance, found);
     });
     for (; found < k; ++found) id[found] = -1;
   }
@@ -171,7 +175,7 @@ struct DescribeWithin {
     for (std::int32_t i = begin[query]; i < begin[query + 1]; ++i) {
       const std::int32_t place = ids[i];
       squared[i] = squared_distance(queries[query], points.positions[place]);
-      ids[i] = points.ids[place];
+      ids[i] = points.id_of(place);
     }
   }
 };

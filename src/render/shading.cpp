@@ -1,6 +1,7 @@
 #include "render/shading.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -30,9 +31,16 @@ const Attribute* find_attribute(const Mesh& mesh, const std::string& name) {
   return nullptr;
 }
 
-bool counts_to_255(const Attribute& channel) {
-  return channel.type == AttributeType::uint8 ||
-         std::any_of(channel.values.begin(), channel.values.end(), [](float v) { return v > 1; });
+/// What is white: as much as their type holds in bytes and in numbers of 16 bits, else 1 or, if one is larger, 255.
+double white_of(const std::array<const Attribute*, 3>& channels) {
+  double white = 1;
+  for (const Attribute* channel : channels) {
+    if (channel->type() == AttributeType::uint16) return 65535;
+    const bool exceeds = channel->values.visit(
+        [](const auto& values) { return std::any_of(values.begin(), values.end(), [](auto v) { return v > 1; }); });
+    if (channel->type() == AttributeType::uint8 || exceeds) white = 255;
+  }
+  return white;
 }
 
 }  // namespace
@@ -85,14 +93,12 @@ std::vector<Vec3f> vertex_colours(const Mesh& mesh) {
   const Attribute* const green = find_attribute(mesh, "green");
   const Attribute* const blue = find_attribute(mesh, "blue");
   if (red == nullptr || green == nullptr || blue == nullptr) return {};
-  const bool to_255 = counts_to_255(*red) || counts_to_255(*green) || counts_to_255(*blue);
-  const auto linear = [&](float value) {
-    const double encoded = to_255 ? static_cast<double>(value) / 255 : static_cast<double>(value);
-    return static_cast<float>(decode_srgb(std::clamp(encoded, 0.0, 1.0)));
+  const double white = white_of({red, green, blue});
+  const auto linear = [&](const Attribute* channel, std::size_t v) {
+    return static_cast<float>(decode_srgb(std::clamp(channel->values.at(v) / white, 0.0, 1.0)));
   };
   std::vector<Vec3f> colours(mesh.vertices.size());
-  for (std::size_t v = 0; v < colours.size(); ++v)
-    colours[v] = {linear(red->values[v]), linear(green->values[v]), linear(blue->values[v])};
+  for (std::size_t v = 0; v < colours.size(); ++v) colours[v] = {linear(red, v), linear(green, v), linear(blue, v)};
   return colours;
 }
 

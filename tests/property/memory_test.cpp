@@ -130,7 +130,7 @@ TEST(MemoryEstimate, IsWithin15PercentWhenTrimming) {
 
 Cloud with_attributes(Cloud cloud, int count) {
   for (int i = 0; i < count; ++i)
-    cloud.attributes.push_back({std::string(1, static_cast<char>('a' + i)), AttributeType::float32,
+    cloud.attributes.push_back({std::string(1, static_cast<char>('a' + i)),
                                 std::vector<float>(static_cast<std::size_t>(cloud.size()), static_cast<float>(i))});
   return cloud;
 }

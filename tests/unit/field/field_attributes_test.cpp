@@ -13,6 +13,7 @@
 
 #include "exec/cpu_primitives.hpp"
 #include "field/attributes.hpp"
+#include "support/attributes.hpp"
 #include "unit/poisson/small_tree.hpp"
 
 namespace pointskin {
@@ -142,23 +143,43 @@ struct Taken {
   std::vector<std::vector<float>> values;
 };
 
-/// The attributes a, b, ... of the tree's samples at `points`.
-Taken interpolated(SmallTree& tree, const std::vector<float>& weights, const std::vector<std::vector<float>>& values,
-                   const std::vector<Vec3f>& points, AttributeType type = AttributeType::float32) {
+/// The attributes of the tree's samples.
+field::AttributeSamples samples_of(SmallTree& tree, const std::vector<AttributeValues>& values) {
   field::AttributeSamples samples;
   samples.positions = exec::make_buffer<Vec3f>(tree.ex, tree.samples.positions.size());
   copy(tree.ex, tree.samples.positions.cview(), samples.positions.view());
+  const exec::Buffer<std::int32_t> order = exec::iota(tree.ex, samples.positions.size());
+  for (const AttributeValues& v : values) {
+    const std::size_t place = samples.names.size();
+    samples.names.push_back(name_of(place));
+    exec::TypedBuffer uploaded = exec::upload_typed(tree.ex, v);
+    if (v.type() == AttributeType::float32 || v.type() == AttributeType::float64 || size_of(v.type()) < 4) {
+      const field::ValueRange range = field::find_range(tree.ex, uploaded.view(), {});
+      samples.channels.push_back(field::make_channel(tree.ex, place, uploaded.view(), range, order.cview()));
+    } else {
+      samples.labels.push_back({place, std::move(uploaded)});
+    }
+  }
+  return samples;
+}
+
+ArrayView<const Vec3f> view_of(const std::vector<Vec3f>& points) {
+  return {points.data(), static_cast<std::int64_t>(points.size())};
+}
+
+/// The attributes a, b, ... of the tree's samples at `points`.
+Taken interpolated(SmallTree& tree, const std::vector<float>& weights, const std::vector<std::vector<float>>& values,
+                   const std::vector<Vec3f>& points, AttributeType type = AttributeType::float32) {
+  std::vector<AttributeValues> typed;
+  for (const std::vector<float>& v : values) typed.push_back(AttributeValues(v).converted(type));
+  field::AttributeSamples samples = samples_of(tree, typed);
   samples.weights = buffer_of(tree.ex, weights);
-  for (const std::vector<float>& v : values)
-    samples.channels.push_back(
-        field::make_channel(tree.ex, name_of(samples.channels.size()), type, buffer_of(tree.ex, v)));
   Taken taken;
-  field::interpolate(tree.ex, tree.tree, samples,
-                     ArrayView<const Vec3f>(points.data(), static_cast<std::int64_t>(points.size())),
-                     [&](const field::Channel& channel, const exec::Buffer<float>& at) {
-                       taken.names.push_back(channel.name);
-                       taken.values.emplace_back(at.view().begin(), at.view().end());
-                     });
+  field::interpolate(tree.ex, tree.tree, samples, view_of(points), [&](std::size_t place, exec::TypedBuffer at) {
+    EXPECT_EQ(at.type, type);
+    taken.names.push_back(samples.names[place]);
+    taken.values.push_back(test::floats_of(exec::download_typed(tree.ex, std::move(at))));
+  });
   return taken;
 }
 
@@ -267,7 +288,7 @@ TEST(Attributes, StayInTheRangeOfTheInputHoweverLargeOrCloseItsValuesAre) {
   }
 }
 
-TEST(Attributes, OfTypeUint8AreRoundedWholeNumbers) {
+TEST(Attributes, OfIntegersAreRoundedWholeNumbers) {
   test::Random random(8);
   SmallTree tree(test::clustered_points(random, 30, 15, 0.02), {}, 6);
   const std::int64_t n = tree.samples.positions.size();
@@ -277,10 +298,9 @@ TEST(Attributes, OfTypeUint8AreRoundedWholeNumbers) {
   const std::vector<float> exact = interpolated(tree, values, points);
   const std::vector<float> bytes = interpolated(tree, values, points, AttributeType::uint8);
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(bytes[i], std::floor(exact[i] + 0.5F));
-  values[0] = -40;
-  values[1] = 900;
-  for (const float v : interpolated(tree, values, points, AttributeType::uint8))
-    ASSERT_TRUE(v >= 0 && v <= 255 && v == std::floor(v)) << v;
+  for (float& v : values) v *= 257;
+  const std::vector<float> shorts = interpolated(tree, values, points, AttributeType::uint16);
+  for (std::size_t i = 0; i < points.size(); ++i) ASSERT_NEAR(shorts[i], 257 * exact[i], 0.51);
 }
 
 /// Half-way between two levels' cells, values must agree: leaves of different depth meet there.

@@ -108,7 +108,7 @@ void interpolate(Exec& ex, const octree::OctreeData& tree, const AttributeSample
 
 /// Hands on every label at `points` of the unit cube: that of the nearest sample which has one; of several as near, of
 /// the first in the octree's order. Missing where no sample has one. The search is made once for all labels that miss
-/// no sample, and again for others. 8 bytes a point, and up to 20 a sample where some miss it. O(points log n). The
+/// no sample, and again for others. 4 bytes a point, and up to 20 a sample where some miss it. O(points log n). The
 /// same bits on every device.
 template <exec::Space Exec>
 void find_labels(Exec& ex, const octree::OctreeData& tree, const AttributeSamples& samples,

@@ -57,20 +57,28 @@ Labelled select_labelled(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<c
   return some;
 }
 
+/// From places among those that have the label to samples.
+struct ToSample {
+  ArrayView<const std::int32_t> indices;
+  ArrayView<std::int32_t> places;
+  PSK_HD void operator()(std::int64_t i) const {
+    if (places[i] >= 0) places[i] = indices[places[i]];
+  }
+};
+
 /// Index of the nearest sample that has the label, for every point; -1 if none has it.
 template <exec::Space Exec>
 exec::Buffer<std::int32_t> nearest(Exec& ex, const octree::OctreeView& tree, ArrayView<const Vec3f> positions,
                                    ArrayView<const std::uint8_t> missing, ArrayView<const Vec3f> points) {
-  auto ids = exec::make_buffer<std::int32_t>(ex, points.size);
-  auto squared = exec::make_buffer<float>(ex, points.size);
+  auto places = exec::make_buffer<std::int32_t>(ex, points.size);
   if (missing.empty()) {
-    octree::find_nearest(ex, {tree, positions, {}}, points, 1, ids.view(), squared.view());
-    return ids;
+    octree::find_nearest_place(ex, {tree, positions, {}}, points, places.view());
+    return places;
   }
   const Labelled some = select_labelled(ex, positions, missing);
-  octree::find_nearest(ex, {tree, some.positions.cview(), some.indices.cview(), some.before.cview()}, points, 1,
-                       ids.view(), squared.view());
-  return ids;
+  octree::find_nearest_place(ex, {tree, some.positions.cview(), {}, some.before.cview()}, points, places.view());
+  for_each(ex, "labels.select", points.size, ToSample{some.indices.cview(), places.view()});
+  return places;
 }
 
 }  // namespace labels

@@ -199,11 +199,11 @@ struct Model {
            attributes.largest_mean * at_once * vertices();
   }
 
-  /// The nearest sample of every vertex, and its distance or its label.
+  /// The nearest sample of every vertex, and its label.
   [[nodiscard]] std::int64_t find_labels() const {
     if (attributes.count == attributes.averaged) return 0;
     return kept() + kept_positions() + kept_counts() + mesh() + (attributes.gaps ? kLabelled * points : 0) +
-           (kOrder + std::max(kShare, attributes.largest_label)) * vertices();
+           (kOrder + attributes.largest_label) * vertices();
   }
 };
 

@@ -133,9 +133,13 @@ class AttributeValues {
   /// The values as they are; those that are missing are 0, or NaN.
   /// @throws Error usage if they are not of type T
   template <AttributeScalar T>
-  [[nodiscard]] const std::vector<T>& as() const {
+  [[nodiscard]] const std::vector<T>& as() const& {
     require(type_of<T>());
     return std::get<std::vector<T>>(values_);
+  }
+  template <AttributeScalar T>
+  [[nodiscard]] std::vector<T> as() && {
+    return take<T>();
   }
   /// The same, to be changed. Missing ones stay missing.
   template <AttributeScalar T>

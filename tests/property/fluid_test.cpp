@@ -84,7 +84,8 @@ TEST_P(FluidKernels, DoNotDependOnTheOrderOfParticlesOrThreads) {
   Cloud cloud = particle_frames(kSeed).back().cloud;
   std::vector<float> weights(cloud.positions.size());
   std::iota(weights.begin(), weights.end(), 0.0F);
-  cloud.attributes.push_back({"weight", std::move(weights)});
+  std::vector<std::int32_t> ids(weights.begin(), weights.end());
+  cloud.attributes = {{"weight", std::move(weights)}, {"id", std::move(ids)}};
   FluidOptions chosen = options(1);
   chosen.smoothing_iterations = 3;
   const Mesh first = surface_of(cloud, chosen, 1);
@@ -200,6 +201,49 @@ TEST(Fluid, AttributesAreMeansOfTheParticlesAround) {
   EXPECT_TRUE(bare.attributes.empty());
   EXPECT_TRUE(bare.normals.empty());
   EXPECT_TRUE(bare.vertices == mesh.vertices);
+}
+
+TEST(Fluid, LabelsAreThoseOfTheNearestParticleThatHasOne) {
+  Cloud cloud = ball_of_particles(1, 6, 0.3, kSeed);
+  std::vector<std::int32_t> ids(cloud.positions.size());
+  std::iota(ids.begin(), ids.end(), 1'000'000'001);
+  cloud.attributes = {{"id", ids}, {"part", ids}, {"none", AttributeValues::missing(AttributeType::int16, ids.size())}};
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (i % 4 != 0) cloud.attributes[1].values.set_missing(i);
+  for (const FluidKernel kernel : {FluidKernel::isotropic, FluidKernel::anisotropic}) {
+    FluidOptions options = options_of(1);
+    options.kernel = kernel;
+    const Mesh mesh = surface_of(cloud, options);
+    for (std::size_t a = 0; a < 2; ++a) {
+      const std::vector<std::int32_t>& labels = mesh.attributes[a].values.as<std::int32_t>();
+      for (std::size_t v = 0; v < labels.size(); ++v) {
+        const auto distance = [&](std::size_t i) {
+          const Vec3f& p = cloud.positions[i];
+          return std::hypot(p.x - mesh.vertices[v].x, p.y - mesh.vertices[v].y, p.z - mesh.vertices[v].z);
+        };
+        float best = std::numeric_limits<float>::infinity();
+        for (std::size_t i = 0; i < ids.size(); ++i)
+          if (!cloud.attributes[a].values.is_missing(i)) best = std::min(best, distance(i));
+        ASSERT_FALSE(mesh.attributes[a].values.is_missing(v));
+        const auto chosen = static_cast<std::size_t>(labels[v] - 1'000'000'001);
+        ASSERT_FALSE(cloud.attributes[a].values.is_missing(chosen));
+        ASSERT_LE(distance(chosen), best + 1e-4F);
+      }
+    }
+    EXPECT_EQ(mesh.attributes[2].values, AttributeValues::missing(AttributeType::int16, mesh.vertices.size()));
+  }
+}
+
+TEST(Fluid, DoublesAreMeansInTheirOwnRange) {
+  Cloud cloud = ball_of_particles(1, 8, 0.2, kSeed);
+  const auto time = [](const Vec3f& p) { return 4e8 + 1e-4 * p.x; };
+  cloud.attributes = {test::attribute_of<double>("time", cloud.positions, time),
+                      test::attribute_of<float>("x", cloud.positions, [](const Vec3f& p) { return p.x; })};
+  cloud.attributes[0].values.set_missing(3);
+  cloud.attributes[1].values.set_missing(3);
+  const Mesh mesh = surface_of(cloud, options_of(1));
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    ASSERT_NEAR(mesh.attributes[0].values.at(v), 4e8 + 1e-4 * mesh.attributes[1].values.at(v), 2e-7);
 }
 
 TEST(Fluid, NormalsHaveUnitLengthAndPointOutwards) {

@@ -14,6 +14,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "file_plan.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
@@ -29,7 +30,7 @@ struct CompareArgs {
   std::string a, b, heat;
   CompareOptions options;
   bool json = false;
-  bool with_sign = false;
+  bool with_sign = false, overwrite = false;
 };
 
 /// Both files and what was found between them.
@@ -126,7 +127,7 @@ void check(const CompareArgs& args) {
   check_threads(args.options.threads);
   if (args.options.samples < 1) throw Error(ErrorCode::usage, "--samples: must be at least 1");
   if (!(args.options.tau > 0)) throw Error(ErrorCode::usage, "--tau: must be above 0");
-  check_distinct({args.a, args.b}, {{"compare", "-"}, {"--heat", args.heat}});
+  check_distinct({args.a, args.b}, {{"compare", "-"}, {"--heat", args.heat}}, args.overwrite);
   if (args.with_sign && args.heat.empty())
     throw Error(ErrorCode::usage, "--signed: changes what --heat writes, which is not given");
   if (args.heat.empty()) return;
@@ -149,9 +150,7 @@ Content read(const std::string& file, const CompareArgs& args) {
 /// Sets the attribute `name`, in the place of one that has it already.
 void set_attribute(std::vector<Attribute>& attributes, const std::string& name, const std::vector<double>& values) {
   std::erase_if(attributes, [&](const Attribute& attribute) { return attribute.name == name; });
-  attributes.push_back({name, AttributeType::float32, {}});
-  attributes.back().values.reserve(values.size());
-  for (const double value : values) attributes.back().values.push_back(static_cast<float>(value));
+  attributes.push_back({name, std::vector<float>(values.begin(), values.end())});
 }
 
 void write_heat(const CompareArgs& args, Comparison& comparison, const std::vector<double>& values) {
@@ -209,6 +208,7 @@ void add_output_options(CLI::App& command, CompareArgs& args) {
       .add_flag("--signed", args.with_sign,
                 "with --heat: `signed_distance` instead, above 0 outside of B, which must be a watertight mesh")
       ->group("Output");
+  add_overwrite_option(command, args.overwrite);
 }
 
 }  // namespace

@@ -31,11 +31,9 @@ struct InfoArgs {
   bool json = false;
 };
 
-std::string type_name(AttributeType type) { return type == AttributeType::uint8 ? "uint8" : "float32"; }
-
 Json attributes_json(const std::vector<Attribute>& attributes) {
   Json list = Json::array();
-  for (const Attribute& a : attributes) list.push_back({{"name", a.name}, {"type", type_name(a.type)}});
+  for (const Attribute& a : attributes) list.push_back({{"name", a.name}, {"type", name_of(a.type())}});
   return list;
 }
 

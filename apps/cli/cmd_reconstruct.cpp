@@ -96,7 +96,7 @@ double cube_world(const Cloud& cloud, const Options& options, int threads) {
 
 std::int64_t host_bytes(const Cloud& cloud) {
   std::int64_t bytes = cloud.size() * static_cast<std::int64_t>(2 * sizeof(Vec3f));
-  for (const Attribute& attribute : cloud.attributes) bytes += static_cast<std::int64_t>(attribute.values.size() * 4);
+  for (const Attribute& attribute : cloud.attributes) bytes += static_cast<std::int64_t>(attribute.values.bytes());
   return bytes;
 }
 

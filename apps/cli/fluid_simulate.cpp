@@ -96,7 +96,7 @@ Cloud cloud_of(simulation::ParticleStates particles) {
     std::vector<float> values;
     values.reserve(particles.velocities.size());
     for (const Vec3f& v : particles.velocities) values.push_back(v.*axis);
-    cloud.attributes.push_back({name, AttributeType::float32, std::move(values)});
+    cloud.attributes.push_back({name, std::move(values)});
   }
   return cloud;
 }

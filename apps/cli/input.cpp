@@ -48,24 +48,21 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-/// Adds the attributes of `from_size` points behind those of `to_size`. Points without one of them get NaN.
+/// Adds the attributes of `from_size` points behind those of `to_size`. Points without one of them lack its value.
 void append_attributes(std::vector<Attribute>& to, std::size_t to_size, const std::vector<Attribute>& from,
                        std::size_t from_size) {
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const auto find_in = [](auto& attributes, const std::string& name) {
     return std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
   };
-  for (const Attribute& theirs : from) {
-    if (find_in(to, theirs.name) == to.end()) to.push_back({theirs.name, theirs.type, std::vector(to_size, kNone)});
-  }
+  for (const Attribute& theirs : from)
+    if (find_in(to, theirs.name) == to.end())
+      to.push_back({theirs.name, AttributeValues::missing(theirs.type(), to_size)});
   for (Attribute& mine : to) {
     const auto theirs = find_in(from, mine.name);
-    if (theirs == from.end()) {
-      mine.values.resize(to_size + from_size, kNone);
-      continue;
-    }
-    if (theirs->type != mine.type) mine.type = AttributeType::float32;
-    append(mine.values, theirs->values);
+    if (theirs == from.end())
+      mine.values.resize(to_size + from_size);
+    else
+      mine.values.append(theirs->values);
   }
 }
 
@@ -144,7 +141,7 @@ std::int64_t drop_zero_normals(Cloud& cloud) {
   std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(), [](const Vec3f& n) { return n != Vec3f{}; });
   keep_where(cloud.positions, keep);
   keep_where(cloud.normals, keep);
-  for (Attribute& attribute : cloud.attributes) keep_where(attribute.values, keep);
+  for (Attribute& attribute : cloud.attributes) attribute.values.keep_where(keep);
   cloud.dropped += zero;
   return zero;
 }

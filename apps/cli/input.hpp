@@ -14,8 +14,8 @@
 namespace pointskin::cli {
 
 /// Appends `from` to `to`. Both keep their world positions: of their two origins the one stays around which float loses
-/// less, counted in points. Points without an attribute that the others have get NaN; an attribute is uint8 if both
-/// have it so. Normals that only one has are left out; dropped points add up.
+/// less, counted in points. Points without an attribute that the others have lack its value; attributes of two types
+/// get the smallest that holds both (common_type). Normals that only one has are left out; dropped points add up.
 void append(Cloud& to, Cloud&& from);
 
 /// Whether clouds may come without normals. If some do, the merged cloud has none.

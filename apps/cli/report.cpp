@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "console.hpp"
 #include "normal_args.hpp"
 #include "statistics.hpp"
 #include "summary_words.hpp"

@@ -81,7 +81,8 @@ class EngineOn final : public Engine {
     constexpr const char* kNames[3] = {"velocity_x", "velocity_y", "velocity_z"};
     if (options.attributes)
       for (std::size_t a = 0; a < 3; ++a)
-        input.values.push_back({kNames[a], AttributeType::float32, world.velocities[a].cview()});
+        input.values.push_back(
+            {kNames[a], {AttributeType::float32, world.velocities[a].data(), nullptr, world.velocities[a].size()}});
     fluid::FluidSurface made = fluid::make_surface(*ex_, input, options, report);
     pointskin::detail::PhaseClock downloading(*ex_);
     mesh.origin = {};
@@ -91,8 +92,7 @@ class EngineOn final : public Engine {
     mesh.attributes.resize(made.values.size());
     for (std::size_t a = 0; a < made.values.size(); ++a) {
       mesh.attributes[a].name = kNames[a];
-      mesh.attributes[a].type = AttributeType::float32;
-      download(made.values[a], mesh.attributes[a].values);
+      download_typed(*ex_, std::move(made.values[a]), mesh.attributes[a].values);
     }
     downloading.lap(report.download_ms);
     downloading.read();

@@ -2,22 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
+#include <pointskin/attribute.hpp>
 #include <pointskin/vector.hpp>
 
 namespace pointskin {
-
-/// How an attribute was stored in its file; it is written back the same way.
-enum class AttributeType { uint8, float32 };
-
-/// A named scalar per point or vertex, for example "red", "density", "confidence".
-struct Attribute {
-  std::string name;
-  AttributeType type = AttributeType::float32;
-  std::vector<float> values;  ///< shape (n); uint8 attributes hold 0..255; NaN: there is no value here
-};
 
 /// Points with optional unit-free outward normals and named scalars.
 ///

@@ -33,7 +33,8 @@ struct FluidOptions {
   double min_component = 0;       ///< pieces of the surface that enclose less are removed, bubbles are filled; in rest
                                   ///< volumes of a particle, >= 0; 0: all stay
   bool normals = true;            ///< true: the mesh carries vertex normals
-  bool attributes = true;         ///< true: the mesh carries every attribute of the cloud, averaged with the kernel
+  bool attributes = true;  ///< true: the mesh carries every attribute of the cloud, averaged with the kernel, or,
+                           ///< if it is a label (is_label), that of the nearest particle
 };
 
 /// What a frame took. Times are milliseconds on the device's clock.
@@ -60,8 +61,8 @@ class FluidSurfacer {
 
   /// The surface of `particles` as a closed, 2-manifold, outward-oriented mesh, in the particles' coordinates, with
   /// vertices in Morton order. Normals of the particles do not count. Attributes keep name and type; a value that is
-  /// not finite does not count. O(n + cells near the surface). Deterministic: the same bytes for any thread count, any
-  /// order of the particles, CPU or GPU.
+  /// missing or not finite does not count. O(n + cells near the surface). Deterministic: the same bytes for any thread
+  /// count, any order of the particles, CPU or GPU.
   /// @throws Error usage (an option out of range), invalid_input (particles that are not finite, an attribute of
   /// another
   ///         length), empty_result (no particles; nothing above the threshold or min_component), over_limit (memory,

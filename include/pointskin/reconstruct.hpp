@@ -78,11 +78,12 @@ struct Options {
   /// samples, so that the topology is a guess (docs/algorithm.md, section 15); for find_problems(). Needs the field
   /// poisson; excludes `offset`.
   bool weakness = false;
-  /// true: the mesh carries every attribute of the cloud, interpolated at its vertices and smoothly extended over holes
-  /// (docs/algorithm.md, section 8). Types stay: uint8 values are rounded. A point whose value is not finite does not
-  /// count for that attribute; with `confidence` the others count by their weight. An attribute whose name the mesh has
-  /// itself (x, y, z, nx, ny, nz, with `density` also density, with `weakness` that), or that came before, gets
-  /// `input_` in front of it.
+  /// true: the mesh carries every attribute of the cloud in its type (docs/algorithm.md, section 9). Labels (is_label)
+  /// are those of the nearest point that has one, exactly; all else is interpolated at the vertices, smoothly extended
+  /// over holes, and rounded in integers. A point whose value is missing or not finite does not count for that
+  /// attribute; with `confidence` the others count by their weight. An attribute whose name the mesh has itself (x, y,
+  /// z, nx, ny, nz, with `density` also density, with `weakness` that), or that came before, gets `input_` in front of
+  /// it.
   bool attributes = false;
   bool normals = true;  ///< true: the mesh carries vertex normals, from the gradient of the field
   DomainFaces domain_faces = DomainFaces::closed;
@@ -238,7 +239,7 @@ class Reconstructor {
 /// Estimate of the memory that solve() and Field::extract() take on their device, in bytes:
 /// RunReport::device_peak_bytes within 15 %, from the bricks that the octree of these points would have on every level.
 /// With Options::offset it is an upper bound for common shapes, 1.2 to 3 times what is taken.
-/// What repeat() keeps beyond that, 24 bytes a point and 4 per attribute, and the host's own copy of the cloud are not
+/// What repeat() keeps beyond that, 24 bytes a point and its attributes, and the host's own copy of the cloud are not
 /// in it.
 /// @param threads  CPU threads that count, 0: all
 /// @throws Error usage (an option out of range), over_limit (a level beyond 32-bit node ids)

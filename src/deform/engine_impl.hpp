@@ -86,7 +86,7 @@ class DeformOn final : public DeformEngine {
     try {
       if (options_.attributes)
         for (std::size_t a = 0; a < rest_.attributes.size(); ++a)
-          points.attributes.push_back({rest_.mesh_names[a], rest_.attributes[a].type, attribute(a)});
+          points.attributes.push_back({rest_.mesh_names[a], attribute(a)});
       FieldData data = fit_field(*ex_, points, {.keep_points = true, .envelope = envelope_}, options_, report.run);
       put_back();
       if (options_.progress && !options_.progress({"extract", 0.8}))
@@ -107,10 +107,8 @@ class DeformOn final : public DeformEngine {
     out.origin = rest_.origin;
     copy_out(samples_.positions, out.positions);
     copy_out(samples_.normals, out.normals);
-    for (std::size_t a = 0; a < rest_.attributes.size(); ++a) {
-      out.attributes.push_back({rest_.attributes[a].name, rest_.attributes[a].type, {}});
-      copy_out(attribute(a), out.attributes.back().values);
-    }
+    for (std::size_t a = 0; a < rest_.attributes.size(); ++a)
+      out.attributes.push_back({rest_.attributes[a].name, exec::download_typed(*ex_, attribute(a))});
     return out;
   }
 
@@ -187,8 +185,8 @@ class DeformOn final : public DeformEngine {
     copy_to_host(*ex_, from.cview(), to.data());
   }
 
-  [[nodiscard]] exec::Buffer<float> attribute(std::size_t a) const {
-    return rest::gathered(*ex_, rest_.attributes[a].values, samples_.parents);
+  [[nodiscard]] exec::TypedBuffer attribute(std::size_t a) const {
+    return exec::gather_typed(*ex_, rest_.attributes[a].values.view(), samples_.parents.cview());
   }
 
   /// Makes the lists of points ready that are new, and forgets those that are no longer used.

@@ -5,12 +5,12 @@
 #include <pointskin/reconstruct.hpp>
 
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cloud/resample.hpp"
+#include "core/mix_bits.hpp"
 #include "exec/algorithms.hpp"
 #include "octree/search.hpp"
 #include "pipeline/fit_field.hpp"
@@ -35,29 +35,22 @@ struct RestCloud {
 
 namespace rest {
 
-/// A function of all bits of a point. Source: the finaliser of MurmurHash3.
+/// A function of all bits of a point.
 struct HashPoint {
   ArrayView<const Vec3f> positions, normals;
   octree::Selection selection;
   ArrayView<std::uint64_t> hashes;
 
-  PSK_HD static std::uint64_t mix(std::uint64_t hash, float value) {
-    std::uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * 0xff51afd7ed558ccdULL;
-    return hash ^ hash >> 33;
-  }
-  PSK_HD static std::uint64_t mix(std::uint64_t hash, const Vec3f& v) { return mix(mix(mix(hash, v.x), v.y), v.z); }
   PSK_HD void operator()(std::int64_t i) const {
     const std::int64_t from = selection(i);
-    hashes[i] = mix(mix(0x9e3779b97f4a7c15ULL, positions[from]), normals[from]);
+    hashes[i] = mix_vector(mix_vector(kHashSeed, positions[from]), normals[from]);
   }
 };
 struct HashValue {
-  ArrayView<const float> values;
+  TypedView values;
   octree::Selection selection;
   ArrayView<std::uint64_t> hashes;
-  PSK_HD void operator()(std::int64_t i) const { hashes[i] = HashPoint::mix(hashes[i], values[selection(i)]); }
+  PSK_HD void operator()(std::int64_t i) const { hashes[i] = values.mixed_into(hashes[i], selection(i)); }
 };
 
 /// Samples a finest cell face to the side of a sample's square.
@@ -79,7 +72,7 @@ octree::SortedPoints sort(Exec& ex, const DevicePoints& points, const octree::Fr
   for_each(ex, "deform.rest", n, octree::ToUnit{frame, points.positions.cview(), unit.view(), selection});
   for_each(ex, "deform.rest", n, HashPoint{points.positions.cview(), points.normals.cview(), selection, hashes.view()});
   for (const DeviceAttribute& attribute : points.attributes)
-    for_each(ex, "deform.rest", n, HashValue{attribute.values.cview(), selection, hashes.view()});
+    for_each(ex, "deform.rest", n, HashValue{attribute.values.view(), selection, hashes.view()});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   if (!points.used.empty()) exec::gather(ex, points.used.cview(), sorted.order.cview(), sorted.order.view());
   return sorted;
@@ -115,7 +108,7 @@ RestCloud make_rest(Exec& ex, DevicePoints points, const Vec3d& origin, const Op
   out.positions = rest::gathered(ex, points.positions, sorted.order);
   out.normals = rest::gathered(ex, points.normals, sorted.order);
   for (const DeviceAttribute& attribute : points.attributes)
-    out.attributes.push_back({attribute.name, attribute.type, rest::gathered(ex, attribute.values, sorted.order)});
+    out.attributes.push_back({attribute.name, exec::gather_typed(ex, attribute.values.view(), sorted.order.cview())});
   out.caller_positions = std::move(points.positions);
   const std::int64_t n = out.size();
   out.unit = exec::make_buffer<Vec3f>(ex, n);

@@ -67,12 +67,21 @@ template <exec::Space Exec>
 DevicePoints choose(Exec& ex, const DevicePoints& points, ArrayView<const std::int32_t> indices) {
   DevicePoints out{chosen(ex, points.positions, indices), chosen(ex, points.normals, indices)};
   for (const DeviceAttribute& attribute : points.attributes)
-    out.attributes.push_back({attribute.name, attribute.type, chosen(ex, attribute.values, indices)});
+    out.attributes.push_back({attribute.name, exec::gather_typed(ex, attribute.values.view(), indices)});
   out.added = chosen(ex, points.added, indices);
   return out;
 }
 
-/// New points behind those that are there. Attributes that they lack have no value (NaN) there.
+/// Both as values of their common type.
+template <exec::Space Exec>
+exec::TypedBuffer promoted_and_joined(Exec& ex, const exec::TypedBuffer& first, const exec::TypedBuffer& second) {
+  if (first.type == second.type) return exec::join_typed(ex, first, second);
+  AttributeValues values = exec::download_typed(ex, exec::copy_typed(ex, first));
+  values.append(exec::download_typed(ex, exec::copy_typed(ex, second)));
+  return exec::upload_typed(ex, values);
+}
+
+/// New points behind those that are there. Attributes that they lack have no value there.
 /// @param attributes  of the new points, may be of other names
 template <exec::Space Exec>
 DevicePoints append(Exec& ex, const DevicePoints& points, const DevicePoints& added, std::uint8_t kind) {
@@ -87,14 +96,10 @@ DevicePoints append(Exec& ex, const DevicePoints& points, const DevicePoints& ad
   for (const DeviceAttribute& attribute : points.attributes) {
     const auto same = std::find_if(added.attributes.begin(), added.attributes.end(),
                                    [&](const DeviceAttribute& other) { return other.name == attribute.name; });
-    exec::Buffer<float> none;
-    if (same == added.attributes.end()) {
-      none = exec::make_buffer<float>(ex, n);
-      exec::fill(ex, none.view(), std::numeric_limits<float>::quiet_NaN());
-    }
     out.attributes.push_back(
-        {attribute.name, attribute.type,
-         joined(ex, attribute.values.cview(), same == added.attributes.end() ? none.cview() : same->values.cview())});
+        {attribute.name, same == added.attributes.end()
+                             ? exec::join_typed(ex, attribute.values, exec::make_missing(ex, attribute.values.type, n))
+                             : promoted_and_joined(ex, attribute.values, same->values)});
   }
   return out;
 }

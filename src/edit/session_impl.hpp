@@ -86,13 +86,12 @@ class SessionOn final : public EditSession::Impl {
     cloud.origin = origin_;
     copy_out(points.positions, cloud.positions);
     copy_out(points.normals, cloud.normals);
-    for (const DeviceAttribute& attribute : points.attributes) {
-      cloud.attributes.push_back({attribute.name, attribute.type, {}});
-      copy_out(attribute.values, cloud.attributes.back().values);
-    }
+    for (const DeviceAttribute& attribute : points.attributes)
+      cloud.attributes.push_back(
+          {attribute.name, exec::download_typed(*ex_, exec::copy_typed(*ex_, attribute.values))});
     std::vector<std::uint8_t> kinds;
     copy_out(points.added, kinds);
-    cloud.attributes.push_back({"added", AttributeType::uint8, {kinds.begin(), kinds.end()}});
+    cloud.attributes.push_back({"added", std::move(kinds)});
     return cloud;
   }
 

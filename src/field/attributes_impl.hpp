@@ -11,11 +11,7 @@
 namespace pointskin::field {
 namespace attributes {
 
-inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-/// False for infinities and NaN.
-PSK_HD inline bool is_finite(float v) { return 0 * v == 0; }
 
 /// Values of a few attributes at a corner, with the weight that they have there; or sums of weighted values.
 template <int kCount>
@@ -190,69 +186,55 @@ struct Push {
   }
 };
 
-/// From shares of the range back to values.
-struct Scale {
-  float lowest = 0, highest = 0;
-  bool is_uint8 = false;
-
-  PSK_HD float operator()(float share) const {
-    const double from = lowest;
-    const auto inside = [this](float v) { return v < lowest ? lowest : v > highest ? highest : v; };
-    const float value = inside(static_cast<float>(from + share * (double{highest} - from)));
-    if (!is_uint8) return value;
-    return value <= 0 ? 0.0F : value >= 255 ? 255.0F : static_cast<float>(static_cast<int>(value + 0.5F));
-  }
-};
-
 template <int kCount>
 struct Evaluate {
   octree::OctreeView tree;
   const Values<kCount>* values;
   ArrayView<const Vec3f> points;
-  Scale scales[kCount];
-  float* out[kCount];
+  FromShares scales[kCount];
   PSK_HD void operator()(std::int64_t i) const {
     const Values<kCount> at = octree::value_at(tree, values, points[i], tree.depth);
-    PSK_UNROLL for (int c = 0; c < kCount; ++c) out[c][i] = scales[c](at.value[c]);
+    PSK_UNROLL for (int c = 0; c < kCount; ++c) scales[c].store(i, at.value[c]);
   }
 };
 
-struct Range {
-  float lowest = kInfinity;
-  float highest = -kInfinity;
-  std::int64_t counted = 0;
-};
+/// False for infinities and NaN.
+PSK_HD inline bool is_finite(double v) { return 0 * v == 0; }
+
 struct RangeOf {
-  ArrayView<const float> values;
-  PSK_HD Range operator()(std::int64_t i) const {
-    const float v = values[i];
-    return is_finite(v) ? Range{v, v, 1} : Range{};
+  TypedView values;
+  ArrayView<const std::int32_t> used;
+  PSK_HD ValueRange operator()(std::int64_t i) const {
+    const double v = values[used.empty() ? i : used[i]];
+    return is_finite(v) ? ValueRange{v, v, 1} : ValueRange{};
   }
 };
 struct UniteRanges {
-  PSK_HD Range operator()(const Range& a, const Range& b) const {
+  PSK_HD ValueRange operator()(const ValueRange& a, const ValueRange& b) const {
     return {a.lowest < b.lowest ? a.lowest : b.lowest, a.highest > b.highest ? a.highest : b.highest,
             a.counted + b.counted};
   }
 };
 
-/// Replaces values by their shares of the range, in double: neither large nor close values lose their differences.
+/// Values as shares of the range, in double: neither large nor close values lose their differences.
 struct ToShares {
-  double lowest, extent;
-  ArrayView<float> values;
+  TypedView values;
+  ArrayView<const std::int32_t> order;
+  double lowest, half_extent;
+  ArrayView<float> shares;
   PSK_HD void operator()(std::int64_t i) const {
-    const float v = values[i];
+    const double v = values[order[i]];
     if (!is_finite(v))
-      values[i] = kNan;
+      shares[i] = kNan;
     else
-      values[i] = extent > 0 ? static_cast<float>((v - lowest) / extent) : 0.0F;
+      shares[i] = half_extent > 0 ? static_cast<float>((v / 2 - lowest / 2) / half_extent) : 0.0F;
   }
 };
 
 /// Samples that count for one of two channels only.
 struct CountedDifferently {
   ArrayView<const float> a, b;
-  PSK_HD std::int64_t operator()(std::int64_t i) const { return is_finite(a[i]) != is_finite(b[i]) ? 1 : 0; }
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return (a[i] == a[i]) != (b[i] == b[i]) ? 1 : 0; }
 };
 struct Plus {
   PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
@@ -261,10 +243,10 @@ struct Plus {
 /// True if both channels miss the same samples, so that one weight a corner serves both.
 template <exec::Space Exec>
 bool count_alike(Exec& ex, const Channel& a, const Channel& b) {
-  if (a.counted != b.counted) return false;
-  if (a.counted == a.values.size()) return true;
-  return exec::reduce<std::int64_t>(ex, "attributes.compare", a.values.size(),
-                                    CountedDifferently{a.values.cview(), b.values.cview()}, Plus{}) == 0;
+  if (a.range.counted != b.range.counted) return false;
+  if (a.range.counted == a.shares.size()) return true;
+  return exec::reduce<std::int64_t>(ex, "attributes.compare", a.shares.size(),
+                                    CountedDifferently{a.shares.cview(), b.shares.cview()}, Plus{}) == 0;
 }
 
 /// Values at the corners of all levels, level-major, of the channels from `channels` on.
@@ -274,7 +256,7 @@ exec::Buffer<Values<kCount>> corner_values(Exec& ex, const octree::OctreeView& t
   auto values = exec::make_buffer<Values<kCount>>(ex, tree.nodes);
   const auto of_level = [&](int d) { return values.view().part(tree.levels[d].first_node, tree.levels[d].nodes()); };
   SamplesView<kCount> view{samples.positions.cview(), samples.weights.cview(), {}};
-  for (int c = 0; c < kCount; ++c) view.values[c] = channels[c].values.data();
+  for (int c = 0; c < kCount; ++c) view.values[c] = channels[c].shares.data();
   const octree::LevelView& finest = tree.finest();
   if constexpr (Exec::kManyThreads)
     for_each(ex, "attributes.splat", finest.nodes(), SplatToCorner<kCount>{finest, view, of_level(tree.depth)});
@@ -294,38 +276,43 @@ exec::Buffer<Values<kCount>> corner_values(Exec& ex, const octree::OctreeView& t
 template <int kCount, exec::Space Exec>
 void pass(Exec& ex, const octree::OctreeView& tree, const AttributeSamples& samples, const Channel* channels,
           ArrayView<const Vec3f> points, const TakeValues& take) {
-  exec::Buffer<float> out[kCount];
+  exec::TypedBuffer out[kCount];
   {
     const exec::Buffer<Values<kCount>> values = corner_values<kCount>(ex, tree, samples, channels);
-    Evaluate<kCount> evaluate{tree, values.data(), points, {}, {}};
+    Evaluate<kCount> evaluate{tree, values.data(), points, {}};
     for (int c = 0; c < kCount; ++c) {
-      out[c] = exec::make_buffer<float>(ex, points.size);
-      evaluate.scales[c] = {channels[c].lowest, channels[c].highest, channels[c].type == AttributeType::uint8};
-      evaluate.out[c] = out[c].data();
+      out[c] = exec::make_typed_buffer(ex, channels[c].type, points.size);
+      evaluate.scales[c] = {channels[c].range.lowest, channels[c].range.highest, out[c].output()};
     }
     for_each(ex, "attributes.evaluate", points.size, evaluate);
   }
-  for (int c = 0; c < kCount; ++c) take(channels[c], std::move(out[c]));
+  for (int c = 0; c < kCount; ++c) take(channels[c].place, std::move(out[c]));
 }
 
 /// A channel for which no sample counts.
 template <exec::Space Exec>
 void take_nothing(Exec& ex, const Channel& channel, std::int64_t points, const TakeValues& take) {
-  auto out = exec::make_buffer<float>(ex, points);
-  const bool is_uint8 = channel.type == AttributeType::uint8;
-  exec::fill(ex, out.view(), is_uint8 ? 0.0F : kNan);
-  take(channel, std::move(out));
+  exec::TypedBuffer out = exec::make_typed_buffer(ex, channel.type, points);
+  for_each(ex, "attributes.evaluate", points, exec::typed::FillNan{out.output()});
+  take(channel.place, std::move(out));
 }
 
 }  // namespace attributes
 
 template <exec::Space Exec>
-Channel make_channel(Exec& ex, std::string name, AttributeType type, exec::Buffer<float> values) {
-  const auto range = exec::reduce<attributes::Range>(ex, "attributes.range", values.size(),
-                                                     attributes::RangeOf{values.cview()}, attributes::UniteRanges{});
-  Channel channel{std::move(name), type, std::move(values), range.lowest, range.highest, range.counted};
-  for_each(ex, "attributes.range", channel.values.size(),
-           attributes::ToShares{range.lowest, double{range.highest} - range.lowest, channel.values.view()});
+ValueRange find_range(Exec& ex, const TypedView& values, ArrayView<const std::int32_t> used) {
+  const std::int64_t n = used.empty() ? values.size : used.size;
+  return exec::reduce<ValueRange>(ex, "attributes.range", n, attributes::RangeOf{values, used},
+                                  attributes::UniteRanges{});
+}
+
+template <exec::Space Exec>
+Channel make_channel(Exec& ex, std::size_t place, const TypedView& values, const ValueRange& range,
+                     ArrayView<const std::int32_t> order) {
+  Channel channel{place, values.type, exec::make_buffer<float>(ex, order.size), range};
+  for_each(
+      ex, "attributes.shares", order.size,
+      attributes::ToShares{values, order, range.lowest, range.highest / 2 - range.lowest / 2, channel.shares.view()});
   return channel;
 }
 
@@ -336,7 +323,7 @@ void interpolate(Exec& ex, const octree::OctreeData& tree, const AttributeSample
   const octree::OctreeView view = tree.view();
   for (std::size_t first = 0; first < channels.size();) {
     const Channel* channel = channels.data() + first;
-    if (channel->counted == 0) {
+    if (channel->range.counted == 0) {
       attributes::take_nothing(ex, *channel, points.size, take);
       ++first;
       continue;

@@ -89,9 +89,8 @@ class FluidEngineOn final : public FluidEngine {
       if (n != cloud.size())
         throw Error(ErrorCode::invalid_input, "the attribute " + from.name + " has " + std::to_string(n) +
                                                   " values for " + std::to_string(cloud.size()) + " particles");
-      values_.push_back(exec::make_buffer<float>(*ex_, n));
-      copy_to_device(*ex_, from.values.data(), values_.back().view());
-      particles.values.push_back({names[a], from.type, values_.back().cview()});
+      values_.push_back(exec::upload_typed(*ex_, from.values));
+      particles.values.push_back({names[a], values_.back().view()});
     }
   }
 
@@ -103,14 +102,13 @@ class FluidEngineOn final : public FluidEngine {
     mesh.attributes.resize(made.values.size());
     for (std::size_t a = 0; a < made.values.size(); ++a) {
       mesh.attributes[a].name = particles.values[a].name;
-      mesh.attributes[a].type = particles.values[a].type;
-      download_array(*ex_, made.values[a], mesh.attributes[a].values);
+      download_typed(*ex_, std::move(made.values[a]), mesh.attributes[a].values);
     }
   }
 
   std::shared_ptr<Exec> ex_;
   exec::Buffer<Vec3f> positions_;
-  std::vector<exec::Buffer<float>> values_;
+  std::vector<exec::TypedBuffer> values_;
 };
 
 }  // namespace pointskin::detail

@@ -10,8 +10,10 @@
 #include <pointskin/fluid.hpp>
 
 #include "core/array_view.hpp"
+#include "core/typed_view.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
+#include "exec/typed_buffer.hpp"
 #include "octree/frame.hpp"
 #include "surface/extract.hpp"
 
@@ -20,8 +22,7 @@ namespace pointskin::fluid {
 /// Values of the particles that the vertices are to get, in the order of the positions.
 struct ParticleValues {
   std::string name;
-  AttributeType type = AttributeType::float32;
-  ArrayView<const float> values;  ///< (n)
+  TypedView values;  ///< (n)
 };
 
 /// Particles of one frame, in a space.
@@ -34,8 +35,8 @@ struct Particles {
 
 /// The surface of a frame, in the space of its particles.
 struct FluidSurface {
-  surface::Surface mesh;                    ///< positions in world units
-  std::vector<exec::Buffer<float>> values;  ///< (vertices) each; whole numbers in 0..255 for uint8
+  surface::Surface mesh;                  ///< positions in world units
+  std::vector<exec::TypedBuffer> values;  ///< (vertices) each, in the order and of the types of Particles::values
 };
 
 /// Lengths of FluidOptions in the cube of one frame.

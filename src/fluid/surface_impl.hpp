@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <string>
 #include <utility>
 
+#include "core/mix_bits.hpp"
 #include "exec/algorithms.hpp"
 #include "fluid/anisotropic_impl.hpp"
 #include "fluid/band_impl.hpp"
 #include "fluid/mesh_graph_impl.hpp"
 #include "fluid/particle_tree_impl.hpp"
 #include "fluid/surface.hpp"
-#include "fluid/vertex_values_impl.hpp"
+#include "fluid/values_at.hpp"
 #include "fluid/zhu_bridson.hpp"
 #include "octree/octree_data.hpp"
 #include "pipeline/phase_clock.hpp"
@@ -22,27 +21,15 @@
 namespace pointskin::fluid {
 namespace make {
 
-/// Mixes the bits of a particle; equal particles have equal hashes. Source: the finaliser of MurmurHash3.
-struct Hash {
-  PSK_HD static std::uint64_t mix(std::uint64_t hash, float value) {
-    std::uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * 0xff51afd7ed558ccdULL;
-    return hash ^ hash >> 33;
-  }
-};
 struct HashPosition {
   ArrayView<const Vec3f> positions;
   ArrayView<std::uint64_t> hashes;
-  PSK_HD void operator()(std::int64_t i) const {
-    const Vec3f p = positions[i];
-    hashes[i] = Hash::mix(Hash::mix(Hash::mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z);
-  }
+  PSK_HD void operator()(std::int64_t i) const { hashes[i] = mix_vector(kHashSeed, positions[i]); }
 };
 struct HashValue {
-  ArrayView<const float> values;
+  TypedView values;
   ArrayView<std::uint64_t> hashes;
-  PSK_HD void operator()(std::int64_t i) const { hashes[i] = Hash::mix(hashes[i], values[i]); }
+  PSK_HD void operator()(std::int64_t i) const { hashes[i] = values.mixed_into(hashes[i], i); }
 };
 
 struct ToUnit {
@@ -57,14 +44,6 @@ struct ToWorld {
   octree::Frame cube;
   ArrayView<Vec3f> positions;
   PSK_HD void operator()(std::int64_t i) const { positions[i] = cube.to_world(positions[i]); }
-};
-
-struct RoundToByte {
-  ArrayView<float> values;
-  PSK_HD void operator()(std::int64_t i) const {
-    const float value = values[i];
-    values[i] = value > 0 ? static_cast<float>(static_cast<int>((value < 255 ? value : 255.0F) + 0.5F)) : 0.0F;
-  }
 };
 
 /// Particles in the unit cube, sorted for searches.
@@ -171,40 +150,6 @@ Band find_band_of(Exec& ex, const SortedParticles& sorted, const FluidFrame& fra
   return find_anisotropic_band(ex, anisotropic_field(ellipsoids, frame, options), frame, options);
 }
 
-/// Averages all values, and the crowding where it is asked for, at the vertices.
-template <exec::Space Exec>
-void fill_values(Exec& ex, const ParticlesView& view, const SortedParticles& sorted, const Particles& particles,
-                 exec::Buffer<float>* weights, FluidSurface& out) {
-  const std::int64_t vertices = out.mesh.positions.size();
-  VertexMeans means;
-  std::vector<exec::Buffer<float>> gathered;
-  const auto flush = [&] {
-    if (means.count > 0) average_at(ex, view, out.mesh.positions.cview(), means);
-    means = {};
-    gathered.clear();
-  };
-  const auto add = [&](exec::Buffer<float> values, float* to) {
-    means.values[means.count] = values.data();
-    means.out[means.count] = to;
-    gathered.push_back(std::move(values));
-    if (++means.count == kValuesAtOnce) flush();
-  };
-  if (weights != nullptr) {
-    *weights = exec::make_buffer<float>(ex, vertices);
-    add(crowding(ex, view), weights->data());
-  }
-  for (const ParticleValues& from : particles.values) {
-    out.values.push_back(exec::make_buffer<float>(ex, vertices));
-    auto values = exec::make_buffer<float>(ex, from.values.size);
-    exec::gather(ex, from.values, sorted.order.cview(), values.view());
-    add(std::move(values), out.values.back().data());
-  }
-  flush();
-  for (std::size_t a = 0; a < out.values.size(); ++a)
-    if (particles.values[a].type == AttributeType::uint8)
-      for_each(ex, "fluid.attributes", vertices, RoundToByte{out.values[a].view()});
-}
-
 /// Everything that follows the extraction.
 template <exec::Space Exec>
 void finish(Exec& ex, const SortedParticles& sorted, const Particles& particles, const FluidFrame& frame,
@@ -221,7 +166,8 @@ void finish(Exec& ex, const SortedParticles& sorted, const Particles& particles,
   const ParticlesView view{sorted.tree.view(), sorted.positions.cview(),
                            static_cast<float>(frame.kernel_radius / frame.cube.size)};
   exec::Buffer<float> weights;
-  fill_values(ex, view, sorted, particles, weighted ? &weights : nullptr, out);
+  const ValueSources sources{view, sorted.order.cview(), particles.values};
+  out.values = values_at(ex, sources, mesh.positions.cview(), weighted ? &weights : nullptr);
   Fans fans;
   if (options.smoothing_iterations > 0 || options.normals)
     fans = find_fans(ex, mesh.triangles.cview(), mesh.positions.size());

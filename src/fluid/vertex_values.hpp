@@ -1,4 +1,5 @@
-// Means of particles' values at the vertices of a surface, with the kernel of the surface.
+// Means of particles' values at the vertices of a surface, with the kernel of the surface, and the particles nearest to
+// them.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +32,15 @@ struct VertexMeans {
 };
 template <exec::Space Exec>
 void average_at(Exec& ex, const ParticlesView& particles, ArrayView<const Vec3f> vertices, const VertexMeans& means);
+
+/// Index of the particle nearest to each vertex among those within twice the kernel's radius that are not missing; of
+/// several as near, of the first in the order of the tree's keys; -1 if there is none.
+/// @param order    (particles) the caller's index of each, in the order of the keys
+/// @param missing  (particles) in the caller's order, 1: does not count; or (0)
+/// @returns shape (vertices), the caller's indices
+template <exec::Space Exec>
+exec::Buffer<std::int32_t> nearest_at(Exec& ex, const ParticlesView& particles, ArrayView<const std::int32_t> order,
+                                      ArrayView<const std::uint8_t> missing, ArrayView<const Vec3f> vertices);
 
 /// How crowded particles are: sum over the others of 1 - |p_i - p_j|^2 / R^2 within R. 13 in the bulk, where R is four
 /// particle radii. Source: as smooth() in fluid/mesh_graph.hpp.

@@ -40,6 +40,38 @@ struct AverageAtVertex {
   }
 };
 
+struct NearestAtVertex {
+  ParticlesView particles;
+  ArrayView<const std::int32_t> order;
+  ArrayView<const std::uint8_t> missing;
+  ArrayView<const Vec3f> vertices;
+  ArrayView<std::int32_t> out;
+  PSK_HD void operator()(std::int64_t v) const {
+    std::int32_t found = within(vertices[v], particles.radius);
+    if (found < 0) found = within(vertices[v], 2 * particles.radius);  // ellipsoids reach farther than their particles
+    out[v] = found < 0 ? -1 : order[found];
+  }
+
+  [[nodiscard]] PSK_HD std::int32_t within(const Vec3f& x, float radius) const {
+    float nearest = radius * radius;
+    std::int32_t found = -1;
+    for_each_range_near(particles.tree, x, x, radius, [&](std::int32_t first, std::int32_t last) {
+      for (std::int32_t j = first; j < last; ++j) {
+        if (!missing.empty() && missing[order[j]] != 0) continue;
+        const Vec3f p = particles.positions[j];
+        const float dx = p.x - x.x;
+        const float dy = p.y - x.y;
+        const float dz = p.z - x.z;
+        const float squared = dx * dx + dy * dy + dz * dz;
+        if (!(squared < nearest || (squared == nearest && j < found))) continue;
+        nearest = squared;
+        found = j;
+      }
+    });
+    return found;
+  }
+};
+
 struct CrowdingOf {
   ParticlesView particles;
   ArrayView<float> out;
@@ -74,6 +106,15 @@ struct ToWeight {
 template <exec::Space Exec>
 void average_at(Exec& ex, const ParticlesView& particles, ArrayView<const Vec3f> vertices, const VertexMeans& means) {
   for_each(ex, "fluid.attributes", vertices.size, vertex_values::AverageAtVertex{particles, vertices, means});
+}
+
+template <exec::Space Exec>
+exec::Buffer<std::int32_t> nearest_at(Exec& ex, const ParticlesView& particles, ArrayView<const std::int32_t> order,
+                                      ArrayView<const std::uint8_t> missing, ArrayView<const Vec3f> vertices) {
+  auto out = exec::make_buffer<std::int32_t>(ex, vertices.size);
+  for_each(ex, "fluid.labels", vertices.size,
+           vertex_values::NearestAtVertex{particles, order, missing, vertices, out.view()});
+  return out;
 }
 
 template <exec::Space Exec>

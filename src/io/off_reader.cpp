@@ -4,6 +4,7 @@
 #include <array>
 
 #include "io/lines.hpp"
+#include "io/parsed_columns.hpp"
 #include "io/polygon.hpp"
 #include "io/readers.hpp"
 #include "io/recognise.hpp"
@@ -90,13 +91,13 @@ std::size_t colour_columns(exec::Cpu& ex, const Source& source, const LineIndex&
 
 ParsedColumns parse_vertices(exec::Cpu& ex, const Source& source, const LineIndex& index, const OffHeader& header) {
   ParsedColumns parsed;
-  for (const char* axis : {"x", "y", "z"}) parsed.add(axis, Scalar::float64);
+  for (const char* axis : {"x", "y", "z"}) parsed.add(axis, AttributeType::float64);
   if (header.has_normals)
-    for (const char* axis : {"nx", "ny", "nz"}) parsed.add(axis, Scalar::float32);
+    for (const char* axis : {"nx", "ny", "nz"}) parsed.add(axis, AttributeType::float32);
   const std::size_t first_colour = parsed.size();
   constexpr std::array kColours{"red", "green", "blue", "alpha"};
   const std::size_t colours = header.vertices > 0 ? colour_columns(ex, source, index, header) : 0;
-  for (std::size_t c = 0; c < colours; ++c) parsed.add(kColours[c], Scalar::float32);
+  for (std::size_t c = 0; c < colours; ++c) parsed.add(kColours[c], AttributeType::float32);
   parsed.allocate(header.vertices);
   for_each_row(ex, index, header.rows, header.rows + header.vertices, [&](const Line& line, std::size_t) {
     Values values(source, line);
@@ -109,7 +110,7 @@ ParsedColumns parse_vertices(exec::Cpu& ex, const Source& source, const LineInde
     over_one = over_one || parsed.exceeds(c, 1);
   }
   for (std::size_t c = first_colour; c < parsed.size() && bytes && over_one; ++c)
-    parsed.redeclare(c, kColours[c - first_colour], Scalar::uint8);
+    parsed.redeclare(c, kColours[c - first_colour], AttributeType::uint8);
   return parsed;
 }
 

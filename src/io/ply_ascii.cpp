@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "io/lines.hpp"
 #include "io/ply_body.hpp"
@@ -19,13 +20,19 @@ struct RowRange {
 };
 
 double scalar(Values& values, const PlyProperty& property) {
-  if (property.type != Scalar::uint8) return values.number();
+  if (!is_integer(property.type)) return values.number();
   Values before = values;
   const double value = values.number();
-  if (!(value >= 0 && value <= 255) || value != std::floor(value)) {
+  visit_type(property.type, [&](auto tag) {
+    constexpr auto kLowest = std::numeric_limits<decltype(tag)>::lowest();
+    constexpr auto kHighest = std::numeric_limits<decltype(tag)>::max();
+    if (value >= static_cast<double>(kLowest) && value <= static_cast<double>(kHighest) && value == std::floor(value))
+      return;
     before.at_end();
-    before.fail_garbled("does not fit into a uchar, which holds whole numbers in 0..255");
-  }
+    before.fail_garbled(fmt::format("does not fit into a property {}, which holds whole numbers in {}..{}",
+                                    ply_name_of(property.type), kLowest, kHighest)
+                            .c_str());
+  });
   return value;
 }
 

@@ -105,7 +105,7 @@ std::size_t copy_vertices(const PlyInput& input, const PlyElement& element, std:
     std::size_t column = 0;
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       if (element.properties[p].is_list) continue;
-      visit(element.properties[p].type, [&](auto tag) {
+      visit_type(element.properties[p].type, [&](auto tag) {
         const auto value = load<decltype(tag)>(walker.data(p), walker.swapped());
         body.parsed.set(column++, row, static_cast<double>(value));
       });
@@ -139,7 +139,7 @@ std::optional<TriangleRows> find_triangle_rows(exec::Cpu& ex, const PlyInput& in
   const bool swapped = input.header.encoding == PlyEncoding::big_endian;
   std::atomic<bool> all_three{true};
   run_in_order(ex, (face.count + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {
-    visit(property.count_type, [&](auto tag) {
+    visit_type(property.count_type, [&](auto tag) {
       const auto last = static_cast<std::size_t>(std::min(face.count, (b + 1) * kBlockRows));
       for (auto row = static_cast<std::size_t>(b * kBlockRows); row < last && all_three; ++row)
         if (load<decltype(tag)>(rows.length + row * rows.row_bytes, swapped) != 3) all_three = false;
@@ -153,13 +153,13 @@ std::optional<TriangleRows> find_triangle_rows(exec::Cpu& ex, const PlyInput& in
                static_cast<std::size_t>(at - input.source.bytes.data()), kAdvice);
 }
 
-void read_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, Scalar type,
+void read_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, AttributeType type,
                         const TriangleRows& rows, std::vector<Triangle>& triangles) {
   exec::resize(ex, triangles, static_cast<std::size_t>(face.count));
   const std::int64_t vertices = vertex_count(input.header);
   const bool swapped = input.header.encoding == PlyEncoding::big_endian;
   run_in_order(ex, (face.count + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {
-    visit(type, [&](auto tag) {
+    visit_type(type, [&](auto tag) {
       using T = decltype(tag);
       const auto last = static_cast<std::size_t>(std::min(face.count, (b + 1) * kBlockRows));
       for (auto row = static_cast<std::size_t>(b * kBlockRows); row < last; ++row) {
@@ -177,7 +177,7 @@ void read_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& 
 std::size_t read_faces(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, std::size_t at,
                        std::vector<Triangle>& triangles) {
   const std::size_t list = find_corner_list(input.source, face);
-  const Scalar type = face.properties[list].type;
+  const AttributeType type = face.properties[list].type;
   if (const auto rows = find_triangle_rows(ex, input, face, list, at)) {
     read_triangle_rows(ex, input, face, type, *rows, triangles);
     return at + static_cast<std::size_t>(face.count) * rows->row_bytes;

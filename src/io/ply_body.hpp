@@ -8,8 +8,8 @@
 #include <pointskin/mesh.hpp>
 
 #include "exec/cpu.hpp"
+#include "io/parsed_columns.hpp"
 #include "io/ply_header.hpp"
-#include "io/point_table.hpp"
 #include "io/source.hpp"
 
 namespace pointskin::io {

@@ -27,19 +27,11 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-std::optional<Scalar> scalar_of(std::string_view name) {
-  struct Name {
-    const char* old_name;
-    const char* new_name;
-    Scalar type;
-  };
-  static constexpr Name kNames[] = {
-      {"char", "int8", Scalar::int8},        {"uchar", "uint8", Scalar::uint8},      {"short", "int16", Scalar::int16},
-      {"ushort", "uint16", Scalar::uint16},  {"int", "int32", Scalar::int32},        {"uint", "uint32", Scalar::uint32},
-      {"float", "float32", Scalar::float32}, {"double", "float64", Scalar::float64},
-  };
-  for (const Name& n : kNames)
-    if (name == n.old_name || name == n.new_name) return n.type;
+std::optional<AttributeType> scalar_of(std::string_view name) {
+  for (const AttributeType type :
+       {AttributeType::int8, AttributeType::uint8, AttributeType::int16, AttributeType::uint16, AttributeType::int32,
+        AttributeType::uint32, AttributeType::float32, AttributeType::float64})
+    if (name == ply_name_of(type) || name == name_of(type)) return type;
   return std::nullopt;
 }
 
@@ -114,7 +106,7 @@ class HeaderParser {
     const bool is_list = words.size() == 5 && words[1] == "list";
     if (!is_list && words.size() != 3) fail_here("a property line needs a type and a name");
     const auto type = scalar_of(words[is_list ? 3 : 1]);
-    const auto count_type = is_list ? scalar_of(words[2]) : Scalar::uint8;
+    const auto count_type = is_list ? scalar_of(words[2]) : AttributeType::uint8;
     if (!type || !count_type) fail_here("the property " + in_quotes(words.back()) + " has an unknown type");
     if (!is_integer(*count_type)) fail_here("the length of the list " + in_quotes(words.back()) + " is not an integer");
     PlyProperty property{std::string(words.back()), *type, is_list, *count_type};
@@ -166,6 +158,27 @@ const PlyElement* PlyHeader::find(const std::string& name) const {
 
 bool is_ply(std::string_view bytes) {
   return bytes.starts_with("ply") && (bytes.size() == 3 || bytes[3] == '\n' || is_blank(bytes[3]));
+}
+
+const char* ply_name_of(AttributeType type) {
+  switch (type) {
+    case AttributeType::int8:
+      return "char";
+    case AttributeType::uint8:
+      return "uchar";
+    case AttributeType::int16:
+      return "short";
+    case AttributeType::uint16:
+      return "ushort";
+    case AttributeType::int32:
+      return "int";
+    case AttributeType::uint32:
+      return "uint";
+    case AttributeType::float32:
+      return "float";
+    default:
+      return "double";
+  }
 }
 
 PlyHeader parse_ply_header(const Source& source) {

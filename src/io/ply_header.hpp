@@ -15,9 +15,9 @@ enum class PlyEncoding { ascii, little_endian, big_endian };
 
 struct PlyProperty {
   std::string name;
-  Scalar type = Scalar::float32;  ///< of the value, or of a list's items
+  AttributeType type = AttributeType::float32;  ///< of the value, or of a list's items
   bool is_list = false;
-  Scalar count_type = Scalar::uint8;  ///< of a list's length; an integer
+  AttributeType count_type = AttributeType::uint8;  ///< of a list's length; an integer
 };
 
 struct PlyElement {
@@ -38,6 +38,9 @@ struct PlyHeader {
 
   [[nodiscard]] const PlyElement* find(const std::string& name) const;
 };
+
+/// What PLY calls a type: "char", "uchar", ..., "double". It has no integers of 64 bits.
+const char* ply_name_of(AttributeType type);
 
 /// True if `bytes` start as a PLY file does.
 bool is_ply(std::string_view bytes);

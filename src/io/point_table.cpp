@@ -3,8 +3,10 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "exec/host_array.hpp"
 #include "io/blocks.hpp"
@@ -53,19 +55,8 @@ struct RowRange {
       : first(block * kBlockRows), end(std::min(table.rows, first + kBlockRows)) {}
 };
 
-/// Calls f(value) for every row in order; the column's type is looked up once.
-template <class F>
-void for_values(const Column& column, const RowRange& rows, const F& f) {
-  visit(column.stored, [&](auto tag) {
-    using T = decltype(tag);
-    const char* at = column.data + rows.first * column.stride_bytes;
-    for (std::int64_t row = rows.first; row < rows.end; ++row, at += column.stride_bytes)
-      f(static_cast<double>(load<T>(at, column.swapped)));
-  });
-}
-
 double value_at(const Column& column, std::int64_t row) {
-  return visit(column.stored, [&](auto tag) {
+  return visit_type(column.stored, [&](auto tag) {
     return static_cast<double>(load<decltype(tag)>(column.data + row * column.stride_bytes, column.swapped));
   });
 }
@@ -85,7 +76,7 @@ void for_triples(const PointTable& table, const std::array<std::size_t, 3>& colu
       f(Vec3d{value_at(x, row), value_at(y, row), value_at(z, row)});
     return;
   }
-  visit(x.stored, [&](auto tag) {
+  visit_type(x.stored, [&](auto tag) {
     using T = decltype(tag);
     const auto value = [&](const Column& column, std::int64_t offset) {
       return static_cast<double>(load<T>(column.data + offset, x.swapped));
@@ -148,36 +139,77 @@ std::vector<Vec3d> points_beyond(exec::Cpu& ex, const PointTable& table, const R
 
 bool holds_floats(const PointTable& table, const Roles& roles) {
   return std::all_of(roles.position.begin(), roles.position.end(),
-                     [&](std::size_t c) { return table.columns[c].stored == Scalar::float32; });
+                     [&](std::size_t c) { return table.columns[c].stored == AttributeType::float32; });
 }
 
 Vec3f to_normal(const Vec3f& n) { return std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z) ? n : Vec3f{}; }
 
+/// Which rows of a block stay.
+struct KeptRows {
+  RowRange rows;
+  std::array<bool, kBlockRows> flags;
+  bool all = true;
+
+  /// Calls f(offset of the value, index among those kept) for every row that stays.
+  template <class F>
+  void for_each(std::int64_t stride_bytes, const F& f) const {
+    std::int64_t offset = rows.first * stride_bytes;
+    std::int64_t to = 0;
+    if (all) {
+      for (; to < rows.end - rows.first; ++to, offset += stride_bytes) f(offset, to);
+      return;
+    }
+    for (std::int64_t row = 0; row < rows.end - rows.first; ++row, offset += stride_bytes)
+      if (flags[static_cast<std::size_t>(row)]) f(offset, to++);
+  }
+};
+
+/// The second pass over an attribute of a block: values of the stored type become those of the attribute's.
+void fill_attribute(const Column& column, const KeptRows& kept, std::int64_t to, AttributeValues& values) {
+  visit_type(column.declared, [&](auto declared) {
+    using T = decltype(declared);
+    T* out = values.edit<T>().data() + to;
+    if (column.stored == column.declared)
+      return kept.for_each(column.stride_bytes, [&](std::int64_t offset, std::int64_t i) {
+        out[i] = load<T>(column.data + offset, column.swapped);
+      });
+    visit_type(column.stored, [&](auto stored) {
+      kept.for_each(column.stride_bytes, [&](std::int64_t offset, std::int64_t i) {
+        out[i] = narrowed<T>(static_cast<double>(load<decltype(stored)>(column.data + offset, column.swapped)));
+      });
+    });
+  });
+}
+
 /// The second pass over block `b`: writes its points from index `to` of the cloud on.
 void fill_block(const PointTable& table, const Roles& roles, std::int64_t b, std::int64_t to, Cloud& cloud) {
-  const RowRange rows(table, b);
-  std::array<bool, kBlockRows> kept;
+  KeptRows kept{RowRange(table, b), {}, true};
   const Vec3d& origin = cloud.origin;
   Vec3f* position = cloud.positions.data() + to;
-  auto* keep = kept.begin();
-  for_triples(table, roles.position, rows, [&](const Vec3d& p) {
+  auto* keep = kept.flags.begin();
+  for_triples(table, roles.position, kept.rows, [&](const Vec3d& p) {
     *keep = is_finite(p);
+    kept.all = kept.all && *keep;
     if (*keep++) *position++ = {to_float(p[0] - origin[0]), to_float(p[1] - origin[1]), to_float(p[2] - origin[2])};
   });
   if (roles.normal) {
     Vec3f* normal = cloud.normals.data() + to;
-    keep = kept.begin();
-    for_triples(table, *roles.normal, rows, [&](const Vec3d& n) {
+    keep = kept.flags.begin();
+    for_triples(table, *roles.normal, kept.rows, [&](const Vec3d& n) {
       if (*keep++) *normal++ = to_normal({to_float(n[0]), to_float(n[1]), to_float(n[2])});
     });
   }
-  for (std::size_t a = 0; a < roles.attributes.size(); ++a) {
-    float* value = cloud.attributes[a].values.data() + to;
-    keep = kept.begin();
-    for_values(table.columns[roles.attributes[a]], rows, [&](double v) {
-      if (*keep++) *value++ = to_float(v);
-    });
-  }
+  for (std::size_t a = 0; a < roles.attributes.size(); ++a)
+    fill_attribute(table.columns[roles.attributes[a]], kept, to, cloud.attributes[a].values);
+}
+
+/// `size` values whose pages all threads have mapped.
+AttributeValues make_values(exec::Cpu& ex, AttributeType type, std::size_t size) {
+  return visit_type(type, [&](auto tag) {
+    std::vector<decltype(tag)> values;
+    exec::resize(ex, values, size);
+    return AttributeValues(std::move(values));
+  });
 }
 
 void check_shift(const Vec3d& shift) {
@@ -188,49 +220,6 @@ void check_shift(const Vec3d& shift) {
 }  // namespace
 
 bool is_coordinate(const std::string& name) { return name == "x" || name == "y" || name == "z"; }
-
-void ParsedColumns::add(const std::string& name, Scalar declared) {
-  columns_.push_back({name, declared, is_coordinate(name), {}, {}});
-}
-
-void ParsedColumns::allocate(std::int64_t rows) {
-  rows_ = rows;
-  for (Storage& column : columns_) {
-    if (column.is_wide)
-      column.wide.resize(static_cast<std::size_t>(rows));
-    else
-      column.narrow.resize(static_cast<std::size_t>(rows));
-  }
-}
-
-void ParsedColumns::redeclare(std::size_t column, const std::string& name, Scalar declared) {
-  columns_[column].name = name;
-  columns_[column].declared = declared;
-}
-
-bool ParsedColumns::holds_bytes(std::size_t column) const {
-  const std::vector<float>& values = columns_[column].narrow;
-  return std::all_of(values.begin(), values.end(),
-                     [](float v) { return v >= 0 && v <= 255 && v == static_cast<float>(static_cast<int>(v)); });
-}
-
-bool ParsedColumns::exceeds(std::size_t column, float limit) const {
-  const std::vector<float>& values = columns_[column].narrow;
-  return std::any_of(values.begin(), values.end(), [&](float v) { return v > limit; });
-}
-
-PointTable ParsedColumns::table() const {
-  PointTable table{rows_, {}};
-  for (const Storage& c : columns_) {
-    if (c.is_wide)
-      table.columns.push_back(
-          {c.name, c.declared, Scalar::float64, reinterpret_cast<const char*>(c.wide.data()), sizeof(double), false});
-    else
-      table.columns.push_back(
-          {c.name, c.declared, Scalar::float32, reinterpret_cast<const char*>(c.narrow.data()), sizeof(float), false});
-  }
-  return table;
-}
 
 Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, const std::optional<Vec3d>& shift) {
   if (shift) check_shift(*shift);
@@ -249,9 +238,7 @@ Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, con
   if (roles.normal) exec::resize(ex, cloud.normals, kept);
   for (const std::size_t c : roles.attributes) {
     const Column& column = table.columns[c];
-    cloud.attributes.push_back(
-        {column.name, column.declared == Scalar::uint8 ? AttributeType::uint8 : AttributeType::float32, {}});
-    exec::resize(ex, cloud.attributes.back().values, kept);
+    cloud.attributes.push_back({column.name, make_values(ex, column.declared, kept)});
   }
   run_in_order(ex, found.blocks(),
                [&](std::int64_t b) { fill_block(table, roles, b, found.first[static_cast<std::size_t>(b)], cloud); });

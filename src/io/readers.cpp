@@ -57,7 +57,7 @@ Vec3f unit(const Vec3f& n) {
 }
 
 bool is_finite(const Column& column, std::int64_t row) {
-  return visit(column.stored, [&](auto tag) {
+  return visit_type(column.stored, [&](auto tag) {
     const auto value = load<decltype(tag)>(column.data + row * column.stride_bytes, column.swapped);
     return std::abs(static_cast<double>(value)) <= kLargestCoordinate;
   });

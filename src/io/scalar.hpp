@@ -1,4 +1,4 @@
-// Numbers in binary: their types, sizes and byte orders.
+// Numbers in binary and their byte orders.
 #pragma once
 
 #include <algorithm>
@@ -8,42 +8,13 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
+
+#include <pointskin/attribute.hpp>
 
 namespace pointskin::io {
 
 static_assert(std::endian::native == std::endian::little, "the binary readers and writers assume little endian");
-
-enum class Scalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-/// Calls f(T{}) with the C++ type of `type`.
-template <class F>
-decltype(auto) visit(Scalar type, F&& f) {
-  switch (type) {
-    case Scalar::int8:
-      return f(std::int8_t{});
-    case Scalar::uint8:
-      return f(std::uint8_t{});
-    case Scalar::int16:
-      return f(std::int16_t{});
-    case Scalar::uint16:
-      return f(std::uint16_t{});
-    case Scalar::int32:
-      return f(std::int32_t{});
-    case Scalar::uint32:
-      return f(std::uint32_t{});
-    case Scalar::float32:
-      return f(float{});
-    case Scalar::float64:
-      break;
-  }
-  return f(double{});
-}
-
-inline std::size_t size_of(Scalar type) {
-  return visit(type, [](auto tag) { return sizeof(tag); });
-}
-
-constexpr bool is_integer(Scalar type) { return type != Scalar::float32 && type != Scalar::float64; }
 
 /// The T at `from`, which need not be aligned; `swapped` if its bytes are big endian.
 template <class T>
@@ -55,8 +26,8 @@ T load(const char* from, bool swapped) {
 }
 
 /// The integer of type `type` at `from`.
-inline std::int64_t load_integer(Scalar type, const char* from, bool swapped) {
-  return visit(type, [&](auto tag) { return static_cast<std::int64_t>(load<decltype(tag)>(from, swapped)); });
+inline std::int64_t load_integer(AttributeType type, const char* from, bool swapped) {
+  return visit_type(type, [&](auto tag) { return static_cast<std::int64_t>(load<decltype(tag)>(from, swapped)); });
 }
 
 /// `value` as float; what float cannot hold becomes infinite instead of undefined.
@@ -65,6 +36,16 @@ inline float to_float(double value) {
   if (value > kLargest) return std::numeric_limits<float>::infinity();
   if (value < -kLargest) return -std::numeric_limits<float>::infinity();
   return static_cast<float>(value);
+}
+
+/// `value` as T: a float as to_float() has it, an integer as it is.
+/// @param value  whole and within T if that is an integer
+template <class T>
+T narrowed(double value) {
+  if constexpr (std::is_same_v<T, float>)
+    return to_float(value);
+  else
+    return static_cast<T>(value);
 }
 
 }  // namespace pointskin::io

@@ -165,8 +165,8 @@ Mesh parse_stl(exec::Cpu& ex, const Source& source, const ReadOptions& options) 
   PointTable table{static_cast<std::int64_t>(mesh.vertices.size()), {}};
   const char* data = reinterpret_cast<const char*>(mesh.vertices.data());
   for (const char* axis : {"x", "y", "z"}) {
-    table.columns.push_back(
-        {axis, binary ? Scalar::float32 : Scalar::float64, Scalar::float64, data, sizeof(Vec3d), false});
+    table.columns.push_back({axis, binary ? AttributeType::float32 : AttributeType::float64, AttributeType::float64,
+                             data, sizeof(Vec3d), false});
     if (data != nullptr) data += sizeof(double);  // a file without triangles has no vertices
   }
   return assemble_mesh(ex, source, table, std::move(mesh.triangles), options);

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "io/lines.hpp"
@@ -39,6 +42,11 @@ std::vector<std::string> split_names(std::string_view line) {
     line.remove_prefix(std::min(end + 1, line.size()));
   }
   return names;
+}
+
+bool is_normal(const std::string& name) {
+  constexpr std::array<std::string_view, 6> kNormals{"nx", "ny", "nz", "normal_x", "normal_y", "normal_z"};
+  return std::find(kNormals.begin(), kNormals.end(), name) != kNormals.end();
 }
 
 bool has_name(const std::vector<std::string>& names, const char* name) {
@@ -161,7 +169,8 @@ void add_columns(const Source& source, const TextLayout& layout, ParsedColumns& 
     fail(source, "has two columns named " + in_quotes(*twice), "give every column its own name");
   for (const char* axis : {"x", "y", "z"})
     if (!has_name(names, axis)) fail(source, fmt::format("has no column named {}", axis), kNameAdvice);
-  for (const std::string& name : names) parsed.add(name, is_coordinate(name) ? Scalar::float64 : Scalar::float32);
+  for (const std::string& name : names)
+    parsed.add(name, is_coordinate(name) ? AttributeType::float64 : AttributeType::float32);
 }
 
 namespace {
@@ -177,15 +186,15 @@ bool are_surely_colours(const ParsedColumns& parsed, std::size_t first) {
 }
 
 void name_colours(ParsedColumns& parsed, std::size_t first) {
-  parsed.redeclare(first, "red", Scalar::uint8);
-  parsed.redeclare(first + 1, "green", Scalar::uint8);
-  parsed.redeclare(first + 2, "blue", Scalar::uint8);
+  parsed.redeclare(first, "red", AttributeType::uint8);
+  parsed.redeclare(first + 1, "green", AttributeType::uint8);
+  parsed.redeclare(first + 2, "blue", AttributeType::uint8);
 }
 
 void name_normals(ParsedColumns& parsed, std::size_t first) {
-  parsed.redeclare(first, "nx", Scalar::float32);
-  parsed.redeclare(first + 1, "ny", Scalar::float32);
-  parsed.redeclare(first + 2, "nz", Scalar::float32);
+  parsed.redeclare(first, "nx", AttributeType::float32);
+  parsed.redeclare(first + 1, "ny", AttributeType::float32);
+  parsed.redeclare(first + 2, "nz", AttributeType::float32);
 }
 
 }  // namespace
@@ -194,11 +203,11 @@ void name_columns(const Source& source, const TextLayout& layout, ParsedColumns&
   for (std::size_t c = 0; c < layout.names.size(); ++c) {
     const std::string& name = layout.names[c];
     if ((name == "red" || name == "green" || name == "blue" || name == "alpha") && parsed.holds_bytes(c))
-      parsed.redeclare(c, name, Scalar::uint8);
+      parsed.redeclare(c, name, AttributeType::uint8);
   }
   if (!layout.names.empty()) return;
   const std::size_t columns = layout.columns;
-  if (columns == 4 || columns == 7) parsed.redeclare(3, "scalar", Scalar::float32);
+  if (columns == 4 || columns == 7) parsed.redeclare(3, "scalar", AttributeType::float32);
   if (columns == 6 && are_surely_colours(parsed, 3))
     name_colours(parsed, 3);
   else if (columns == 6)
@@ -214,6 +223,54 @@ void name_columns(const Source& source, const TextLayout& layout, ParsedColumns&
     name_colours(parsed, colours_last ? 6 : 3);
     name_normals(parsed, colours_last ? 3 : 6);
   }
+}
+
+namespace {
+
+/// True if the shortest decimal of the float next to `value` is another number.
+bool loses_digits_as_float(double value) {
+  const float narrow = to_float(value);
+  std::array<char, 32> text;
+  const char* end = std::to_chars(text.data(), text.data() + text.size(), narrow).ptr;
+  double read = 0;
+  std::from_chars(text.data(), end, read);
+  return read != value;
+}
+
+}  // namespace
+
+NeededTypes::NeededTypes(const TextLayout& layout) : looked_at_(layout.columns), columns_(layout.columns) {
+  const std::size_t columns = layout.columns;
+  if (layout.names.empty() && (columns == 4 || columns == 7)) looked_at_[3] = true;
+  for (std::size_t c = 0; c < layout.names.size(); ++c) {
+    looked_at_[c] = !is_coordinate(layout.names[c]) && !is_normal(layout.names[c]);
+    columns_[c].may_be_label = sounds_like_label(layout.names[c]);
+  }
+}
+
+void NeededTypes::look_at(std::size_t column, double value) {
+  Column& c = columns_[column];
+  const auto is_set = [](const std::atomic<bool>& flag) { return flag.load(std::memory_order_relaxed); };
+  const auto set = [](std::atomic<bool>& flag) { flag.store(true, std::memory_order_relaxed); };
+  if (c.may_be_label && !is_set(c.no_int32)) {
+    constexpr double kLowest = std::numeric_limits<std::int32_t>::min();
+    constexpr double kHighest = std::numeric_limits<std::int32_t>::max();
+    if (!(value >= kLowest && value <= kHighest) || value != std::floor(value)) set(c.no_int32);
+  }
+  if (is_set(c.loses_digits) || std::isnan(value) || static_cast<double>(to_float(value)) == value) return;
+  if (!is_set(c.inexact)) set(c.inexact);
+  if (loses_digits_as_float(value)) set(c.loses_digits);
+}
+
+AttributeType NeededTypes::type_of(std::size_t column) const {
+  const Column& c = columns_[column];
+  if (c.may_be_label && !c.no_int32) return AttributeType::int32;
+  return c.loses_digits ? AttributeType::float64 : AttributeType::float32;
+}
+
+bool NeededTypes::exceeds_float(std::size_t column) const {
+  const AttributeType type = type_of(column);
+  return type == AttributeType::float64 || (type == AttributeType::int32 && columns_[column].inexact);
 }
 
 }  // namespace pointskin::io

@@ -1,12 +1,13 @@
 // What the columns of a text of points mean.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "io/point_table.hpp"
+#include "io/parsed_columns.hpp"
 #include "io/source.hpp"
 
 namespace pointskin::io {
@@ -32,5 +33,37 @@ void add_columns(const Source& source, const TextLayout& layout, ParsedColumns& 
 /// Once the values are known: names what had no name, and declares whole numbers in 0..255 under a colour's name uint8.
 /// @throws Error invalid_input if colours are expected and are none
 void name_columns(const Source& source, const TextLayout& layout, ParsedColumns& parsed);
+
+/// What the numbers of a column need, found out as they are read: by several threads at once, and the same whatever
+/// their order.
+class NeededTypes {
+ public:
+  /// Looks at the columns that may become attributes other than colours.
+  explicit NeededTypes(const TextLayout& layout);
+
+  /// Takes a value of the column into account.
+  void see(std::size_t column, double value) {
+    if (looked_at_[column]) look_at(column, value);
+  }
+
+  /// int32 if the column's name sounds like a label's and all its values are whole and fit; else float64 if float32
+  /// would lose digits that are written: the shortest decimal of its float32 is another number; else float32.
+  [[nodiscard]] AttributeType type_of(std::size_t column) const;
+  /// True if float does not hold the values of the column.
+  [[nodiscard]] bool exceeds_float(std::size_t column) const;
+  [[nodiscard]] bool is_looked_at(std::size_t column) const { return looked_at_[column]; }
+
+ private:
+  void look_at(std::size_t column, double value);
+
+  /// Flags are only ever set.
+  struct Column {
+    std::atomic<bool> loses_digits = false, inexact = false, no_int32 = false;
+    bool may_be_label = false;
+  };
+
+  std::vector<bool> looked_at_;
+  std::vector<Column> columns_;
+};
 
 }  // namespace pointskin::io

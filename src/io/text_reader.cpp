@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "io/lines.hpp"
 #include "io/readers.hpp"
@@ -22,6 +23,34 @@ void check_count(const Source& source, const TextLayout& layout, std::int64_t ro
                  layout.first_line, "export the file again");
 }
 
+/// Calls f(column, row, value) for every value, rows in parallel.
+template <class F>
+void for_each_value(exec::Cpu& ex, const Source& source, const LineIndex& index, const TextLayout& layout, const F& f) {
+  for_each_row(ex, index, layout.header_rows, index.rows, [&](const Line& line, std::size_t) {
+    Values values(source, line);
+    const std::int64_t row = line.row - layout.header_rows;
+    for (std::size_t c = 0; c < layout.columns; ++c) f(c, row, values.number());
+    values.expect_end();
+  });
+}
+
+/// Declares the types of attributes that are no colours. Few files hold numbers that float does not: those are read
+/// again, so that the others do not take the memory of doubles.
+/// @returns which columns are to be read again; empty: none
+std::vector<bool> type_attributes(const NeededTypes& needed, ParsedColumns& parsed) {
+  std::vector<bool> wide;
+  for (std::size_t c = 0; c < parsed.size(); ++c) {
+    if (!needed.is_looked_at(c) || parsed.declared(c) != AttributeType::float32) continue;
+    const AttributeType type = needed.type_of(c);
+    parsed.redeclare(c, parsed.name(c), type);
+    if (!needed.exceeds_float(c)) continue;
+    parsed.store_as(c, type);
+    wide.resize(parsed.size());
+    wide[c] = true;
+  }
+  return wide;
+}
+
 }  // namespace
 
 Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
@@ -32,13 +61,16 @@ Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options
   ParsedColumns parsed;
   add_columns(source, layout, parsed);
   parsed.allocate(rows);
-  for_each_row(ex, index, layout.header_rows, index.rows, [&](const Line& line, std::size_t) {
-    Values values(source, line);
-    const std::int64_t row = line.row - layout.header_rows;
-    for (std::size_t c = 0; c < layout.columns; ++c) parsed.set(c, row, values.number());
-    values.expect_end();
+  NeededTypes needed(layout);
+  for_each_value(ex, source, index, layout, [&](std::size_t column, std::int64_t row, double value) {
+    parsed.set(column, row, value);
+    needed.see(column, value);
   });
   name_columns(source, layout, parsed);
+  if (const std::vector<bool> wide = type_attributes(needed, parsed); !wide.empty())
+    for_each_value(ex, source, index, layout, [&](std::size_t column, std::int64_t row, double value) {
+      if (wide[column]) parsed.set(column, row, value);
+    });
   return assemble(ex, source, parsed.table(), options.shift);
 }
 

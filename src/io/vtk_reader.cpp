@@ -4,11 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
-#include <cstring>
+#include <charconv>
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
 
 #include "io/number.hpp"
 #include "io/readers.hpp"
@@ -18,11 +23,17 @@ namespace {
 
 constexpr const char* kExportAgain = "export the file again, as a legacy VTK file";
 
-/// Type of an array's values: how many bytes, and how to read them.
+/// Type of an array's values.
 struct VtkType {
-  std::size_t bytes;
-  std::optional<Scalar> scalar;  ///< none: a 64-bit integer, or bits
-  bool is_signed = true;
+  AttributeType type;      ///< that they get
+  bool is_bit = false;     ///< eight to a byte, the highest bit first, where the file is binary
+  bool is_colour = false;  ///< bytes; shares of 255 where the file is text
+
+  /// Bytes of so many values in a binary file.
+  [[nodiscard]] std::size_t bytes(std::int64_t values) const {
+    const auto count = static_cast<std::size_t>(values);
+    return is_bit ? (count + 7) / 8 : count * size_of(type);
+  }
 };
 
 std::optional<VtkType> type_of(std::string_view name) {
@@ -30,17 +41,29 @@ std::optional<VtkType> type_of(std::string_view name) {
     std::string_view name;
     VtkType type;
   };
+  using enum AttributeType;
   static constexpr Entry kTypes[] = {
-      {"float", {4, Scalar::float32}},       {"double", {8, Scalar::float64}},
-      {"int", {4, Scalar::int32}},           {"unsigned_int", {4, Scalar::uint32}},
-      {"short", {2, Scalar::int16}},         {"unsigned_short", {2, Scalar::uint16}},
-      {"char", {1, Scalar::int8}},           {"signed_char", {1, Scalar::int8}},
-      {"unsigned_char", {1, Scalar::uint8}}, {"long", {8, {}, true}},
-      {"unsigned_long", {8, {}, false}},     {"vtkIdType", {4, Scalar::int32}},
-      {"vtktypeint64", {8, {}, true}},       {"vtktypeuint64", {8, {}, false}},
-      {"vtktypeint32", {4, Scalar::int32}},  {"vtktypeuint32", {4, Scalar::uint32}},
-      {"vtktypeint8", {1, Scalar::int8}},    {"vtktypeuint8", {1, Scalar::uint8}},
-      {"vtktypeint16", {2, Scalar::int16}},  {"vtktypeuint16", {2, Scalar::uint16}},
+      {"float", {float32}},
+      {"double", {float64}},
+      {"int", {int32}},
+      {"unsigned_int", {uint32}},
+      {"short", {int16}},
+      {"unsigned_short", {uint16}},
+      {"char", {int8}},
+      {"signed_char", {int8}},
+      {"unsigned_char", {uint8}},
+      {"long", {int64}},
+      {"unsigned_long", {uint64}},
+      {"vtkIdType", {int32}},
+      {"vtktypeint64", {int64}},
+      {"vtktypeuint64", {uint64}},
+      {"vtktypeint32", {int32}},
+      {"vtktypeuint32", {uint32}},
+      {"vtktypeint16", {int16}},
+      {"vtktypeuint16", {uint16}},
+      {"vtktypeint8", {int8}},
+      {"vtktypeuint8", {uint8}},
+      {"bit", {uint8, true}},
   };
   for (const Entry& entry : kTypes)
     if (entry.name == name) return entry.type;
@@ -131,12 +154,12 @@ class VtkParser {
     const std::string_view keyword = word(rest);
     if (keyword == "DATASET") return check_dataset(word(rest));
     if (keyword == "POINTS") return read_points(rest);
-    if (keyword == "CELL_TYPES") return skip_values(count(rest, "cells"), 1, 4);
+    if (keyword == "CELL_TYPES") return skip_values(count(rest, "cells"), 1, {AttributeType::int32});
     if (keyword == "CELLS" || keyword == "VERTICES" || keyword == "LINES" || keyword == "POLYGONS" ||
         keyword == "TRIANGLE_STRIPS")
       return skip_cells(rest);
     if (keyword == "OFFSETS" || keyword == "CONNECTIVITY")
-      return skip_values(keyword == "OFFSETS" ? offsets_ : connectivity_, 1, type(rest).bytes);
+      return skip_values(keyword == "OFFSETS" ? offsets_ : connectivity_, 1, type(rest));
     if (keyword == "POINT_DATA") return begin_data(count(rest, "points"), true);
     if (keyword == "CELL_DATA") return begin_data(count(rest, "cells"), false);
     if (keyword == "METADATA") return skip_metadata();
@@ -172,7 +195,7 @@ class VtkParser {
     const bool normals = keyword == "NORMALS";
     if (keyword == "LOOKUP_TABLE") {
       word(rest);
-      return skip_values(count(rest, "colours"), 4, 1);
+      return skip_values(count(rest, "colours"), 4, {AttributeType::uint8});
     }
     if (!scalars && !colours && !texture && !tensors && !normals && keyword != "VECTORS")
       fail_here(fmt::format("the keyword {} is unknown", in_quotes(keyword)));
@@ -180,7 +203,7 @@ class VtkParser {
     if (normals) word(rest);
     std::int64_t components = tensors ? (keyword == "TENSORS" ? 9 : 6) : 3;
     if (colours || texture) components = count(rest, "components");
-    const VtkType of = colours ? (binary_ ? VtkType{1, Scalar::uint8} : VtkType{4, Scalar::float32}) : type(rest);
+    const VtkType of = colours ? VtkType{AttributeType::uint8, false, true} : type(rest);
     if (scalars) {
       components = rest.find_first_not_of(" \t") == std::string_view::npos ? 1 : count(rest, "components");
       const std::size_t before = at_;
@@ -211,12 +234,15 @@ class VtkParser {
   void read_array(const std::string& name, std::int64_t components, std::int64_t tuples, const VtkType& of,
                   bool normals) {
     constexpr std::int64_t kMostComponents = 64;
-    const bool kept = in_point_data_ && tuples == rows_ && components >= 1 && components <= kMostComponents &&
-                      (binary_ || of.bytes != 0);
-    if (!kept) return skip_values(tuples, components, of.bytes);
+    const bool kept = in_point_data_ && tuples == rows_ && components >= 1 && components <= kMostComponents;
+    if (!kept) return skip_values(tuples, components, of);
+    const bool colours = of.is_colour && (components == 3 || components == 4) && !has_column("red");
+    constexpr std::array kColours{"red", "green", "blue", "alpha"};
     std::vector<std::string> names;
     for (std::int64_t c = 0; c < components; ++c) {
-      if (components == 1)
+      if (colours)
+        names.emplace_back(kColours[static_cast<std::size_t>(c)]);
+      else if (components == 1)
         names.push_back(name);
       else if (components == 3)
         names.push_back(fmt::format("{}{}{}", name, normals ? "" : "_", "xyz"[c]));
@@ -226,6 +252,10 @@ class VtkParser {
     read_values(names, tuples, of);
   }
 
+  [[nodiscard]] bool has_column(std::string_view name) const {
+    return std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
+  }
+
   void skip_cells(std::string_view& rest) {
     offsets_ = count(rest, "cells");
     connectivity_ = count(rest, "indices");
@@ -233,7 +263,7 @@ class VtkParser {
     skip_blank();
     if (text_.substr(at_).starts_with("OFFSETS")) return;  // version 5: two arrays follow, cells are one fewer
     at_ = before;
-    skip_values(connectivity_, 1, 4);
+    skip_values(connectivity_, 1, {AttributeType::int32});
   }
 
   void skip_metadata() {
@@ -243,61 +273,105 @@ class VtkParser {
 
   // ---- Values
 
-  [[nodiscard]] std::int64_t check_room(std::int64_t tuples, std::int64_t components, std::size_t bytes) const {
-    const auto each = static_cast<std::uint64_t>(components) * (binary_ ? bytes : 2);
-    const std::uint64_t left = text_.size() - at_ + (binary_ ? 0 : 1);  // the last number may end with the file
-    if (components > (std::int64_t{1} << 32) || !fits(static_cast<std::uint64_t>(tuples), each, left))
+  [[nodiscard]] std::int64_t check_room(std::int64_t tuples, std::int64_t components, const VtkType& of) const {
+    constexpr std::int64_t kMost = std::int64_t{1} << 32;
+    std::uint64_t left = text_.size() - at_ + (binary_ ? 0 : 1);  // the last number may end with the file
+    std::uint64_t each = static_cast<std::uint64_t>(components) * (binary_ ? size_of(of.type) : 2);
+    if (binary_ && of.is_bit) left *= 8;
+    if (components > kMost || !fits(static_cast<std::uint64_t>(tuples), each, left))
       fail_here(fmt::format("{} values are promised, but the file ends before", tuples));
     return tuples * components;
   }
 
-  void skip_values(std::int64_t tuples, std::int64_t components, std::size_t bytes) {
-    const std::int64_t values = check_room(tuples, components, bytes);
+  void skip_values(std::int64_t tuples, std::int64_t components, const VtkType& of) {
+    const std::int64_t values = check_room(tuples, components, of);
     if (binary_) {
-      at_ += static_cast<std::size_t>(values) * bytes;
+      at_ += of.bytes(values);
       return;
     }
     for (std::int64_t i = 0; i < values; ++i) number();
   }
 
-  double number() {
+  /// The next number of a text. @returns where it begins
+  std::size_t number(double& value) {
     if (!skip_blank()) fail_here("the file ends before the last value");
-    double value = 0;
-    const char* begin = text_.data() + at_;
-    const char* rest = parse_number(begin, text_.data() + text_.size(), value);
+    const std::size_t begin = at_;
+    const char* rest = parse_number(text_.data() + at_, text_.data() + text_.size(), value);
     if (rest == nullptr) {
       const std::string_view token = text_.substr(at_, text_.find_first_of(" \t\r\n", at_) - at_);
       fail_here(fmt::format("{} is not a number", in_quotes(token)));
     }
     at_ = static_cast<std::size_t>(rest - text_.data());
+    return begin;
+  }
+  double number() {
+    double value = 0;
+    number(value);
     return value;
+  }
+
+  /// The next number of a text as T, in which it must fit. Integers of 64 bits keep all their digits.
+  template <class T>
+  T value() {
+    double wide = 0;
+    const std::size_t begin = number(wide);
+    if constexpr (!std::is_integral_v<T>) {
+      return narrowed<T>(wide);
+    } else {
+      T whole = 0;
+      const char* from = text_.data() + begin + (text_[begin] == '+' ? 1 : 0);
+      const auto [end, error] = std::from_chars(from, text_.data() + at_, whole);
+      if (error == std::errc{} && end == text_.data() + at_) return whole;
+      // Beyond 2^53 a whole number that is written otherwise, such as 1e300, is none that is meant.
+      constexpr double kExact = 9007199254740992.0;
+      if (wide == std::floor(wide) && std::abs(wide) <= kExact && std::in_range<T>(static_cast<std::int64_t>(wide)))
+        return static_cast<T>(wide);
+      at_ = begin;
+      fail_here(fmt::format("a value does not fit into its type, which holds whole numbers in {}..{}",
+                            std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max()));
+    }
   }
 
   /// One column for every name, value by value or as they lie in the file.
   void read_values(const std::vector<std::string>& names, std::int64_t tuples, const VtkType& of) {
     const auto components = static_cast<std::int64_t>(names.size());
-    const std::int64_t values = check_room(tuples, components, of.bytes);
-    const Scalar declared = of.scalar.value_or(Scalar::float64);
-    if (binary_ && of.scalar) {
-      for (std::size_t c = 0; c < names.size(); ++c)
-        columns_.push_back({names[c], declared, declared, text_.data() + at_ + c * of.bytes,
-                            components * static_cast<std::int64_t>(of.bytes), true});
-      at_ += static_cast<std::size_t>(values) * of.bytes;
-      return;
+    const std::int64_t values = check_room(tuples, components, of);
+    const bool coordinates = columns_.empty();  // points come first; in text they are double, whatever is promised
+    const AttributeType stored = !binary_ && coordinates ? AttributeType::float64 : of.type;
+    const char* data = text_.data() + at_;
+    if (!binary_ || of.is_bit) {
+      AttributeValues& own = values_.emplace_back(stored, static_cast<std::size_t>(values));
+      data = binary_ ? unpack_bits(own) : parse(own, of);
     }
-    std::vector<double>& own = values_.emplace_back(static_cast<std::size_t>(values));
-    for (double& value : own) value = binary_ ? wide_integer(of) : number();
-    const auto* data = reinterpret_cast<const char*>(own.data());
+    if (binary_) at_ += of.bytes(values);
+    const auto bytes = static_cast<std::int64_t>(size_of(stored));
     for (std::size_t c = 0; c < names.size(); ++c)
-      columns_.push_back({names[c], declared, Scalar::float64, data + c * sizeof(double),
-                          components * static_cast<std::int64_t>(sizeof(double)), false});
+      columns_.push_back({names[c], coordinates ? stored : of.type, stored, data + c * size_of(stored),
+                          components * bytes, binary_ && !of.is_bit});
   }
 
-  double wide_integer(const VtkType& of) {
-    const char* from = text_.data() + at_;
-    at_ += sizeof(std::uint64_t);
-    const auto bits = load<std::uint64_t>(from, true);
-    return of.is_signed ? static_cast<double>(static_cast<std::int64_t>(bits)) : static_cast<double>(bits);
+  /// @returns where the values are
+  const char* parse(AttributeValues& to, const VtkType& of) {
+    return visit_type(to.type(), [&](auto tag) {
+      using T = decltype(tag);
+      const std::span<T> values = to.edit<T>();
+      for (T& v : values) v = of.is_colour ? static_cast<T>(std::round(255 * share())) : value<T>();
+      return reinterpret_cast<const char*>(values.data());
+    });
+  }
+
+  /// The next number of a text, cut off at 0 and 1.
+  double share() {
+    const double v = number();
+    return v > 0 ? std::min(v, 1.0) : 0;
+  }
+
+  /// @returns where the values are
+  const char* unpack_bits(AttributeValues& to) {
+    const std::span<std::uint8_t> values = to.edit<std::uint8_t>();
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = static_cast<unsigned char>(text_[at_ + i / 8]) >> (7 - i % 8) & 1;
+    return reinterpret_cast<const char*>(values.data());
   }
 
   const Source& source_;
@@ -306,7 +380,7 @@ class VtkParser {
   bool binary_ = false, has_points_ = false, in_point_data_ = false;
   std::int64_t rows_ = 0, tuples_ = 0, offsets_ = 0, connectivity_ = 0;
   std::vector<Column> columns_;
-  std::deque<std::vector<double>> values_;  // those of columns that do not lie in the file
+  std::deque<AttributeValues> values_;  // those of columns that do not lie in the file
 
  public:
   /// What the columns of parse() point into is kept here.

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -19,8 +19,8 @@ class LineBuffer {
     at_ = std::to_chars(at_, text_.data() + text_.size(), value).ptr;
   }
   /// A value in 0..255 as a share of 255. Three digits tell all 256 apart.
-  void add_share(float value) {
-    const float share = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 255.0F) / 255;
+  void add_share(std::uint8_t value) {
+    const float share = static_cast<float>(value) / 255;
     add(" ");
     at_ = std::to_chars(at_, text_.data() + text_.size(), share, std::chars_format::fixed, 3).ptr;
   }
@@ -47,13 +47,14 @@ void add_three(LineBuffer& line, std::string_view keyword, Number x, Number y, N
 }
 
 /// The attributes red, green and blue, if all are there and bytes: for others nobody knows what is white.
-std::optional<std::array<const Attribute*, 3>> colour_of(const Mesh& mesh) {
-  std::array<const Attribute*, 3> colour{};
+std::optional<std::array<const std::uint8_t*, 3>> colour_of(const Mesh& mesh) {
+  std::array<const std::uint8_t*, 3> colour{};
   for (const Attribute& a : mesh.attributes) {
-    if (a.type != AttributeType::uint8 || a.values.size() != mesh.vertices.size()) continue;
-    if (a.name == "red") colour[0] = &a;
-    if (a.name == "green") colour[1] = &a;
-    if (a.name == "blue") colour[2] = &a;
+    if (a.type() != AttributeType::uint8 || a.values.size() != mesh.vertices.size()) continue;
+    const std::uint8_t* values = a.values.as<std::uint8_t>().data();
+    if (a.name == "red") colour[0] = values;
+    if (a.name == "green") colour[1] = values;
+    if (a.name == "blue") colour[2] = values;
   }
   if (std::find(colour.begin(), colour.end(), nullptr) != colour.end()) return std::nullopt;
   return colour;
@@ -83,7 +84,7 @@ Blocks format_obj(const Mesh& mesh) {
     else
       add_three(line, "v", w[0], w[1], w[2]);
     if (colour)
-      for (const Attribute* channel : *colour) line.add_share(channel->values[i]);
+      for (const std::uint8_t* channel : *colour) line.add_share(channel[i]);
   };
   const auto write_normal = [&mesh](std::size_t i, LineBuffer& line) {
     add_three(line, "vn", mesh.normals[i].x, mesh.normals[i].y, mesh.normals[i].z);

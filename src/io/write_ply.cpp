@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <iterator>
+#include <type_traits>
 #include <unordered_set>
 #include <utility>
 
-#include "io/scalar.hpp"
+#include "io/ply_header.hpp"
 #include "io/writers.hpp"
 
 namespace pointskin::io {
@@ -30,7 +30,27 @@ std::string property_name(const std::string& name) {
   return word;
 }
 
-std::string vertex_header(const VertexArrays& v, const char* encoding) {
+/// The type of the property that holds an attribute: its own, but
+/// - of labels that are missing somewhere the float type that holds them and NaN: 0 would be a label, too. In colours
+///   and the like, which other programs expect as bytes, what is missing is 0;
+/// - of integers of 64 bits, which PLY lacks, int or uint if those hold all of them, else double.
+AttributeType stored_type(const Attribute& attribute) {
+  const AttributeValues& values = attribute.values;
+  if (values.has_mask() && attribute.is_label()) return type_with_nan(values.type());
+  if (!is_integer(values.type()) || size_of(values.type()) < 8) return values.type();
+  const auto fits = [&](auto tag) {
+    return values.visit([&](const auto& all) {
+      return std::all_of(all.begin(), all.end(), [](auto v) {
+        if constexpr (std::is_integral_v<decltype(v)>) return std::in_range<decltype(tag)>(v);
+        return false;
+      });
+    });
+  };
+  if (fits(std::int32_t{})) return AttributeType::int32;
+  return fits(std::uint32_t{}) ? AttributeType::uint32 : AttributeType::float64;
+}
+
+std::string vertex_header(const VertexArrays& v, const std::vector<AttributeType>& types, const char* encoding) {
   const char* type = is_zero(v.origin) ? "float" : "double";
   std::string header = fmt::format("ply\nformat {} 1.0\nelement vertex {}\n", encoding, v.positions.size());
   std::unordered_set<std::string> names;
@@ -42,8 +62,7 @@ std::string vertex_header(const VertexArrays& v, const char* encoding) {
   for (const char* axis : {"x", "y", "z"}) add(type, axis);
   if (!v.normals.empty())
     for (const char* axis : {"nx", "ny", "nz"}) add("float", axis);
-  for (const Attribute& a : v.attributes)
-    add(a.type == AttributeType::uint8 ? "uchar" : "float", property_name(a.name));
+  for (std::size_t a = 0; a < types.size(); ++a) add(ply_name_of(types[a]), property_name(v.attributes[a].name));
   return header;
 }
 
@@ -57,31 +76,48 @@ void check_shapes(const VertexArrays& v) {
                   fmt::format("{} values of '{}' for {} vertices", a.values.size(), property_name(a.name), n));
 }
 
-std::size_t row_bytes_of(const VertexArrays& v) {
+std::size_t row_bytes_of(const VertexArrays& v, const std::vector<AttributeType>& types) {
   std::size_t bytes = is_zero(v.origin) ? 3 * sizeof(float) : 3 * sizeof(double);
   if (!v.normals.empty()) bytes += sizeof(Vec3f);
-  for (const Attribute& a : v.attributes) bytes += a.type == AttributeType::uint8 ? 1 : sizeof(float);
+  for (const AttributeType type : types) bytes += size_of(type);
   return bytes;
 }
 
-/// Writes the rows [first, last), the first one to `out`, column by column.
-void store_rows(const VertexArrays& v, std::size_t first, std::size_t last, std::size_t row_bytes, char* out) {
-  const auto for_rows = [&](std::size_t bytes, const auto& put) {
-    char* to = out;
+/// A range of rows and where it goes to.
+struct RowRange {
+  std::size_t first, last, row_bytes;
+
+  /// Calls put(place, row) for every row, the first of which begins at `to`.
+  template <class F>
+  void for_each(char* to, const F& put) const {
     for (std::size_t i = first; i < last; ++i, to += row_bytes) put(to, i);
-    out += bytes;
-  };
-  if (is_zero(v.origin))
-    for_rows(sizeof(Vec3f), [&](char* to, std::size_t i) { store(to, v.positions[i]); });
-  else
-    for_rows(sizeof(Vec3d), [&](char* to, std::size_t i) { store(to, world(v.origin, v.positions[i])); });
-  if (!v.normals.empty()) for_rows(sizeof(Vec3f), [&](char* to, std::size_t i) { store(to, v.normals[i]); });
-  for (const Attribute& a : v.attributes) {
-    if (a.type == AttributeType::uint8)
-      for_rows(1, [&](char* to, std::size_t i) { store(to, to_byte(a.values[i])); });
-    else
-      for_rows(sizeof(float), [&](char* to, std::size_t i) { store(to, a.values[i]); });
   }
+};
+
+void store_values(const AttributeValues& values, AttributeType type, const RowRange& rows, char* to) {
+  if (type == values.type())
+    return values.visit(
+        [&](const auto& all) { rows.for_each(to, [&](char* at, std::size_t i) { store(at, all[i]); }); });
+  visit_type(type, [&](auto tag) {
+    rows.for_each(to, [&](char* at, std::size_t i) { store(at, static_cast<decltype(tag)>(values.at(i))); });
+  });
+}
+
+/// Writes rows, the first one to `out`, column by column.
+void store_rows(const VertexArrays& v, const std::vector<AttributeType>& types, const RowRange& rows, char* out) {
+  if (is_zero(v.origin)) {
+    rows.for_each(out, [&](char* to, std::size_t i) { store(to, v.positions[i]); });
+    out += sizeof(Vec3f);
+  } else {
+    rows.for_each(out, [&](char* to, std::size_t i) { store(to, world(v.origin, v.positions[i])); });
+    out += sizeof(Vec3d);
+  }
+  if (!v.normals.empty()) {
+    rows.for_each(out, [&](char* to, std::size_t i) { store(to, v.normals[i]); });
+    out += sizeof(Vec3f);
+  }
+  for (std::size_t a = 0; a < types.size(); out += size_of(types[a++]))
+    store_values(v.attributes[a].values, types[a], rows, out);
 }
 
 void store_faces(const std::vector<Triangle>& triangles, std::size_t first, std::size_t last, char* out) {
@@ -95,24 +131,27 @@ void store_faces(const std::vector<Triangle>& triangles, std::size_t first, std:
 
 std::string ply_header(const VertexArrays& vertices, const std::vector<Triangle>* triangles, const char* encoding) {
   check_shapes(vertices);
-  std::string header = vertex_header(vertices, encoding);
+  std::string header = vertex_header(vertices, stored_types(vertices), encoding);
   if (triangles != nullptr)
     fmt::format_to(std::back_inserter(header), "element face {}\nproperty list uchar int vertex_indices\n",
                    triangles->size());
   return header + "end_header\n";
 }
 
-std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::isnan(value) ? 0.0f : std::round(std::clamp(value, 0.0f, 255.0f)));
+std::vector<AttributeType> stored_types(const VertexArrays& vertices) {
+  std::vector<AttributeType> types;
+  for (const Attribute& attribute : vertices.attributes) types.push_back(stored_type(attribute));
+  return types;
 }
 
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
   std::string header = ply_header(vertices, triangles, "binary_little_endian");
-  const auto append_vertices = [vertices, row_bytes = row_bytes_of(vertices)](std::size_t first, std::size_t last,
-                                                                              std::string& bytes) {
+  const std::vector<AttributeType> types = stored_types(vertices);
+  const auto append_vertices = [vertices, types, row_bytes = row_bytes_of(vertices, types)](
+                                   std::size_t first, std::size_t last, std::string& bytes) {
     const std::size_t before = bytes.size();
     bytes.resize(before + (last - first) * row_bytes);
-    store_rows(vertices, first, last, row_bytes, bytes.data() + before);
+    store_rows(vertices, types, {first, last, row_bytes}, bytes.data() + before);
   };
   const auto append_faces = [triangles](std::size_t first, std::size_t last, std::string& bytes) {
     const std::size_t before = bytes.size();

@@ -24,12 +24,16 @@ void append_position(std::string& bytes, const VertexArrays& v, std::size_t i) {
   for (const double x : world(v.origin, p)) append_number(bytes, x);
 }
 
-void append_value(std::string& bytes, const Attribute& attribute, std::size_t i) {
-  const float value = attribute.values[i];
-  if (attribute.type == AttributeType::uint8)
-    append_number(bytes, unsigned{to_byte(value)});
-  else
-    append_number(bytes, value);
+/// As a property of type `type` holds it. Bytes are numbers, not characters.
+void append_value(std::string& bytes, const AttributeValues& values, AttributeType type, std::size_t i) {
+  const auto append = [&bytes](auto value) {
+    if constexpr (sizeof(value) == 1)
+      append_number(bytes, int{value});
+    else
+      append_number(bytes, value);
+  };
+  if (type == values.type()) return values.visit([&](const auto& all) { append(all[i]); });
+  visit_type(type, [&](auto tag) { append(static_cast<decltype(tag)>(values.at(i))); });
 }
 
 /// A line a row: add(i, bytes) appends its numbers, each behind a blank. Lines begin without one.
@@ -47,14 +51,15 @@ void append_lines(std::size_t first, std::size_t last, std::string& bytes, const
 }  // namespace
 
 Blocks format_ply_ascii(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
-  const auto append_vertices = [vertices](std::size_t first, std::size_t last, std::string& bytes) {
-    append_lines(first, last, bytes, [&vertices](std::size_t i, std::string& line) {
+  const auto append_vertices = [vertices, types = stored_types(vertices)](std::size_t first, std::size_t last,
+                                                                          std::string& bytes) {
+    append_lines(first, last, bytes, [&](std::size_t i, std::string& line) {
       append_position(line, vertices, i);
       if (!vertices.normals.empty()) {
         const Vec3f& n = vertices.normals[i];
         for (const float x : {n.x, n.y, n.z}) append_number(line, x);
       }
-      for (const Attribute& attribute : vertices.attributes) append_value(line, attribute, i);
+      for (std::size_t a = 0; a < types.size(); ++a) append_value(line, vertices.attributes[a].values, types[a], i);
     });
   };
   const auto append_faces = [triangles](std::size_t first, std::size_t last, std::string& bytes) {

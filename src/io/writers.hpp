@@ -33,8 +33,8 @@ Blocks format_ply_ascii(const VertexArrays& vertices, const std::vector<Triangle
 /// The header of either. @param encoding  "ascii" or "binary_little_endian" @throws Error as format_ply
 std::string ply_header(const VertexArrays& vertices, const std::vector<Triangle>* triangles, const char* encoding);
 
-/// What a property of type uchar stores for `value`.
-std::uint8_t to_byte(float value);
+/// The types of the properties that hold the attributes: mostly their own (see stored_type in write_ply.cpp).
+std::vector<AttributeType> stored_types(const VertexArrays& vertices);
 
 /// OBJ text: world coordinates in the fewest digits that read back equal. Colours, if red, green and blue are uint8
 /// attributes, follow the coordinates as numbers in [0, 1], as many programs read them.

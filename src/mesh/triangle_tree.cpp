@@ -75,12 +75,13 @@ Nearest TriangleTree::nearest(const Vec3d& p, std::int32_t hint) const {
 bool TriangleTree::is_between(const Vec3d& from, const Vec3d& to) const {
   const Vec3d line = minus(to, from);
   const Vec3d inverse{1 / line[0], 1 / line[1], 1 / line[2]};
-  std::array<std::int32_t, BoxTree::kMaxDepth> stack;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled as it grows
+  std::array<std::int32_t, BoxTree::kMaxDepth>
+      stack;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled as it grows
   std::size_t height = 0;
   stack[height++] = 0;
   while (height > 0) {
     const std::int32_t at = stack[--height];
-    const Node& node = tree_.nodes().data()[at];
+    const Node& node = tree_.nodes()[at];
     if (!meets_box(from, inverse, node)) continue;
     if (!node.is_leaf()) {
       stack[height++] = node.right;

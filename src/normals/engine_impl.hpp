@@ -105,7 +105,7 @@ struct Scatter {
 inline void set_attribute(Cloud& cloud, const char* name, std::vector<float> values) {
   const auto at = std::find_if(cloud.attributes.begin(), cloud.attributes.end(),
                                [&](const Attribute& a) { return a.name == name; });
-  Attribute attribute{name, AttributeType::float32, std::move(values)};
+  Attribute attribute{name, std::move(values)};
   if (at == cloud.attributes.end())
     cloud.attributes.push_back(std::move(attribute));
   else

@@ -56,7 +56,7 @@ detail::Views find_views(const Cloud& cloud, const NormalOptions& options) {
     const std::array<double, 3> at = {p.x, p.y, p.z};
     std::array<double, 3> v{};
     for (std::size_t a = 0; a < 3; ++a) {
-      v[a] = values[a]->values[i];
+      v[a] = values[a]->values.at(i);
       if (triple->is_position) v[a] -= cloud.origin[a] + at[a];
       if (!std::isfinite(v[a])) v[a] = 0;  // this point says nothing
     }

@@ -49,8 +49,8 @@ PSK_HD void walk(const SearchView& points, const Vec3f& q, const Prune& prune, c
   while (top > 0) {
     const Entry entry = stack[--top];
     const LevelView& level = points.tree.levels[entry.depth];
-    const std::int32_t first = level.point_begin[entry.cell];
-    const std::int32_t last = level.point_begin[entry.cell + 1];
+    const std::int32_t first = points.first_of(level, entry.cell);
+    const std::int32_t last = points.first_of(level, entry.cell + 1);
     if (first == last) continue;
     const Coordinates c = decode(level.node_key(entry.cell));
     if (prune(squared_distance_to_cell(q, c, entry.depth))) continue;
@@ -99,6 +99,65 @@ struct FindNearest {
     id[place] = new_id;
     distance[place] = d;
     return found < k ? found + 1 : k;
+  }
+};
+
+struct FindNearestPlace {
+  SearchView points;
+  ArrayView<const Vec3f> queries;
+  ArrayView<std::int32_t> places;
+
+  struct Best {
+    float squared = std::numeric_limits<float>::infinity();
+    std::int32_t place = -1;
+  };
+
+  PSK_HD void operator()(std::int64_t query) const {
+    const Vec3f q = queries[query];
+    const Leaf leaf = locate(points.tree, point_key(q.x, q.y, q.z), points.tree.depth);
+    const LevelView& level = points.tree.levels[leaf.depth];
+    const Coordinates at = decode(level.node_key(leaf.cell));
+    Best best;
+    scan(points.first_of(level, leaf.cell), points.first_of(level, leaf.cell + 1), q, best);
+    for (int i = 0; i < kNeighbours; ++i)
+      if (i != kSelf) scan_neighbour(level, leaf.cell, at, {i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1}, q, best);
+    const float reach = reach_of_neighbours(q, at, leaf.depth);
+    if (!(reach > 0 && best.squared < reach * reach))
+      walk(
+          points, q, [&](float d) { return d > best.squared; },
+          [&](std::int32_t first, std::int32_t last) { scan(first, last, q, best); });
+    places[query] = best.place;
+  }
+
+  PSK_HD void scan_neighbour(const LevelView& level, std::int32_t cell, const Coordinates& at, const Coordinates& step,
+                             const Vec3f& q, Best& best) const {
+    const Coordinates c{at.x + step.x, at.y + step.y, at.z + step.z};
+    if (squared_distance_to_cell(q, c, level.depth) > best.squared) return;
+    const std::int32_t neighbour = level.neighbour(cell, step.x, step.y, step.z);
+    if (!level.is_cell(neighbour)) return;
+    scan(points.first_of(level, neighbour), points.first_of(level, neighbour + 1), q, best);
+  }
+
+  PSK_HD void scan(std::int32_t first, std::int32_t last, const Vec3f& q, Best& best) const {
+    for (std::int32_t p = first; p < last; ++p) {
+      const float squared = squared_distance(q, points.positions[p]);
+      if (squared < best.squared || (squared == best.squared && p < best.place)) best = {squared, p};
+    }
+  }
+
+  /// No point outside of the 27 cells around is nearer than this, a little less than exact.
+  PSK_HD static float reach_of_neighbours(const Vec3f& q, const Coordinates& at, int depth) {
+    const float width = 1.0F / static_cast<float>(1 << depth);
+    const auto gap = [&](float v, std::int32_t lower) {
+      const float below = v - static_cast<float>(lower - 1) * width;
+      const float above = static_cast<float>(lower + 2) * width - v;
+      return below < above ? below : above;
+    };
+    const float x = gap(q.x, at.x);
+    const float y = gap(q.y, at.y);
+    const float z = gap(q.z, at.z);
+    const float least = x < y ? x : y;
+    return (least < z ? least : z) * (1 - 1e-5F);
   }
 };
 
@@ -182,6 +241,12 @@ template <exec::Space Exec>
 void find_nearest(Exec& ex, const SearchView& points, ArrayView<const Vec3f> queries, int k,
                   ArrayView<std::int32_t> ids, ArrayView<float> squared) {
   for_each(ex, "search.nearest", queries.size, search::FindNearest{points, queries, k, ids, squared});
+}
+
+template <exec::Space Exec>
+void find_nearest_place(Exec& ex, const SearchView& points, ArrayView<const Vec3f> queries,
+                        ArrayView<std::int32_t> places) {
+  for_each(ex, "search.nearest", queries.size, search::FindNearestPlace{points, queries, places});
 }
 
 template <exec::Space Exec>

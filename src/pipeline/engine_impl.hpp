@@ -58,8 +58,9 @@ class EngineOn final : public Engine {
       FieldData data = fit_field(*ex_, points, setup, options, report);
       const surface::Surface surface = detail::extract(*ex_, data, options, report);
       look_at_surface(*ex_, surface, data);
-      field::interpolate(*ex_, data.tree, data.attributes, surface.positions.cview(),
-                         [](const field::Channel&, const exec::Buffer<float>&) {});
+      const auto drop = [](std::size_t, const exec::TypedBuffer&) {};
+      field::interpolate(*ex_, data.tree, data.attributes, surface.positions.cview(), drop);
+      field::find_labels(*ex_, data.tree, data.attributes, surface.positions.cview(), drop);
       RunTimes run{report.octree_ms, report.splat_ms, report.solve_ms};
       clock.lap(run.total_ms);
       clock.read();

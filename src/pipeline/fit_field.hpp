@@ -38,7 +38,7 @@ struct FieldData {
   poisson::Resolution resolution;
   exec::Buffer<float> values;
   poisson::Density density;
-  field::AttributeSamples attributes;                  ///< without positions unless there are channels
+  field::AttributeSamples attributes;                  ///< without positions unless there are attributes
   std::shared_ptr<const envelope::Envelope> envelope;  ///< with Options::envelope
   double isovalue = 0;
   FieldSamples samples;                   ///< with FitSetup::keep_samples

@@ -137,7 +137,7 @@ void fit_distance(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const 
                   RunReport& report) {
   PhaseClock clock(ex);
   poisson::Samples& samples = sorted.samples;
-  const bool has_attributes = !field.attributes.channels.empty();
+  const bool has_attributes = !field.attributes.names.empty();
   announce(options, "splat", 0.25);
   exec::Buffer<float> weights;
   if (options.confidence) weights = poisson::confidence_weights(ex, samples.normals.cview());
@@ -172,7 +172,7 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
                  RunReport& report) {
   PhaseClock clock(ex);
   poisson::Samples& samples = sorted.samples;
-  const bool has_attributes = !field.attributes.channels.empty();
+  const bool has_attributes = !field.attributes.names.empty();
   announce(options, "splat", 0.25);
   if (has_attributes && options.confidence)
     field.attributes.weights = poisson::confidence_weights(ex, samples.normals.cview());
@@ -235,7 +235,7 @@ FieldData fit_to_points(Exec& ex, DevicePoints& points, const FitSetup& setup, c
   field.frame = setup.cube ? *setup.cube : fit_cube(ex, points, options, report);
   report.points = points.used_count();
   SortedSamples sorted = sort_into_cube(ex, points, field.frame);
-  field.attributes.channels = std::move(sorted.channels);
+  field.attributes = std::move(sorted.attributes);
   if (!setup.keep_points) points = {};
   field.tree = octree::build_octree(ex, sorted.keys.cview(), options.depth);
   sorted.keys.reset();
@@ -348,11 +348,11 @@ Attribute density_at(Exec& ex, const FieldData& field, const surface::Surface& s
   const std::int64_t n = surface.positions.size();
   auto out = exec::make_buffer<float>(ex, n);
   poisson::evaluate_density(ex, field.tree, field.density, surface.positions.cview(), out.view());
-  Attribute density{"density", AttributeType::float32, std::vector<float>(static_cast<std::size_t>(n))};
-  copy_to_host(ex, out.cview(), density.values.data());
+  std::vector<float> density(static_cast<std::size_t>(n));
+  copy_to_host(ex, out.cview(), density.data());
   const double cell = field.frame.size / static_cast<double>(std::int64_t{1} << field.tree.depth);
-  for (float& value : density.values) value = static_cast<float>(value / (cell * cell));
-  return density;
+  for (float& value : density) value = static_cast<float>(value / (cell * cell));
+  return {"density", std::move(density)};
 }
 
 /// The attribute "weakness", if it is asked for. Needs the field's values.
@@ -364,9 +364,9 @@ std::vector<Attribute> weakness_at(Exec& ex, const FieldData& field, const Optio
   auto out = exec::make_buffer<float>(ex, n);
   evaluate_weakness(ex, field.tree, field.density, field.values.data(), field.weakness, surface.positions.cview(),
                     out.view());
-  Attribute weakness{"weakness", AttributeType::float32, std::vector<float>(static_cast<std::size_t>(n))};
-  copy_to_host(ex, out.cview(), weakness.values.data());
-  return {std::move(weakness)};
+  std::vector<float> weakness(static_cast<std::size_t>(n));
+  copy_to_host(ex, out.cview(), weakness.data());
+  return {{"weakness", std::move(weakness)}};
 }
 
 /// Attributes of the samples, density, and last `others`.
@@ -374,11 +374,12 @@ template <exec::Space Exec>
 std::vector<Attribute> attributes_at(Exec& ex, const FieldData& field, const Options& options,
                                      const surface::Surface& surface, std::vector<Attribute> others) {
   std::vector<Attribute> attributes;
-  const auto keep = [&](const field::Channel& channel, exec::Buffer<float> values) {
-    attributes.push_back({channel.name, channel.type, {}});
-    download_array(ex, values, attributes.back().values);
+  for (const std::string& name : field.attributes.names) attributes.push_back({name, {}});
+  const auto keep = [&](std::size_t place, exec::TypedBuffer values) {
+    attributes[place].values = exec::download_typed(ex, std::move(values));
   };
   field::interpolate(ex, field.tree, field.attributes, surface.positions.cview(), keep);
+  field::find_labels(ex, field.tree, field.attributes, surface.positions.cview(), keep);
   if (options.density) attributes.push_back(density_at(ex, field, surface));
   std::move(others.begin(), others.end(), std::back_inserter(attributes));
   return attributes;

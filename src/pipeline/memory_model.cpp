@@ -20,7 +20,8 @@ constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
 constexpr std::int64_t kTrust = 4;
 constexpr std::int64_t kArea = 4;       // once more, with an envelope
 constexpr std::int64_t kSpacing = 16;   // trimming: key, and both again
-constexpr std::int64_t kAttribute = 4;  // of each
+constexpr std::int64_t kShare = 4;      // of an attribute that is averaged; of a weight
+constexpr std::int64_t kLabelled = 20;  // searches among points of which some lack a label
 constexpr std::int64_t kUnit = 12;      // position in the cube
 
 // Bytes a brick.
@@ -63,7 +64,7 @@ struct Model {
   const RunSize& size;
   const Options& options;
   std::int64_t points = size.points;
-  std::int64_t attributes = size.attributes;
+  const AttributeBytes& attributes = size.attributes;
   std::int64_t bricks = 0, cell_bricks = 0;
   std::int64_t occupied_bricks = 1;  // the root's
   std::int64_t most_bricks = 0;      // of one level
@@ -103,8 +104,8 @@ struct Model {
 
   /// Attributes of the samples, and what they count.
   [[nodiscard]] std::int64_t kept_attributes() const {
-    const std::int64_t weight = attributes > 0 && options.confidence ? kAttribute : 0;
-    return (kAttribute * attributes + weight) * points;
+    const std::int64_t weight = attributes.count > 0 && options.confidence ? kShare : 0;
+    return (attributes.sorted + weight) * points;
   }
 
   /// What is there from the tree to the mesh.
@@ -112,16 +113,16 @@ struct Model {
     return tree() + (is_distance() ? 0 : kResolution * bricks) + kept_attributes();
   }
   /// Positions of the samples, for their attributes.
-  [[nodiscard]] std::int64_t kept_positions() const { return attributes > 0 ? kUnit * points : 0; }
+  [[nodiscard]] std::int64_t kept_positions() const { return attributes.count > 0 ? kUnit * points : 0; }
   /// The solved field.
   [[nodiscard]] std::int64_t field() const { return kept() + kept_positions() + kept_counts() + kNodeValue * bricks; }
 
   /// The sort, or, with many attributes, these in both orders.
   [[nodiscard]] std::int64_t sort() const {
     const std::int64_t strays =
-        size.strays > 0 ? (kUploaded + kAttribute * attributes) * size.strays + kSelected * points : 0;
+        size.strays > 0 ? (kUploaded + attributes.uploaded) * size.strays + kSelected * points : 0;
     const std::int64_t gathered = kUploaded + kSorted + kKey + kOrder;
-    return strays + std::max(kSorting + kAttribute * attributes, gathered + 2 * kAttribute * attributes) * points;
+    return strays + (attributes.uploaded + std::max(kSorting, gathered + attributes.sorted)) * points;
   }
 
   /// Keys of all cell bricks, and what finding them takes: bitmaps and the bits before every word, or eight candidates
@@ -145,7 +146,7 @@ struct Model {
   /// Signed distance: the samples, whose weights, with attributes, are counted there, and a value a node.
   [[nodiscard]] std::int64_t distance() const {
     if (!is_distance()) return 0;
-    const std::int64_t weight = options.confidence && attributes == 0 ? kAttribute : 0;
+    const std::int64_t weight = options.confidence && attributes.count == 0 ? kShare : 0;
     return (kSorted + weight) * points + kept() + kept_counts() + kNodeValue * bricks;
   }
 
@@ -200,10 +201,17 @@ struct Model {
   /// One pass of up to three attributes: their means with a weight at every node, their values at the vertices.
   [[nodiscard]] std::int64_t interpolate() const {
     const auto most = static_cast<std::int64_t>(field::kAttributesAtOnce);
-    const std::int64_t at_once = std::min(attributes, most);
+    const std::int64_t at_once = std::min(attributes.averaged, most);
     if (at_once == 0) return 0;
     return kept() + kept_positions() + kept_counts() + mesh() + kNodeValue * (1 + at_once) * bricks +
-           kAttribute * at_once * vertices();
+           attributes.largest_mean * at_once * vertices();
+  }
+
+  /// The nearest sample of every vertex, and its label.
+  [[nodiscard]] std::int64_t find_labels() const {
+    if (attributes.count == attributes.averaged) return 0;
+    return kept() + kept_positions() + kept_counts() + mesh() + (attributes.gaps ? kLabelled * points : 0) +
+           (kOrder + attributes.largest_label) * vertices();
   }
 };
 
@@ -221,15 +229,38 @@ std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options
             {"extract", model.extract()},
             {"trim", model.trim()},
             {"pieces", model.pick_pieces()},
-            {"interpolate", model.interpolate()}};
-  return {{"sort", model.sort()},       {"find bricks", model.find_bricks()}, {"build tree", model.build_tree()},
-          {"density", model.density()}, {"trim limit", model.trim_limit()},   {"splat", model.splat()},
-          {"solve", model.solve()},     {"isovalue", model.isovalue()},       {"extract", model.extract()},
-          {"trim", model.trim()},       {"pieces", model.pick_pieces()},      {"interpolate", model.interpolate()}};
+            {"interpolate", model.interpolate()},
+            {"labels", model.find_labels()}};
+  return {{"sort", model.sort()},         {"find bricks", model.find_bricks()}, {"build tree", model.build_tree()},
+          {"density", model.density()},   {"trim limit", model.trim_limit()},   {"splat", model.splat()},
+          {"solve", model.solve()},       {"isovalue", model.isovalue()},       {"extract", model.extract()},
+          {"trim", model.trim()},         {"pieces", model.pick_pieces()},      {"interpolate", model.interpolate()},
+          {"labels", model.find_labels()}};
 }
 
-std::int64_t uploaded_bytes(std::int64_t points, std::int64_t attributes) {
-  return (kUploaded + kAttribute * attributes) * points;
+std::int64_t uploaded_bytes(std::int64_t points, const AttributeBytes& attributes) {
+  return (kUploaded + attributes.uploaded) * points;
+}
+
+AttributeBytes bytes_of(const std::vector<Attribute>& attributes, bool kept) {
+  AttributeBytes bytes;
+  if (!kept) return bytes;
+  for (const Attribute& attribute : attributes) {
+    const auto width = static_cast<std::int64_t>(size_of(attribute.type()));
+    const std::int64_t mask = attribute.values.has_mask() ? 1 : 0;
+    ++bytes.count;
+    bytes.uploaded += width + mask;
+    if (attribute.is_label()) {
+      bytes.sorted += width + mask;
+      bytes.largest_label = std::max(bytes.largest_label, width + mask);
+      bytes.gaps = bytes.gaps || mask > 0;
+    } else {
+      bytes.sorted += kShare;
+      ++bytes.averaged;
+      bytes.largest_mean = std::max(bytes.largest_mean, width);
+    }
+  }
+  return bytes;
 }
 
 }  // namespace pointskin::detail

@@ -16,6 +16,7 @@
 #include "exec/host_array.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
+#include "exec/typed_buffer.hpp"
 #include "field/attributes.hpp"
 #include "octree/frame.hpp"
 #include "octree/strays.hpp"
@@ -27,8 +28,9 @@ namespace pointskin::detail {
 /// An attribute in a space, in the caller's order.
 struct DeviceAttribute {
   std::string name;
-  AttributeType type = AttributeType::float32;
-  exec::Buffer<float> values;
+  exec::TypedBuffer values;
+
+  [[nodiscard]] bool is_label() const { return pointskin::is_label(name, values.type); }
 };
 
 /// A cloud in a space, in the caller's order and coordinates.
@@ -70,10 +72,10 @@ void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points
 
 /// The points to use, in the order of their keys.
 struct SortedSamples {
-  poisson::Samples samples;              ///< positions in the unit cube, normals as they came
-  exec::Buffer<std::uint64_t> keys;      ///< (n) point keys
-  std::vector<field::Channel> channels;  ///< the attributes
-  exec::Buffer<std::uint8_t> added;      ///< as DevicePoints::added
+  poisson::Samples samples;            ///< positions in the unit cube, normals as they came
+  exec::Buffer<std::uint64_t> keys;    ///< (n) point keys
+  field::AttributeSamples attributes;  ///< without positions and weights
+  exec::Buffer<std::uint8_t> added;    ///< as DevicePoints::added
 };
 
 /// Moves the points to use into the unit cube and sorts them. Points that differ in nothing else are sorted by their

@@ -2,12 +2,12 @@
 
 #include <pointskin/error.hpp>
 
-#include <cstring>
 #include <limits>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "core/mix_bits.hpp"
 #include "exec/algorithms.hpp"
 #include "exec/host_array.hpp"
 #include "octree/octree_data.hpp"
@@ -31,35 +31,29 @@ struct Turn {
   }
 };
 
-/// Mixes the bits of a point; equal points have equal hashes. Source: the finaliser of MurmurHash3.
+/// Mixes the bits of a point; equal points have equal hashes.
 struct HashPoint {
   ArrayView<const Vec3f> positions, normals;
   ArrayView<std::uint64_t> hashes;
   octree::Selection selection{};
 
-  PSK_HD static std::uint64_t mix(std::uint64_t hash, float value) {
-    std::uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * 0xff51afd7ed558ccdULL;
-    return hash ^ hash >> 33;
-  }
   PSK_HD void operator()(std::int64_t i) const {
     const std::int64_t from = selection(i);
     const Vec3f p = positions[from];
     const Vec3f n = normals.empty() ? Vec3f{} : normals[from];
-    hashes[i] = mix(mix(mix(mix(mix(mix(0x9e3779b97f4a7c15ULL, p.x), p.y), p.z), n.x), n.y), n.z);
+    hashes[i] = mix_vector(mix_vector(kHashSeed, p), n);
   }
 };
 
 /// Mixes an attribute into the lower half of a point's hash. Points that differ otherwise keep the order that they have
 /// without attributes, so that the surface does not depend on these.
 struct HashAttribute {
-  ArrayView<const float> values;
+  TypedView values;
   ArrayView<std::uint64_t> hashes;
   octree::Selection selection{};
   PSK_HD void operator()(std::int64_t i) const {
     constexpr std::uint64_t kLower = 0xffffffff;
-    hashes[i] = (hashes[i] & ~kLower) | (HashPoint::mix(hashes[i], values[selection(i)]) & kLower);
+    hashes[i] = (hashes[i] & ~kLower) | (values.mixed_into(hashes[i], selection(i)) & kLower);
   }
 };
 
@@ -103,6 +97,26 @@ inline void require_finite(const Flaws& flaws) {
         ErrorCode::invalid_input,
         std::to_string(flaws.not_finite) + " points have coordinates or normals that are not finite; leave them out");
 }
+
+/// The attributes in the order of the samples.
+/// @param order  index of the caller's point of every sample
+template <exec::Space Exec>
+field::AttributeSamples sort_attributes(Exec& ex, const DevicePoints& points, ArrayView<const std::int32_t> order) {
+  field::AttributeSamples sorted;
+  for (const DeviceAttribute& attribute : points.attributes) {
+    const std::size_t place = sorted.names.size();
+    sorted.names.push_back(attribute.name);
+    const TypedView values = attribute.values.view();
+    if (attribute.is_label()) {
+      sorted.labels.push_back({place, exec::gather_typed(ex, values, order)});
+      continue;
+    }
+    const field::ValueRange range = field::find_range(ex, values, points.used.cview());
+    sorted.channels.push_back(field::make_channel(ex, place, values, range, order));
+  }
+  return sorted;
+}
+
 inline void require_normals(const Flaws& flaws) {
   if (flaws.with_normal == 0)
     throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
@@ -170,8 +184,7 @@ std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, con
     if (n != cloud.size())
       throw Error(ErrorCode::invalid_input, "the attribute " + from.name + " has " + std::to_string(n) +
                                                 " values for " + std::to_string(cloud.size()) + " points");
-    attributes.push_back({names[a], from.type, exec::make_buffer<float>(ex, n)});
-    copy_to_device(ex, from.values.data(), attributes.back().values.view());
+    attributes.push_back({names[a], exec::upload_typed(ex, from.values)});
   }
   return attributes;
 }
@@ -186,7 +199,7 @@ SortedSamples sort_into_cube(Exec& ex, const DevicePoints& points, const octree:
   for_each(ex, "octree.hash", n,
            points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view(), selection});
   for (const DeviceAttribute& attribute : points.attributes)
-    for_each(ex, "octree.hash", n, points::HashAttribute{attribute.values.cview(), hashes.view(), selection});
+    for_each(ex, "octree.hash", n, points::HashAttribute{attribute.values.view(), hashes.view(), selection});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   hashes.reset();
   SortedSamples out;
@@ -205,11 +218,7 @@ SortedSamples sort_into_cube(Exec& ex, const DevicePoints& points, const octree:
     exec::gather(ex, points.added.cview(), sorted.order.cview(), out.added.view());
   }
   out.keys = std::move(sorted.keys);
-  for (const DeviceAttribute& attribute : points.attributes) {
-    auto values = exec::make_buffer<float>(ex, n);
-    exec::gather(ex, attribute.values.cview(), sorted.order.cview(), values.view());
-    out.channels.push_back(field::make_channel(ex, attribute.name, attribute.type, std::move(values)));
-  }
+  out.attributes = points::sort_attributes(ex, points, sorted.order.cview());
   return out;
 }
 

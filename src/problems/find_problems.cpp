@@ -28,9 +28,10 @@ void check(const Mesh& mesh, const ProblemOptions& options) {
         throw Error(ErrorCode::invalid_input, "a triangle names a vertex that does not exist");
 }
 
-const std::vector<float>& weakness_of(const Mesh& mesh) {
+std::vector<float> weakness_of(const Mesh& mesh) {
   for (const Attribute& attribute : mesh.attributes)
-    if (attribute.name == "weakness" && attribute.values.size() == mesh.vertices.size()) return attribute.values;
+    if (attribute.name == "weakness" && attribute.values.size() == mesh.vertices.size())
+      return attribute.values.converted(AttributeType::float32).as<float>();
   throw Error(ErrorCode::usage, "the mesh has no attribute \"weakness\"; reconstruct it with the option weakness");
 }
 
@@ -136,7 +137,7 @@ problems::Place place_of(const Mesh& mesh, const std::vector<float>& weakness, c
 
 std::vector<ProblemRegion> find_problems(const Mesh& mesh, const ProblemOptions& options) {
   check(mesh, options);
-  const std::vector<float>& weakness = weakness_of(mesh);
+  const std::vector<float> weakness = weakness_of(mesh);
   Sets sets(mesh.vertices.size());
   std::vector<std::size_t> weak;
   double mesh_area = 0;

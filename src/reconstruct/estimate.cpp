@@ -29,8 +29,8 @@ struct CellKeyOfPoint {
   }
 };
 
-std::int64_t kept_attributes(const Cloud& cloud, const Options& options) {
-  return options.attributes ? static_cast<std::int64_t>(cloud.attributes.size()) : 0;
+detail::AttributeBytes kept_attributes(const Cloud& cloud, const Options& options) {
+  return detail::bytes_of(cloud.attributes, options.attributes);
 }
 
 ArrayView<const Vec3f> positions_of(const Cloud& cloud) { return {cloud.positions.data(), cloud.size()}; }

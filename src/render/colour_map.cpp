@@ -132,27 +132,26 @@ Colour diverging_colour(double t) {
 Colour no_value_colour() { return from_srgb(0.60, 0.60, 0.60); }
 
 ValueView find_values(const Vertices& vertices, const std::string& name) {
-  if (const Attribute* attribute = vertices.find(name)) return {attribute->values.data(), 1, vertices.size(), 0, false};
+  if (const Attribute* attribute = vertices.find(name)) return {.values = &attribute->values};
   constexpr std::array<float Vec3f::*, 3> kAxes = {&Vec3f::x, &Vec3f::y, &Vec3f::z};
   for (std::size_t a = 0; a < 3; ++a) {
-    if (name != std::string(1, "xyz"[a])) continue;
-    const float* first = vertices.positions.empty() ? nullptr : &(vertices.positions.front().*kAxes[a]);
-    return {first, 3, vertices.size(), vertices.origin[a], true};
+    if (name == std::string(1, "xyz"[a]))
+      return {.places = &vertices.positions, .axis = kAxes[a], .offset = vertices.origin[a]};
   }
   throw Error(ErrorCode::usage, std::string("the ") + vertices.owner + " has no attribute '" + name +
                                     "' to colour by; there are " + names_of(vertices));
 }
 
 std::optional<ValueRange> usual_range(const ValueView& values) {
-  std::vector<float> finite;
-  finite.reserve(values.count);
-  for (std::size_t i = 0; i < values.count; ++i)
+  std::vector<double> finite;
+  finite.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isfinite(values.stored(i))) finite.push_back(values.stored(i));
   if (finite.empty()) return std::nullopt;
   const auto rank = [&](double share) {
     const auto at = static_cast<std::ptrdiff_t>(std::floor(share * static_cast<double>(finite.size() - 1) + 0.5));
     std::nth_element(finite.begin(), finite.begin() + at, finite.end());
-    return values.offset + static_cast<double>(finite[static_cast<std::size_t>(at)]);
+    return values.offset + finite[static_cast<std::size_t>(at)];
   };
   const ValueRange range{rank(0.01), rank(0.99)};
   return range.low < range.high ? range : ValueRange{rank(0), rank(1)};
@@ -161,7 +160,7 @@ std::optional<ValueRange> usual_range(const ValueView& values) {
 ColourScale::ColourScale(const ValueView& values, const ValueRange& range, ColourMap map)
     : range_(widened(range)), stored_low_(range_.low - values.offset), per_value_(1 / (range_.high - range_.low)) {
   look_at(values);
-  const bool automatic = map == ColourMap::automatic && !values.coordinate && has_two_signs(range_);
+  const bool automatic = map == ColourMap::automatic && !values.is_coordinate() && has_two_signs(range_);
   const bool diverging = map == ColourMap::diverging || automatic;
   const double largest = std::max(std::abs(range_.low), std::abs(range_.high));
   for (std::size_t i = 0; i <= kTableSize; ++i) {
@@ -180,10 +179,11 @@ ColourScale::ColourScale(const ValueView& values, const ValueRange& range, Colou
 
 void ColourScale::look_at(const ValueView& values) {
   const double stored_high = range_.high - values.offset;
-  for (std::size_t i = 0; i < values.count; ++i) {
-    goes_below_ = goes_below_ || static_cast<double>(values.stored(i)) < stored_low_;
-    goes_above_ = goes_above_ || static_cast<double>(values.stored(i)) > stored_high;
-    has_none_ = has_none_ || std::isnan(values.stored(i));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double stored = values.stored(i);
+    goes_below_ = goes_below_ || stored < stored_low_;
+    goes_above_ = goes_above_ || stored > stored_high;
+    has_none_ = has_none_ || std::isnan(stored);
   }
 }
 

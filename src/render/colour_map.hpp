@@ -19,14 +19,19 @@ Colour diverging_colour(double t);
 /// Where there is no value.
 Colour no_value_colour();
 
-/// The values of an attribute, or a coordinate.
+/// The values of an attribute, or a coordinate. What they are of must outlive it.
 struct ValueView {
-  const float* first = nullptr;
-  std::size_t step = 1, count = 0;
+  const AttributeValues* values = nullptr;     ///< null: of a coordinate
+  const std::vector<Vec3f>* places = nullptr;  ///< of a coordinate
+  float Vec3f::*axis = nullptr;
   double offset = 0;  ///< added to what is stored, so that coordinates keep their digits
-  bool coordinate = false;
 
-  [[nodiscard]] float stored(std::size_t i) const { return first[i * step]; }
+  [[nodiscard]] bool is_coordinate() const { return values == nullptr; }
+  [[nodiscard]] std::size_t size() const { return is_coordinate() ? places->size() : values->size(); }
+  /// NaN where there is none.
+  [[nodiscard]] double stored(std::size_t i) const {
+    return is_coordinate() ? static_cast<double>((*places)[i].*axis) : values->at(i);
+  }
 };
 
 /// @throws Error usage, listing what there is, if nothing is called `name`

@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pointskin::render_detail {
@@ -14,9 +15,16 @@ using mesh_detail::times;
 /// A multiple of 255, so that bytes fall on entries.
 constexpr int kDecodedSteps = 255 * 16;
 
-bool counts_to_255(const Attribute& channel) {
-  return channel.type == AttributeType::uint8 ||
-         std::any_of(channel.values.begin(), channel.values.end(), [](float v) { return v > 1; });
+/// What is white: the most that bytes and numbers of 16 bits hold, else 1 or, if one is larger, 255.
+double white_of(const std::array<const Attribute*, 3>& channels) {
+  double white = 1;
+  for (const Attribute* channel : channels) {
+    if (channel->type() == AttributeType::uint16) return 65535;
+    const bool exceeds = channel->values.visit(
+        [](const auto& values) { return std::any_of(values.begin(), values.end(), [](auto v) { return v > 1; }); });
+    if (channel->type() == AttributeType::uint8 || exceeds) white = 255;
+  }
+  return white;
 }
 
 }  // namespace
@@ -37,14 +45,13 @@ Paint::Paint(const Vertices& vertices, const RenderOptions& options) {
 
 void Paint::use_channels(const Vertices& vertices) {
   constexpr const char* kNames[3] = {"red", "green", "blue"};
-  bool to_255 = false;
-  for (const char* name : kNames) {
-    const Attribute* const channel = vertices.find(name);
-    if (channel == nullptr) return;
-    to_255 = to_255 || counts_to_255(*channel);
+  std::array<const Attribute*, 3> found{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    found[k] = vertices.find(kNames[k]);
+    if (found[k] == nullptr) return;
   }
-  for (std::size_t k = 0; k < 3; ++k) channels_[k] = vertices.find(kNames[k])->values.data();
-  to_table_ = static_cast<float>(kDecodedSteps) / (to_255 ? 255.0F : 1.0F);
+  for (std::size_t k = 0; k < 3; ++k) channels_[k] = &found[k]->values;
+  to_table_ = kDecodedSteps / white_of(found);
   for (int i = 0; i <= kDecodedSteps; ++i)
     decoded_.push_back(static_cast<float>(decode_srgb(static_cast<double>(i) / kDecodedSteps)));
 }
@@ -52,15 +59,15 @@ void Paint::use_channels(const Vertices& vertices) {
 Colour Paint::channels(std::size_t vertex) const {
   Colour colour{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const float place = channels_[k][vertex] * to_table_;
+    const double place = channels_[k]->at(vertex) * to_table_;
     if (std::isnan(place)) return clay_;
-    colour[k] = decoded_[static_cast<std::size_t>(std::clamp(place, 0.0F, float{kDecodedSteps}) + 0.5F)];
+    colour[k] = decoded_[static_cast<std::size_t>(std::clamp(place, 0.0, double{kDecodedSteps}) + 0.5)];
   }
   return colour;
 }
 
 Colour Paint::at(std::size_t vertex) const {
-  if (scale_) return scale_->of_stored(static_cast<double>(values_.stored(vertex)));
+  if (scale_) return scale_->of_stored(values_.stored(vertex));
   return channels_[0] != nullptr ? channels(vertex) : clay_;
 }
 
@@ -69,7 +76,7 @@ Colour Paint::at(const Triangle& t, const Vec3d& weights) const {
                               static_cast<std::size_t>(t[2])};
   if (scale_) {
     double value = 0;
-    for (std::size_t k = 0; k < 3; ++k) value += weights[k] * static_cast<double>(values_.stored(ids[k]));
+    for (std::size_t k = 0; k < 3; ++k) value += weights[k] * values_.stored(ids[k]);
     return scale_->of_stored(value);
   }
   if (channels_[0] == nullptr) return clay_;

@@ -39,9 +39,9 @@ class Paint {
   Colour clay_ = render_detail::clay();
   ValueView values_;
   std::optional<ColourScale> scale_;
-  const float* channels_[3] = {};  // red, green, blue; null: none
-  float to_table_ = 0;             // from a channel to a place in decoded_
-  std::vector<float> decoded_;     // linear light of evenly spaced encoded values in [0, 1]
+  const AttributeValues* channels_[3] = {};  // red, green, blue; null: none
+  double to_table_ = 0;                      // from a channel to a place in decoded_
+  std::vector<float> decoded_;               // linear light of evenly spaced encoded values in [0, 1]
 };
 
 }  // namespace pointskin::render_detail

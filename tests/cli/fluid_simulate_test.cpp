@@ -61,7 +61,7 @@ TEST_F(FluidSimulate, WritesMeshesAndParticlesOfEveryFrame) {
     ASSERT_EQ(particles.attributes.size(), 3U);
     EXPECT_EQ(particles.attributes[1].name, "velocity_y");
     if (frame == 0) {
-      EXPECT_EQ(particles.attributes[1].values, std::vector<float>(1000, 0.0F));
+      EXPECT_EQ(particles.attributes[1].values.as<float>(), std::vector<float>(1000, 0.0F));
     }
   }
   EXPECT_GT(report["frames"][10]["kinetic_energy"], 0);

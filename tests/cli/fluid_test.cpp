@@ -74,7 +74,7 @@ TEST_F(FluidCommand, WritesAWatertightMeshWithVelocities) {
   EXPECT_NEAR(report.volume, 1728, 0.15 * 1728);  // edges and corners are rounded
   ASSERT_EQ(mesh.attributes.size(), 3U);
   EXPECT_EQ(mesh.attributes[2].name, "velocity_z");
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) EXPECT_NEAR(mesh.attributes[0].values[v], 1, 1e-5);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) EXPECT_NEAR(mesh.attributes[0].values.at(v), 1, 1e-5);
 }
 
 TEST_F(FluidCommand, WritesSequencesInNaturalOrderWhateverRunsTogether) {

@@ -20,19 +20,17 @@ using Args = std::vector<std::string>;
 /// A sphere; below the equator red, above it blue, where green counts up as bytes do; `height` is z.
 Cloud painted_sphere(int count, const Vec3f& centre = {}) {
   Cloud cloud;
-  Attribute red{"red", AttributeType::uint8, {}};
-  Attribute green{"green", AttributeType::uint8, {}};
-  Attribute blue{"blue", AttributeType::uint8, {}};
-  Attribute height{"height", AttributeType::float32, {}};
+  std::vector<std::uint8_t> red, green, blue;
+  std::vector<float> height;
   for (const Sample& s : sphere(count, centre)) {
     cloud.positions.push_back(s.position);
     cloud.normals.push_back(s.normal);
-    red.values.push_back(s.normal.z < 0 ? 255 : 0);
-    green.values.push_back(static_cast<float>(cloud.positions.size() % 256));
-    blue.values.push_back(s.normal.z < 0 ? 0 : 255);
-    height.values.push_back(s.position.z);
+    red.push_back(s.normal.z < 0 ? 255 : 0);
+    green.push_back(static_cast<std::uint8_t>(cloud.positions.size() % 256));
+    blue.push_back(s.normal.z < 0 ? 0 : 255);
+    height.push_back(s.position.z);
   }
-  cloud.attributes = {red, green, blue, height};
+  cloud.attributes = {{"red", red}, {"green", green}, {"blue", blue}, {"height", height}};
   return cloud;
 }
 
@@ -81,8 +79,8 @@ TEST_F(KeepAttributes, WritesThemUnderTheirNamesAndTypes) {
       << header;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const float z = mesh.vertices[i].z;
-    ASSERT_NEAR(named(mesh, "height").values[i], z, 0.1);
-    const float red = named(mesh, "red").values[i];
+    ASSERT_NEAR(named(mesh, "height").values.at(i), z, 0.1);
+    const double red = named(mesh, "red").values.at(i);
     ASSERT_TRUE(z > -0.15 || red > 240) << red << " at height " << z;
     ASSERT_TRUE(z < 0.15 || red < 15) << red << " at height " << z;
   }
@@ -116,10 +114,10 @@ TEST_F(KeepAttributes, OfOneInputAreThoseOfItsPoints) {  // two spheres apart, o
   for (const Args& inputs : {Args{input_, bare}, Args{bare, input_}}) {
     const Mesh mesh = mesh_with({"--keep-attributes"}, inputs);
     ASSERT_EQ(names_of(mesh), (std::vector<std::string>{"red", "green", "blue", "height"}));
-    EXPECT_EQ(mesh.attributes[0].type, AttributeType::uint8);
+    EXPECT_EQ(mesh.attributes[0].type(), AttributeType::uint8);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
       const Vec3f& p = mesh.vertices[i];
-      ASSERT_TRUE(p.x > 1.1 || p.z > -0.15 || mesh.attributes[0].values[i] > 240);
+      ASSERT_TRUE(p.x > 1.1 || p.z > -0.15 || mesh.attributes[0].values.at(i) > 240);
     }
   }
 }
@@ -132,17 +130,17 @@ TEST_F(KeepAttributes, OfADroppedPointGoWithIt) {  // the others keep theirs
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const Mesh mesh = read_mesh(output_);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    ASSERT_NEAR(named(mesh, "height").values[i], mesh.vertices[i].z, 0.1);
+    ASSERT_NEAR(named(mesh, "height").values.at(i), mesh.vertices[i].z, 0.1);
 }
 
 TEST_F(KeepAttributes, NamedDensityMakesRoomForTheMeshsOwn) {
   Cloud cloud = painted_sphere(3000);
-  cloud.attributes = {{"density", AttributeType::float32, std::vector<float>(3000, 5.0F)}};
+  cloud.attributes = {{"density", std::vector<float>(3000, 5.0F)}};
   write_cloud(input_, cloud);
   EXPECT_EQ(names_of(mesh_with({"--keep-attributes"})), (std::vector<std::string>{"density"}));
   const Mesh both = mesh_with({"--keep-attributes", "--density"});
   EXPECT_EQ(names_of(both), (std::vector<std::string>{"input_density", "density"}));
-  EXPECT_EQ(both.attributes[0].values, std::vector<float>(both.vertices.size(), 5.0F));
+  EXPECT_EQ(both.attributes[0].values.as<float>(), std::vector<float>(both.vertices.size(), 5.0F));
 }
 
 TEST_F(KeepAttributes, GivesObjFilesColours) {

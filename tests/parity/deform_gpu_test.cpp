@@ -49,8 +49,10 @@ TEST_F(DeformOnGpu, GivesTheBytesOfTheCpuForAllRegionsTransformsAndLattices) {
   Deformation deformation = test::twist_and_pull();
   deformation.handles.push_back({PointSet{{5, 6, 7}}, RigidMotion{.axis = {0, 1, 0}, .angle = 40}});
   Cloud cloud = test::torus_cloud(30000, 3);
-  cloud.attributes.push_back({"height", AttributeType::float32, {}});
-  for (const Vec3f& p : cloud.positions) cloud.attributes.back().values.push_back(p.z);
+  cloud.attributes = {
+      test::attribute_of<float>("height", cloud.positions, [](const Vec3f& p) { return p.z; }),
+      test::attribute_of<double>("gps_time", cloud.positions, [](const Vec3f& p) { return 4e8 + p.x; }),
+      test::attribute_of<std::int32_t>("label", cloud.positions, [](const Vec3f& p) { return 1e9 * p.y; })};
   Options options = shallow(7);
   options.attributes = true;
   expect_parity(cloud, deformation, options);

@@ -87,7 +87,7 @@ TEST_F(GpuEdits, FillAndRemoveAlike) {
 
 TEST_F(GpuEdits, InsertAndSnapAlike) {
   Cloud base = test::torus_cloud(40'000, 4);
-  base.attributes.push_back({"red", AttributeType::uint8, std::vector<float>(40'000, 100)});
+  base.attributes = {{"red", std::vector<std::uint8_t>(40'000, 100)}, {"label", std::vector<std::int32_t>(40'000, 7)}};
   Insert insert;
   insert.part = std::make_shared<const Cloud>(test::torus_cloud(20'000, 5, 1, 0.35, {0.02, 0.01, -0.02}));
   insert.lower = {0, -2, -2};

@@ -39,12 +39,15 @@ class FluidOnGpu : public test::GpuTest {
 
 TEST_F(FluidOnGpu, GivesTheBytesOfTheCpuForAllFramesAndOptions) {
   for (test::NamedParticles& frame : test::particle_frames(7)) {
-    frame.cloud.attributes.push_back({"vx", AttributeType::float32, {}});
-    frame.cloud.attributes.push_back({"red", AttributeType::uint8, {}});
-    for (const Vec3f& p : frame.cloud.positions) {
-      frame.cloud.attributes[0].values.push_back(p.x * p.y);
-      frame.cloud.attributes[1].values.push_back(p.z > 0 ? 200 : 20);
-    }
+    const std::vector<Vec3f>& at = frame.cloud.positions;
+    frame.cloud.attributes = {
+        test::attribute_of<float>("vx", at, [](const Vec3f& p) { return p.x * p.y; }),
+        test::attribute_of<std::uint8_t>("red", at, [](const Vec3f& p) { return p.z > 0 ? 200 : 20; }),
+        test::attribute_of<double>("time", at, [](const Vec3f& p) { return 4e8 + p.x; }),
+        test::attribute_of<std::int32_t>("id", at, [](const Vec3f& p) { return 1e6 * p.x + 1e3 * p.y; }),
+        test::attribute_of<std::uint8_t>("phase", at, [](const Vec3f& p) { return p.z > 0 ? 1 : 0; }),
+        test::attribute_of<std::int16_t>("part", at, [](const Vec3f& p) { return 100 * p.z; })};
+    for (std::size_t i = 0; i < at.size(); i += 3) frame.cloud.attributes.back().values.set_missing(i);
     for (const FluidKernel kernel : {FluidKernel::isotropic, FluidKernel::anisotropic})
       for (const double cube_size : {0.5, 1.0, 1.7})
         for (const int smoothing : {0, 7}) {

@@ -199,20 +199,25 @@ TEST_P(GpuOnCloud, TrimsToTheSameBytesAsTheCpu) {
   if (!cpu_error) expect_parity(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01});
 }
 
-/// Colours, a scalar that half of the points lack, and points that differ in their colours alone.
+/// Attributes of all kinds, of which points lack some, and points that differ in nothing else.
 Cloud coloured(Cloud cloud, std::uint64_t seed) {
   test::append(cloud, Cloud(cloud));
   test::Random random(seed);
-  for (const char* name : {"red", "green", "blue", "x", "y"}) {
-    Attribute a{name, name[1] != 0 ? AttributeType::uint8 : AttributeType::float32, {}};
-    for (std::int64_t i = 0; i < cloud.size(); ++i) {
-      const bool is_missing = name[0] == 'x' && random.below(2) == 0;
-      a.values.push_back(is_missing                       ? std::numeric_limits<float>::quiet_NaN()
-                         : a.type == AttributeType::uint8 ? static_cast<float>(random.below(256))
-                                                          : static_cast<float>(random.in(-1e6, 1e6)));
-    }
-    cloud.attributes.push_back(std::move(a));
-  }
+  const auto add = [&](const char* name, AttributeType type, double lowest, double highest) {
+    AttributeValues values(AttributeType::float64, cloud.positions.size());
+    for (double& v : values.edit<double>()) v = random.in(lowest, highest);
+    cloud.attributes.push_back({name, values.converted(type)});
+  };
+  for (const char* name : {"red", "green", "blue"}) add(name, AttributeType::uint8, 0, 255);
+  for (const char* name : {"x", "y"}) add(name, AttributeType::float32, -1e6, 1e6);
+  add("gps_time", AttributeType::float64, 4e8, 4e8 + 1);
+  add("intensity", AttributeType::uint16, 0, 65535);
+  add("label", AttributeType::int32, -2147483648.0, 2147483647.0);
+  add("segment", AttributeType::uint8, 0, 4);
+  add("id", AttributeType::uint64, 0, 1e18);
+  for (const std::size_t a : {3U, 6U, 8U, 9U})  // the last two lack other points each
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+      if (random.below(2) == 0) cloud.attributes[a].values.set_missing(i);
   return cloud;
 }
 

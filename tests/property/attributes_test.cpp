@@ -11,6 +11,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,8 @@ using Function = std::function<double(const Vec3f&)>;
 
 Attribute attribute(const Cloud& cloud, const std::string& name, const Function& f,
                     AttributeType type = AttributeType::float32) {
-  Attribute result{name, type, {}};
-  for (const Vec3f& p : cloud.positions) result.values.push_back(static_cast<float>(f(p)));
-  return result;
+  const Attribute wide = test::attribute_of<double>(name, cloud.positions, f);
+  return {name, wide.values.converted(type)};
 }
 
 /// A colour, as bytes, and a scalar.
@@ -60,7 +60,7 @@ double steepest(const Mesh& mesh, const Attribute& attribute, double shortest) {
       const Vec3f& p = mesh.vertices[a];
       const Vec3f& q = mesh.vertices[b];
       const double length = std::max(shortest, double{std::hypot(p.x - q.x, p.y - q.y, p.z - q.z)});
-      worst = std::max(worst, std::abs(attribute.values[a] - attribute.values[b]) / length);
+      worst = std::max(worst, std::abs(attribute.values.at(a) - attribute.values.at(b)) / length);
     }
   return worst;
 }
@@ -73,18 +73,16 @@ TEST(KeptAttributes, AreLeftOutUnlessAskedFor) {
 TEST(KeptAttributes, ComeByNameAndTypeAndLeaveTheSurfaceAsItIs) {
   Cloud cloud = coloured(test::torus_cloud(20'000, 3), 4);
   test::append(cloud, Cloud(cloud));  // repeated points, in whose order attributes have a say
-  for (Attribute& a : cloud.attributes) {
-    const std::vector<float> once = a.values;
-    a.values.insert(a.values.end(), once.rbegin(), once.rend());
-  }
+  std::vector<std::int64_t> twice(40'000);
+  std::iota(twice.begin(), twice.begin() + 20'000, 0);
+  std::iota(twice.rbegin(), twice.rbegin() + 20'000, 0);
+  for (Attribute& a : cloud.attributes) a.values = a.values.gather(twice);
   Mesh mesh = reconstructed(cloud, {.depth = 7, .attributes = true});
   ASSERT_EQ(names_of(mesh), (std::vector<std::string>{"red", "green", "blue", "height"}));
   for (std::size_t a = 0; a < 4; ++a) {
-    EXPECT_EQ(mesh.attributes[a].type, cloud.attributes[a].type);
+    EXPECT_EQ(mesh.attributes[a].type(), cloud.attributes[a].type());
     EXPECT_EQ(mesh.attributes[a].values.size(), mesh.vertices.size());
   }
-  for (std::size_t a = 0; a < 3; ++a)
-    for (const float v : mesh.attributes[a].values) ASSERT_TRUE(v >= 0 && v <= 255 && v == std::floor(v)) << v;
   mesh.attributes.clear();
   expect_same_bytes(mesh, reconstructed(cloud, {.depth = 7}));
 }
@@ -95,8 +93,8 @@ TEST(KeptAttributes, ThatAreTheSameEverywhereComeBackExactly) {
                           cloud, "byte", [](const Vec3f&) { return 77; }, AttributeType::uint8),
                       attribute(cloud, "scalar", [](const Vec3f&) { return 0.1; })};
   const Mesh mesh = reconstructed(cloud, {.depth = 8, .attributes = true});
-  for (const float v : mesh.attributes[0].values) ASSERT_EQ(v, 77);
-  for (const float v : mesh.attributes[1].values) ASSERT_EQ(v, 0.1F);
+  for (const std::uint8_t v : mesh.attributes[0].values.as<std::uint8_t>()) ASSERT_EQ(v, 77);
+  for (const float v : mesh.attributes[1].values.as<float>()) ASSERT_EQ(v, 0.1F);
 }
 
 /// Every sample within a hat is at most a cell away along each axis; the level above has an eighth of its weight.
@@ -109,7 +107,7 @@ TEST(KeptAttributes, FollowALinearFunctionToAboutACell) {
     const double cell = 2.2 / (1 << depth);
     double squares = 0;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-      const double error = mesh.attributes[0].values[i] - f(mesh.vertices[i]);
+      const double error = mesh.attributes[0].values.at(i) - f(mesh.vertices[i]);
       squares += error * error;
       ASSERT_LT(std::abs(error), 1.5 * cell * std::sqrt(14)) << "depth " << depth;
     }
@@ -121,17 +119,17 @@ TEST(KeptAttributes, StayInTheRangeOfTheInput) {
   test::Random random(7);
   Cloud cloud = test::thin_plate_cloud(20'000, 8, 0.1);
   cloud.attributes = {attribute(cloud, "noise", [&random](const Vec3f&) { return random.in(-3, 5); })};
-  const std::vector<float>& input = cloud.attributes[0].values;
+  const std::vector<float>& input = cloud.attributes[0].values.as<float>();
   const auto [low, high] = std::minmax_element(input.begin(), input.end());
   const Mesh mesh = reconstructed(cloud, {.depth = 7, .attributes = true});
-  for (const float v : mesh.attributes[0].values) ASSERT_TRUE(v >= *low && v <= *high) << v;
+  for (const float v : mesh.attributes[0].values.as<float>()) ASSERT_TRUE(v >= *low && v <= *high) << v;
 }
 
 TEST(KeptAttributes, HaveTheSameBytesForAnyThreadsAndAnyOrderOfThePoints) {
   Cloud cloud = test::linked_tori_cloud(20'000, 9);
   test::append(cloud, Cloud(cloud));  // the same points in other colours
   cloud = coloured(cloud, 10);
-  for (std::size_t i = 0; i < cloud.attributes[3].values.size(); i += 3) cloud.attributes[3].values[i] = kNan;
+  for (std::size_t i = 0; i < cloud.positions.size(); i += 3) cloud.attributes[3].values.set_missing(i);
   for (const bool confidence : {false, true}) {
     const Options options{.depth = 7, .confidence = confidence, .attributes = true};
     const Mesh one = reconstructed(cloud, options, 1);
@@ -145,11 +143,11 @@ TEST(KeptAttributes, AreThoseOfThePointsThatHaveThem) {  // missing values chang
   Cloud cloud = test::sphere_cloud(20'000, 13);
   cloud.attributes = {attribute(cloud, "x", [](const Vec3f& p) { return p.x; })};
   test::Random random(14);
-  for (float& v : cloud.attributes[0].values)
+  for (float& v : cloud.attributes[0].values.edit<float>())
     if (random.below(2) == 0) v = random.below(2) == 0 ? kNan : std::numeric_limits<float>::infinity();
   const Mesh mesh = reconstructed(cloud, {.depth = 6, .attributes = true});
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    ASSERT_NEAR(mesh.attributes[0].values[i], mesh.vertices[i].x, 2 * 2.2 / 64);
+    ASSERT_NEAR(mesh.attributes[0].values.at(i), mesh.vertices[i].x, 2 * 2.2 / 64);
 }
 
 /// Points of a sphere without a cap, in two halves of different value: the step is a cell wide where there are points,
@@ -185,17 +183,17 @@ TEST(KeptAttributes, GoOnSmoothlyIntoHoles) {
 TEST(KeptAttributes, OfDoubtfulPointsCountLessWithConfidence) {
   Cloud cloud = test::sphere_cloud(20'000, 16);
   test::append(cloud, test::sphere_cloud(20'000, 17));
-  Attribute value{"value", AttributeType::float32, std::vector<float>(40'000, 0.0F)};
+  std::vector<float> value(40'000, 0.0F);
   for (std::size_t i = 20'000; i < 40'000; ++i) {
-    value.values[i] = 1;
+    value[i] = 1;
     Vec3f& n = cloud.normals[i];
     n = {n.x / 100, n.y / 100, n.z / 100};
   }
-  cloud.attributes = {value};
+  cloud.attributes = {{"value", std::move(value)}};
   const auto mean_with = [&](bool confidence) {
     const Mesh mesh = reconstructed(cloud, {.depth = 6, .confidence = confidence, .attributes = true});
     double sum = 0;
-    for (const float v : mesh.attributes[0].values) sum += v;
+    for (const float v : mesh.attributes[0].values.as<float>()) sum += v;
     return sum / static_cast<double>(mesh.vertices.size());
   };
   EXPECT_NEAR(mean_with(false), 0.5, 0.02);
@@ -215,7 +213,7 @@ TEST(KeptAttributes, WithNamesOfTheMeshGetAnother) {
 
 TEST(KeptAttributes, MustHaveTheLengthOfTheCloud) {
   Cloud cloud = test::sphere_cloud(1'000, 19);
-  cloud.attributes = {{"short", AttributeType::float32, std::vector<float>(999, 1.0F)}};
+  cloud.attributes = {{"short", std::vector<float>(999, 1.0F)}};
   EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {.depth = 4, .attributes = true}); }),
             ErrorCode::invalid_input);
   EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {.depth = 4}); }), std::nullopt);
@@ -250,7 +248,7 @@ TEST(Density, FollowsTheSamplingOfEveryPart) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     if (std::abs(mesh.vertices[i].z) < 0.1) continue;
     const std::size_t half = mesh.vertices[i].z > 0 ? 1 : 0;
-    sum[half] += mesh.attributes[0].values[i];
+    sum[half] += mesh.attributes[0].values.at(i);
     ++count[half];
   }
   EXPECT_NEAR(sum[1] / count[1], upper, 0.2 * upper);

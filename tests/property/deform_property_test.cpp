@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,9 +28,9 @@ using test::same_bytes;
 
 /// A cloud whose points carry their numbers.
 Cloud numbered(Cloud cloud) {
-  std::vector<float> ids(cloud.positions.size());
-  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<float>(i);
-  cloud.attributes.push_back({"id", AttributeType::float32, std::move(ids)});
+  std::vector<std::int32_t> ids(cloud.positions.size());
+  std::iota(ids.begin(), ids.end(), 0);
+  cloud.attributes.push_back({"id", std::move(ids)});
   return cloud;
 }
 
@@ -57,7 +58,7 @@ std::vector<double> ratios_by_brute_force(const Cloud& rest, const Cloud& now) {
   const std::size_t step = std::max<std::size_t>(1, now.positions.size() / kMeasured);
   std::vector<double> ratios;
   for (std::size_t i = 0; i < now.positions.size(); i += step) {
-    const auto from = static_cast<std::size_t>(now.attributes.back().values[i]);
+    const auto from = static_cast<std::size_t>(now.attributes.back().values.as<std::int32_t>()[i]);
     ratios.push_back(mean_of_six(now.positions, i) / mean_of_six(rest.positions, from));
   }
   std::sort(ratios.begin(), ratios.end());
@@ -115,7 +116,7 @@ TEST(RigidMotionOfAll, MovesTheCloudExactlyToRounding) {
   const Cloud now = deformer.cloud();
   ASSERT_EQ(now.size(), cloud.size());
   for (std::size_t i = 0; i < now.positions.size(); ++i) {
-    const auto from = static_cast<std::size_t>(now.attributes[0].values[i]);
+    const auto from = static_cast<std::size_t>(now.attributes[0].values.as<std::int32_t>()[i]);
     const auto turned = [&](const Vec3f& v, double centre) {
       const double x = double{v.x} - centre;
       return Vec3f{static_cast<float>(centre + std::cos(angle) * x - std::sin(angle) * double{v.y}),
@@ -259,7 +260,7 @@ TEST(PointSets, MoveWhatIsNearestToThem) {
   const Cloud now = by_points.cloud();
   int found = 0;
   for (std::size_t i = 0; i < now.positions.size(); ++i) {
-    const auto from = static_cast<std::size_t>(now.attributes[0].values[i]);
+    const auto from = static_cast<std::size_t>(now.attributes[0].values.as<std::int32_t>()[i]);
     if (from % 2 != 0 || from == 18) continue;
     if (now.positions[i] == cloud.positions[from]) ++found;
   }

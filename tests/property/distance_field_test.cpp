@@ -112,15 +112,13 @@ TEST(DistanceField, IsTrimmedWhereSamplesEnd) {
 
 TEST(DistanceField, KeepsAttributesInTheirRange) {
   Cloud cloud = test::sphere_cloud(5'000, 15);
-  std::vector<float> heights;
-  for (const Vec3f& p : cloud.positions) heights.push_back(p.z);
-  cloud.attributes.push_back({"height", AttributeType::float32, heights});
+  cloud.attributes = {test::attribute_of<float>("height", cloud.positions, [](const Vec3f& p) { return p.z; })};
   Options options = distance_options(6);
   options.attributes = true;
   const Mesh mesh = reconstructed(cloud, options);
   ASSERT_EQ(mesh.attributes.size(), 1U);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    ASSERT_NEAR(mesh.attributes[0].values[i], mesh.vertices[i].z, 0.05);
+    ASSERT_NEAR(mesh.attributes[0].values.at(i), mesh.vertices[i].z, 0.05);
 }
 
 TEST(DistanceField, ShortNormalsCountLessWithConfidence) {

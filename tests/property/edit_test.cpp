@@ -354,18 +354,20 @@ TEST(AnInsertedPart, StaysWhereItIsIfNothingIsNear) {
 
 TEST(Attributes, HaveNoValueAtAddedPointsThatLackThem) {
   Cloud cloud = two_fingers_cloud(20'000, 18);
-  cloud.attributes.push_back({"red", AttributeType::uint8, std::vector<float>(20'000, 200)});
+  cloud.attributes.push_back({"red", std::vector<std::uint8_t>(20'000, 200)});
   EditOptions options = options_at(6);
   options.reconstruction.attributes = true;
   EditSession session(cloud, options, Device::cpu(2));
   session.apply(test::parting_strokes()[0]);
-  for (const float red : session.mesh().attributes.at(0).values) EXPECT_EQ(red, 200);
+  for (const std::uint8_t red : session.mesh().attributes.at(0).values.as<std::uint8_t>()) EXPECT_EQ(red, 200);
   const Cloud edited = session.cloud();
   ASSERT_EQ(edited.attributes.size(), 2U);
-  EXPECT_TRUE(std::isnan(edited.attributes[0].values.back()));
+  EXPECT_EQ(edited.attributes[0].type(), AttributeType::uint8);
+  EXPECT_FALSE(edited.attributes[0].values.is_missing(0));
+  EXPECT_TRUE(edited.attributes[0].values.is_missing(edited.positions.size() - 1));
   EXPECT_EQ(edited.attributes[1].name, "added");
-  EXPECT_EQ(edited.attributes[1].values.front(), 0);
-  EXPECT_EQ(edited.attributes[1].values.back(), 1);
+  EXPECT_EQ(edited.attributes[1].values.as<std::uint8_t>().front(), 0);
+  EXPECT_EQ(edited.attributes[1].values.as<std::uint8_t>().back(), 1);
 }
 
 TEST(AWarmStart, EndsNearTheSurfaceOfAColdOne) {

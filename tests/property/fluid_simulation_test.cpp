@@ -290,7 +290,8 @@ TEST(Surface, OfASimulationIsClosedAndCarriesVelocities) {
   EXPECT_NEAR(report.volume, water, 0.1 * water);
   ASSERT_EQ(mesh.attributes.size(), 3U);
   EXPECT_EQ(mesh.attributes[1].name, "velocity_y");
-  const auto lowest = *std::min_element(mesh.attributes[1].values.begin(), mesh.attributes[1].values.end());
+  const std::vector<float>& velocities = mesh.attributes[1].values.as<float>();
+  const auto lowest = *std::min_element(velocities.begin(), velocities.end());
   EXPECT_LT(lowest, -0.5F);
   EXPECT_GE(lowest, -1.2F * static_cast<float>(simulation.report().max_speed));
   Simulation other(make_scene(SceneKind::double_dam_break, 3000), {}, Device::cpu(5));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <pointskin/fluid.hpp>
 #include <pointskin/io.hpp>
 
+#include "support/attributes.hpp"
 #include "support/particles.hpp"
 
 namespace pointskin::test {
@@ -80,26 +82,27 @@ TEST_P(FluidKernels, KeepTheVolumeOfABall) {
 
 TEST_P(FluidKernels, DoNotDependOnTheOrderOfParticlesOrThreads) {
   Cloud cloud = particle_frames(kSeed).back().cloud;
-  Attribute id{"id", AttributeType::float32, {}};
-  for (std::int64_t i = 0; i < cloud.size(); ++i) id.values.push_back(static_cast<float>(i));
-  cloud.attributes.push_back(id);
+  std::vector<float> weights(cloud.positions.size());
+  std::iota(weights.begin(), weights.end(), 0.0F);
+  std::vector<std::int32_t> ids(weights.begin(), weights.end());
+  cloud.attributes = {{"weight", std::move(weights)}, {"id", std::move(ids)}};
   FluidOptions chosen = options(1);
   chosen.smoothing_iterations = 3;
   const Mesh first = surface_of(cloud, chosen, 1);
-  std::vector<std::size_t> order(cloud.positions.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::vector<std::int64_t> order(cloud.positions.size());
+  std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937(1));
   Cloud shuffled = cloud;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    shuffled.positions[i] = cloud.positions[order[i]];
-    shuffled.attributes[0].values[i] = cloud.attributes[0].values[order[i]];
-  }
+  for (std::size_t i = 0; i < order.size(); ++i)
+    shuffled.positions[i] = cloud.positions[static_cast<std::size_t>(order[i])];
+  for (Attribute& a : shuffled.attributes) a.values = a.values.gather(order);
   for (const int threads : {1, 2, 5}) {
     const Mesh again = surface_of(shuffled, chosen, threads);
     EXPECT_TRUE(again.vertices == first.vertices);
     EXPECT_TRUE(again.normals == first.normals);
     EXPECT_TRUE(again.triangles == first.triangles);
-    EXPECT_TRUE(again.attributes[0].values == first.attributes[0].values);
+    for (std::size_t a = 0; a < first.attributes.size(); ++a)
+      EXPECT_TRUE(test::same_bytes(again.attributes[a].values, first.attributes[a].values));
   }
 }
 
@@ -177,23 +180,19 @@ TEST(Fluid, SmallDropsAreRemoved) {
 
 TEST(Fluid, AttributesAreMeansOfTheParticlesAround) {
   Cloud cloud = ball_of_particles(1, 8, 0.2, kSeed);
-  Attribute linear{"vx", AttributeType::float32, {}};
-  Attribute byte{"red", AttributeType::uint8, {}};
-  Attribute gaps{"t", AttributeType::float32, {}};
-  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
-    linear.values.push_back(cloud.positions[i].x);
-    byte.values.push_back(cloud.positions[i].x < 0 ? 10 : 250);
-    gaps.values.push_back(i % 2 == 0 ? 3 : std::numeric_limits<float>::quiet_NaN());
-  }
-  cloud.attributes = {linear, byte, gaps};
+  std::vector<float> gaps(cloud.positions.size(), 3);
+  for (std::size_t i = 0; i < gaps.size(); i += 2) gaps[i] = std::numeric_limits<float>::quiet_NaN();
+  cloud.attributes = {
+      test::attribute_of<float>("vx", cloud.positions, [](const Vec3f& p) { return p.x; }),
+      test::attribute_of<std::uint8_t>("red", cloud.positions, [](const Vec3f& p) { return p.x < 0 ? 10 : 250; }),
+      {"t", std::move(gaps)}};
   const Mesh mesh = surface_of(cloud, options_of(1));
   ASSERT_EQ(mesh.attributes.size(), 3U);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    EXPECT_NEAR(mesh.attributes[0].values[v], mesh.vertices[v].x, 1.5);
-    const float red = mesh.attributes[1].values[v];
-    EXPECT_EQ(red, std::round(red));
+    EXPECT_NEAR(mesh.attributes[0].values.at(v), mesh.vertices[v].x, 1.5);
+    const double red = mesh.attributes[1].values.at(v);
     EXPECT_TRUE(red >= 10 && red <= 250);
-    EXPECT_FLOAT_EQ(mesh.attributes[2].values[v], 3);
+    EXPECT_FLOAT_EQ(mesh.attributes[2].values.as<float>()[v], 3);
   }
   FluidOptions options = options_of(1);
   options.attributes = false;
@@ -202,6 +201,49 @@ TEST(Fluid, AttributesAreMeansOfTheParticlesAround) {
   EXPECT_TRUE(bare.attributes.empty());
   EXPECT_TRUE(bare.normals.empty());
   EXPECT_TRUE(bare.vertices == mesh.vertices);
+}
+
+TEST(Fluid, LabelsAreThoseOfTheNearestParticleThatHasOne) {
+  Cloud cloud = ball_of_particles(1, 6, 0.3, kSeed);
+  std::vector<std::int32_t> ids(cloud.positions.size());
+  std::iota(ids.begin(), ids.end(), 1'000'000'001);
+  cloud.attributes = {{"id", ids}, {"part", ids}, {"none", AttributeValues::missing(AttributeType::int16, ids.size())}};
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (i % 4 != 0) cloud.attributes[1].values.set_missing(i);
+  for (const FluidKernel kernel : {FluidKernel::isotropic, FluidKernel::anisotropic}) {
+    FluidOptions options = options_of(1);
+    options.kernel = kernel;
+    const Mesh mesh = surface_of(cloud, options);
+    for (std::size_t a = 0; a < 2; ++a) {
+      const std::vector<std::int32_t>& labels = mesh.attributes[a].values.as<std::int32_t>();
+      for (std::size_t v = 0; v < labels.size(); ++v) {
+        const auto distance = [&](std::size_t i) {
+          const Vec3f& p = cloud.positions[i];
+          return std::hypot(p.x - mesh.vertices[v].x, p.y - mesh.vertices[v].y, p.z - mesh.vertices[v].z);
+        };
+        float best = std::numeric_limits<float>::infinity();
+        for (std::size_t i = 0; i < ids.size(); ++i)
+          if (!cloud.attributes[a].values.is_missing(i)) best = std::min(best, distance(i));
+        ASSERT_FALSE(mesh.attributes[a].values.is_missing(v));
+        const auto chosen = static_cast<std::size_t>(labels[v] - 1'000'000'001);
+        ASSERT_FALSE(cloud.attributes[a].values.is_missing(chosen));
+        ASSERT_LE(distance(chosen), best + 1e-4F);
+      }
+    }
+    EXPECT_EQ(mesh.attributes[2].values, AttributeValues::missing(AttributeType::int16, mesh.vertices.size()));
+  }
+}
+
+TEST(Fluid, DoublesAreMeansInTheirOwnRange) {
+  Cloud cloud = ball_of_particles(1, 8, 0.2, kSeed);
+  const auto time = [](const Vec3f& p) { return 4e8 + 1e-4 * p.x; };
+  cloud.attributes = {test::attribute_of<double>("time", cloud.positions, time),
+                      test::attribute_of<float>("x", cloud.positions, [](const Vec3f& p) { return p.x; })};
+  cloud.attributes[0].values.set_missing(3);
+  cloud.attributes[1].values.set_missing(3);
+  const Mesh mesh = surface_of(cloud, options_of(1));
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    ASSERT_NEAR(mesh.attributes[0].values.at(v), 4e8 + 1e-4 * mesh.attributes[1].values.at(v), 2e-7);
 }
 
 TEST(Fluid, NormalsHaveUnitLengthAndPointOutwards) {
@@ -284,7 +326,7 @@ TEST(Fluid, ErrorsSayWhatIsWrong) {
   cloud.positions[1].x = std::numeric_limits<float>::infinity();
   EXPECT_EQ(code_of(cloud, options_of(1)), ErrorCode::invalid_input);
   cloud.positions[1].x = 3;
-  cloud.attributes.push_back({"short", AttributeType::float32, {1}});
+  cloud.attributes.push_back({"short", std::vector<float>{1}});
   EXPECT_EQ(code_of(cloud, options_of(1)), ErrorCode::invalid_input);
 }
 

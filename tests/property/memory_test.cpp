@@ -130,7 +130,7 @@ TEST(MemoryEstimate, IsWithin15PercentWhenTrimming) {
 
 Cloud with_attributes(Cloud cloud, int count) {
   for (int i = 0; i < count; ++i)
-    cloud.attributes.push_back({std::string(1, static_cast<char>('a' + i)), AttributeType::float32,
+    cloud.attributes.push_back({std::string(1, static_cast<char>('a' + i)),
                                 std::vector<float>(static_cast<std::size_t>(cloud.size()), static_cast<float>(i))});
   return cloud;
 }
@@ -146,6 +146,42 @@ TEST(MemoryEstimate, CountsTheAttributesThatAreKept) {
   expect_good_estimate(sparse, {.depth = 11, .attributes = true}, "attributes of few points");
   const Cloud dense = with_attributes(test::sphere_cloud(300'000, 22), 3);
   expect_good_estimate(dense, {.depth = 5, .attributes = true}, "attributes of many points");
+}
+
+/// `count` attributes of a type and name, the first two thirds of whose values are there.
+Cloud with_types(Cloud cloud, const std::string& name, AttributeType type, int count, bool gaps) {
+  AttributeValues values(type, cloud.positions.size());
+  for (std::size_t i = 0; gaps && i < cloud.positions.size(); i += 3) values.set_missing(i);
+  for (int i = 0; i < count; ++i) cloud.attributes.push_back({name + std::to_string(i), values});
+  return cloud;
+}
+
+TEST(MemoryEstimate, CountsAttributesInTheirTypes) {
+  const Cloud torus = test::torus_cloud(60'000, 23);
+  const Cloud dense = test::sphere_cloud(300'000, 24);
+  const Cloud sparse = test::sphere_cloud(300, 25);
+  for (const bool gaps : {false, true})
+    for (const int count : {1, 3, 12}) {
+      const auto check = [&](const std::string& name, AttributeType type) {
+        const std::string what = name + (gaps ? " with gaps, " : ", ") + std::to_string(count);
+        expect_good_estimate(with_types(torus, name, type, count, gaps), {.depth = 7, .attributes = true}, what);
+        expect_good_estimate(with_types(dense, name, type, count, gaps), {.depth = 5, .attributes = true}, what);
+        expect_good_estimate(with_types(sparse, name, type, count, gaps), {.depth = 10, .attributes = true}, what);
+      };
+      check("byte", AttributeType::uint8);
+      check("time", AttributeType::float64);
+      check("label", AttributeType::uint8);
+      check("label", AttributeType::int32);
+      check("label", AttributeType::uint64);
+    }
+}
+
+TEST(MemoryEstimate, OfColoursIsLessThanOfFloats) {
+  const Cloud cloud = test::sphere_cloud(300'000, 26);
+  const Options options{.depth = 5, .attributes = true};
+  const std::int64_t floats = peak_of(with_types(cloud, "red", AttributeType::float32, 3, false), options);
+  const std::int64_t bytes = peak_of(with_types(cloud, "red", AttributeType::uint8, 3, false), options);
+  EXPECT_LE(bytes, floats - 9 * cloud.size()) << "three bytes a colour instead of twelve";
 }
 
 TEST(MemoryEstimate, IsWithin15PercentWherePointsShareTheirPlaces) {

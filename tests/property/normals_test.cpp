@@ -217,12 +217,10 @@ TEST(Normals, FollowTheViewVectorsOfThePoints) {
                                                 {"view_x", "view_y", "view_z"},
                                                 {"sensor_x", "sensor_y", "sensor_z"}}) {
     Cloud cloud = without_normals(truth);
-    for (std::size_t a = 0; a < 3; ++a) cloud.attributes.push_back({names[a], AttributeType::float32, {}});
-    for (const Vec3f& p : cloud.positions) {
-      const float at[3] = {p.x, p.y, p.z};
-      for (std::size_t a = 0; a < 3; ++a)
-        cloud.attributes[a].values.push_back(names[0][0] == 's' ? 0.1F : 0.1F - at[a]);
-    }
+    constexpr float Vec3f::*kAxes[3] = {&Vec3f::x, &Vec3f::y, &Vec3f::z};
+    for (std::size_t a = 0; a < 3; ++a)
+      cloud.attributes.push_back(test::attribute_of<float>(
+          names[a], cloud.positions, [&](const Vec3f& p) { return names[0][0] == 's' ? 0.1F : 0.1F - p.*kAxes[a]; }));
     EXPECT_TRUE(has_view_attributes(cloud));
     EXPECT_EQ(orient(cloud).method, NormalMethod::sensor);
     EXPECT_EQ(right_share(cloud, truth), 1);
@@ -272,7 +270,7 @@ TEST(Normals, DoNotDependOnThreadsOrOrder) {
 
 TEST(Normals, ComeWithConfidenceAndCurvature) {
   Cloud cloud = without_normals(test::sphere_cloud(10'000, 23, 2));
-  cloud.attributes.push_back({"height", AttributeType::float32, std::vector<float>(10'000, 1.0F)});
+  cloud.attributes.push_back({"height", std::vector<float>(10'000, 1.0F)});
   NormalOptions options;
   options.curvature = true;
   const NormalReport report = orient(cloud, options);
@@ -280,11 +278,11 @@ TEST(Normals, ComeWithConfidenceAndCurvature) {
   EXPECT_EQ(cloud.attributes[1].name, "confidence");
   EXPECT_EQ(cloud.attributes[2].name, "curvature");
   double sum = 0;
-  for (const float c : cloud.attributes[1].values) {
+  for (const float c : cloud.attributes[1].values.as<float>()) {
     ASSERT_GE(c, 0);
     ASSERT_LE(c, 1);
   }
-  for (const float c : cloud.attributes[2].values) sum += c;
+  for (const float c : cloud.attributes[2].values.as<float>()) sum += c;
   EXPECT_NEAR(sum / 10'000, 0.5, 0.02);
   EXPECT_EQ(report.doubtful, 0);
 }

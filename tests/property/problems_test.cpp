@@ -48,7 +48,7 @@ TEST(Problems, FindsWhereTwoFingersAreJoined) {
   ASSERT_EQ(measure(mesh).components, 1);  // joined, as nothing says that they are two
   ASSERT_EQ(mesh.attributes.size(), 1U);
   EXPECT_EQ(mesh.attributes[0].name, "weakness");
-  for (const float w : mesh.attributes[0].values) ASSERT_TRUE(w >= 0 && w <= 1);
+  for (const float w : mesh.attributes[0].values.as<float>()) ASSERT_TRUE(w >= 0 && w <= 1);
   const std::vector<ProblemRegion> regions = find_problems(mesh);
   ASSERT_FALSE(regions.empty());
   const ProblemRegion& worst = regions.front();
@@ -79,12 +79,12 @@ TEST(Problems, WeaknessComesLastAndLeavesAllElseAsItIs) {
 /// A strip of squares along x, weak where `weak` says so.
 Mesh strip(int squares, const std::vector<int>& weak) {
   Mesh mesh;
-  Attribute weakness{"weakness", AttributeType::float32, {}};
+  std::vector<float> weakness;
   for (int i = 0; i <= squares; ++i)
     for (int k = 0; k < 2; ++k) {
       mesh.vertices.push_back({static_cast<float>(i), static_cast<float>(k), 0});
       const bool is_weak = std::find(weak.begin(), weak.end(), i) != weak.end();
-      weakness.values.push_back(is_weak ? 0.5F : 0.0F);
+      weakness.push_back(is_weak ? 0.5F : 0.0F);
     }
   for (int i = 0; i < squares; ++i) {
     const std::int32_t a = 2 * i;
@@ -92,7 +92,7 @@ Mesh strip(int squares, const std::vector<int>& weak) {
     mesh.triangles.push_back({a + 1, a + 2, a + 3});
   }
   mesh.origin = {100, 0, 0};
-  mesh.attributes.push_back(weakness);
+  mesh.attributes.push_back({"weakness", std::move(weakness)});
   return mesh;
 }
 

@@ -37,7 +37,7 @@ TEST(Options, DensityIsTheNumberOfSamplesPerArea) {
   const double truth = static_cast<double>(n) / (4 * std::numbers::pi * 9);
   double mean = 0;
   std::int64_t off = 0;
-  for (const float value : mesh.attributes[0].values) {
+  for (const float value : mesh.attributes[0].values.as<float>()) {
     mean += value / static_cast<double>(mesh.vertices.size());
     off += std::abs(value - truth) > 0.5 * truth ? 1 : 0;
   }

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "support/attributes.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin::test {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace pointskin::test {
@@ -126,12 +127,15 @@ Cloud shuffled(const Cloud& cloud, std::uint64_t seed) {
   // Fisher-Yates by hand: std::shuffle differs between standard libraries.
   Random random(seed);
   Cloud result = cloud;
+  std::vector<std::int64_t> order(cloud.positions.size());
+  std::iota(order.begin(), order.end(), 0);
   for (std::int64_t i = cloud.size() - 1; i > 0; --i) {
     const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(random.below(i + 1));
     std::swap(result.positions[a], result.positions[b]);
     if (!result.normals.empty()) std::swap(result.normals[a], result.normals[b]);
-    for (Attribute& attribute : result.attributes) std::swap(attribute.values[a], attribute.values[b]);
+    std::swap(order[a], order[b]);
   }
+  for (Attribute& attribute : result.attributes) attribute.values = attribute.values.gather(order);
   return result;
 }
 

@@ -7,12 +7,15 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "exec/cpu_primitives.hpp"
 #include "field/attributes.hpp"
+#include "support/attributes.hpp"
 #include "unit/poisson/small_tree.hpp"
 
 namespace pointskin {
@@ -142,23 +145,43 @@ struct Taken {
   std::vector<std::vector<float>> values;
 };
 
-/// The attributes a, b, ... of the tree's samples at `points`.
-Taken interpolated(SmallTree& tree, const std::vector<float>& weights, const std::vector<std::vector<float>>& values,
-                   const std::vector<Vec3f>& points, AttributeType type = AttributeType::float32) {
+/// The attributes of the tree's samples.
+field::AttributeSamples samples_of(SmallTree& tree, const std::vector<AttributeValues>& values) {
   field::AttributeSamples samples;
   samples.positions = exec::make_buffer<Vec3f>(tree.ex, tree.samples.positions.size());
   copy(tree.ex, tree.samples.positions.cview(), samples.positions.view());
+  const exec::Buffer<std::int32_t> order = exec::iota(tree.ex, samples.positions.size());
+  for (const AttributeValues& v : values) {
+    const std::size_t place = samples.names.size();
+    samples.names.push_back(name_of(place));
+    exec::TypedBuffer uploaded = exec::upload_typed(tree.ex, v);
+    if (v.type() == AttributeType::float32 || v.type() == AttributeType::float64 || size_of(v.type()) < 4) {
+      const field::ValueRange range = field::find_range(tree.ex, uploaded.view(), {});
+      samples.channels.push_back(field::make_channel(tree.ex, place, uploaded.view(), range, order.cview()));
+    } else {
+      samples.labels.push_back({place, std::move(uploaded)});
+    }
+  }
+  return samples;
+}
+
+ArrayView<const Vec3f> view_of(const std::vector<Vec3f>& points) {
+  return {points.data(), static_cast<std::int64_t>(points.size())};
+}
+
+/// The attributes a, b, ... of the tree's samples at `points`.
+Taken interpolated(SmallTree& tree, const std::vector<float>& weights, const std::vector<std::vector<float>>& values,
+                   const std::vector<Vec3f>& points, AttributeType type = AttributeType::float32) {
+  std::vector<AttributeValues> typed;
+  for (const std::vector<float>& v : values) typed.push_back(AttributeValues(v).converted(type));
+  field::AttributeSamples samples = samples_of(tree, typed);
   samples.weights = buffer_of(tree.ex, weights);
-  for (const std::vector<float>& v : values)
-    samples.channels.push_back(
-        field::make_channel(tree.ex, name_of(samples.channels.size()), type, buffer_of(tree.ex, v)));
   Taken taken;
-  field::interpolate(tree.ex, tree.tree, samples,
-                     ArrayView<const Vec3f>(points.data(), static_cast<std::int64_t>(points.size())),
-                     [&](const field::Channel& channel, const exec::Buffer<float>& at) {
-                       taken.names.push_back(channel.name);
-                       taken.values.emplace_back(at.view().begin(), at.view().end());
-                     });
+  field::interpolate(tree.ex, tree.tree, samples, view_of(points), [&](std::size_t place, exec::TypedBuffer at) {
+    EXPECT_EQ(at.type, type);
+    taken.names.push_back(samples.names[place]);
+    taken.values.push_back(test::floats_of(exec::download_typed(tree.ex, std::move(at))));
+  });
   return taken;
 }
 
@@ -267,7 +290,7 @@ TEST(Attributes, StayInTheRangeOfTheInputHoweverLargeOrCloseItsValuesAre) {
   }
 }
 
-TEST(Attributes, OfTypeUint8AreRoundedWholeNumbers) {
+TEST(Attributes, OfIntegersAreRoundedWholeNumbers) {
   test::Random random(8);
   SmallTree tree(test::clustered_points(random, 30, 15, 0.02), {}, 6);
   const std::int64_t n = tree.samples.positions.size();
@@ -277,10 +300,9 @@ TEST(Attributes, OfTypeUint8AreRoundedWholeNumbers) {
   const std::vector<float> exact = interpolated(tree, values, points);
   const std::vector<float> bytes = interpolated(tree, values, points, AttributeType::uint8);
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(bytes[i], std::floor(exact[i] + 0.5F));
-  values[0] = -40;
-  values[1] = 900;
-  for (const float v : interpolated(tree, values, points, AttributeType::uint8))
-    ASSERT_TRUE(v >= 0 && v <= 255 && v == std::floor(v)) << v;
+  for (float& v : values) v *= 257;
+  const std::vector<float> shorts = interpolated(tree, values, points, AttributeType::uint16);
+  for (std::size_t i = 0; i < points.size(); ++i) ASSERT_NEAR(shorts[i], 257 * exact[i], 0.51);
 }
 
 /// Half-way between two levels' cells, values must agree: leaves of different depth meet there.
@@ -306,6 +328,115 @@ TEST(Attributes, AreContinuousAcrossLeavesOfDifferentDepth) {
     ASSERT_NEAR(at[i], at[i + 1], 1e-4);
   }
   EXPECT_GT(borders, 20);
+}
+
+/// Place of the nearest sample that is not missing, the first of several; -1 if there is none.
+std::int32_t nearest_by_hand(const SmallTree& tree, const AttributeValues& values, const Vec3f& p) {
+  float best = kInfinity;
+  std::int32_t found = -1;
+  for (std::int64_t i = 0; i < tree.samples.positions.size(); ++i) {
+    const Vec3f q = tree.samples.positions.data()[i];
+    const float x = p.x - q.x, y = p.y - q.y, z = p.z - q.z;
+    const float squared = x * x + y * y + z * z;
+    if (!(squared < best) || values.is_missing(static_cast<std::size_t>(i))) continue;
+    best = squared;
+    found = static_cast<std::int32_t>(i);
+  }
+  return found;
+}
+
+/// Numbers of the samples, from `first` on.
+AttributeValues numbers(std::int64_t n, std::int64_t first) {
+  std::vector<std::int64_t> values(static_cast<std::size_t>(n));
+  std::iota(values.begin(), values.end(), first);
+  return values;
+}
+
+TEST(Labels, AreThoseOfTheNearestSampleThatHasOne) {
+  constexpr std::int64_t kFirst = (std::int64_t{1} << 60) + 1;  // beyond what doubles tell apart
+  for (const int depth : {1, 3, 6, 9}) {
+    test::Random random(100 + static_cast<std::uint64_t>(depth));
+    SmallTree tree(test::clustered_points(random, 20, 40, 0.02), {}, depth);
+    const std::int64_t n = tree.samples.positions.size();
+    std::vector<AttributeValues> values(5, numbers(n, kFirst));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+      if (i % 3 != 0) values[1].set_missing(i);
+      if (i % 3 != 0) values[3].set_missing(i);  // misses the same samples
+      if (i != 7) values[4].set_missing(i);
+    }
+    std::vector<Vec3f> points = random_points(random, 300);
+    for (std::int64_t i = 0; i < n; ++i) points.push_back(tree.samples.positions.data()[i]);
+    for (const Vec3f& p : test::clustered_points(random, 20, 10, 0.02)) points.push_back(p);
+    const field::AttributeSamples samples = samples_of(tree, values);
+    ASSERT_EQ(samples.labels.size(), 5U);
+    std::size_t taken = 0;
+    field::find_labels(tree.ex, tree.tree, samples, view_of(points), [&](std::size_t place, exec::TypedBuffer at) {
+      ++taken;
+      const AttributeValues labels = exec::download_typed(tree.ex, std::move(at));
+      ASSERT_FALSE(labels.has_mask());
+      for (std::size_t i = 0; i < points.size(); ++i)
+        ASSERT_EQ(labels.as<std::int64_t>()[i] - kFirst, nearest_by_hand(tree, values[place], points[i]))
+            << "depth " << depth << ", label " << place << ", point " << i;
+    });
+    EXPECT_EQ(taken, 5U);
+  }
+}
+
+TEST(Labels, OfSamplesAsNearAreTheFirst) {
+  SmallTree tree({{0.25F, 0.5F, 0.5F}, {0.75F, 0.5F, 0.5F}, {0.25F, 0.5F, 0.5F}, {0.5F, 0.25F, 0.5F}}, {}, 3);
+  const std::vector<Vec3f> points{{0.5F, 0.5F, 0.5F}};
+  const field::AttributeSamples samples = samples_of(tree, {numbers(4, 0)});
+  field::find_labels(tree.ex, tree.tree, samples, view_of(points), [&](std::size_t, exec::TypedBuffer at) {
+    EXPECT_EQ(exec::download_typed(tree.ex, std::move(at)).at(0), 0);
+  });
+}
+
+TEST(Labels, ThatNoSampleHasAreMissing) {
+  test::Random random(4);
+  SmallTree tree(random_points(random, 50), {}, 4);
+  const std::vector<Vec3f> points = random_points(random, 20);
+  const field::AttributeSamples samples =
+      samples_of(tree, {AttributeValues::missing(AttributeType::int32, 50), numbers(50, 0)});
+  field::find_labels(tree.ex, tree.tree, samples, view_of(points), [&](std::size_t place, exec::TypedBuffer at) {
+    const AttributeValues labels = exec::download_typed(tree.ex, std::move(at));
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(labels.is_missing(i), place == 0);
+  });
+}
+
+TEST(Attributes, OfDoublesKeepWhatFloatsCannotTellApart) {
+  test::Random random(12);
+  SmallTree tree(test::clustered_points(random, 30, 15, 0.02), {}, 7);
+  const auto n = static_cast<std::size_t>(tree.samples.positions.size());
+  const std::vector<Vec3f> points = random_points(random, 500);
+  const std::array<std::pair<double, double>, 4> ranges = {
+      {{4e8, 4e8 + 0.005}, {-1.7e308, 1.7e308}, {-1e-300, 1e-300}, {1e15, 1e15 + 1000}}};
+  for (const auto& [lower, upper] : ranges) {
+    const double rounding = std::max(std::abs(lower), std::abs(upper)) * 0x1p-52 / (upper / 2 - lower / 2);
+    std::vector<double> values;
+    for (std::size_t i = 0; i < n; ++i)
+      values.push_back(lower / 2 + upper / 2 + random.in(-1, 1) * (upper / 2 - lower / 2));
+    std::vector<float> shares;
+    for (const double v : values) shares.push_back(static_cast<float>((v / 2 - lower / 2) / (upper / 2 - lower / 2)));
+    const field::AttributeSamples samples = samples_of(tree, {values, shares});
+    std::array<AttributeValues, 2> at;
+    field::interpolate(tree.ex, tree.tree, samples, view_of(points), [&](std::size_t place, exec::TypedBuffer taken) {
+      at[place] = exec::download_typed(tree.ex, std::move(taken));
+    });
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    std::set<double> distinct;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double v = at[0].as<double>()[i];
+      ASSERT_TRUE(v >= *low && v <= *high) << v;
+      ASSERT_NEAR(((v / 2 - lower / 2) / (upper / 2 - lower / 2)), at[1].at(i), 1e-6 + rounding);
+      distinct.insert(v);
+    }
+    EXPECT_GT(distinct.size(), 400U);
+  }
+  const std::vector<double> same(n, 400000000.000001);
+  const field::AttributeSamples samples = samples_of(tree, {same});
+  field::interpolate(tree.ex, tree.tree, samples, view_of(points), [&](std::size_t, exec::TypedBuffer taken) {
+    for (const double v : exec::download_typed(tree.ex, std::move(taken)).as<double>()) ASSERT_EQ(v, 400000000.000001);
+  });
 }
 
 }  // namespace

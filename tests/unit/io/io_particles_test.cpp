@@ -14,8 +14,8 @@ using test::cloud_of;
 using test::raw;
 using test::story_of;
 
-std::map<std::string, std::vector<float>> attributes_of(const Cloud& cloud) {
-  std::map<std::string, std::vector<float>> all;
+std::map<std::string, AttributeValues> attributes_of(const Cloud& cloud) {
+  std::map<std::string, AttributeValues> all;
   for (const Attribute& a : cloud.attributes) all[a.name] = a.values;
   return all;
 }
@@ -51,10 +51,10 @@ TEST(VtkReader, ReadsPointsAndTheirDataFromText) {
   EXPECT_EQ(cloud.normals, (std::vector<Vec3f>{{0, 0, 1}, {0, 0, 1}, {0, 1, 0}}));
   const auto all = attributes_of(cloud);
   EXPECT_EQ(all.size(), 7U);
-  EXPECT_EQ(all.at("density")[1], 1001.5F);
-  EXPECT_TRUE(std::isnan(all.at("density")[2]));
-  EXPECT_EQ(all.at("velocity_y"), (std::vector<float>{0, 1, 0}));
-  EXPECT_EQ(all.at("id"), (std::vector<float>{7, 8, 9}));
+  EXPECT_EQ(all.at("density").at(1), 1001.5);
+  EXPECT_TRUE(all.at("density").is_missing(2));
+  EXPECT_EQ(all.at("velocity_y"), (std::vector<double>{0, 1, 0}));
+  EXPECT_EQ(all.at("id"), (std::vector<std::int32_t>{7, 8, 9}));
   EXPECT_EQ(all.at("uv_1"), (std::vector<float>{0.2F, 0.4F, 0.6F}));
 }
 
@@ -64,11 +64,10 @@ TEST(VtkReader, ReadsPointsAndTheirDataFromBigEndianBytes) {
   const auto all = attributes_of(cloud);
   EXPECT_EQ(all.size(), 6U);
   EXPECT_EQ(all.count("of_cells"), 0U);
-  EXPECT_EQ(all.at("id"), (std::vector<float>{10, 4e9F}));
+  EXPECT_EQ(all.at("id"), (std::vector<std::uint32_t>{10, 4'000'000'000U}));
   EXPECT_EQ(all.at("velocity_z"), (std::vector<float>{-1, 8}));
-  EXPECT_EQ(all.at("step_201"), (std::vector<float>{-5, 6}));
-  EXPECT_EQ(all.at("red"), (std::vector<float>{12, 255}));
-  for (const Attribute& a : cloud.attributes) EXPECT_EQ(a.type == AttributeType::uint8, a.name == "red") << a.name;
+  EXPECT_EQ(all.at("step_201"), (std::vector<std::int64_t>{-5, 6}));
+  EXPECT_EQ(all.at("red"), (std::vector<std::uint8_t>{12, 255}));
 }
 
 TEST(VtkReader, PassesOverTheCellsOfVersionFive) {

@@ -62,11 +62,11 @@ void expect_rows_0_to_2(const Cloud& cloud, AttributeType type) {
   ASSERT_EQ(cloud.size(), 3);
   ASSERT_EQ(cloud.attributes.size(), 1u);
   EXPECT_EQ(cloud.attributes[0].name, "mark");
-  EXPECT_EQ(cloud.attributes[0].type, type);
+  EXPECT_EQ(cloud.attributes[0].type(), type);
   for (int row = 0; row < 3; ++row) {
     const auto i = static_cast<std::size_t>(row);
     EXPECT_EQ(cloud.positions[i], (Vec3f{float(row), float(10 + row), float(20 + row)}));
-    EXPECT_EQ(cloud.attributes[0].values[i], float(100 + row));
+    EXPECT_EQ(cloud.attributes[0].values.at(i), float(100 + row));
   }
 }
 
@@ -77,14 +77,14 @@ TEST_P(PlyReaderIn, ReadsEveryPropertyTypeUnderBothOfItsNames) {
       expect_rows_0_to_2(cloud_of("a.ply", file_with_one_type<decltype(tag)>(GetParam(), name)), type);
     }
   };
-  check(std::int8_t{}, AttributeType::float32, {"char", "int8"});
+  check(std::int8_t{}, AttributeType::int8, {"char", "int8"});
   check(std::uint8_t{}, AttributeType::uint8, {"uchar", "uint8"});
-  check(std::int16_t{}, AttributeType::float32, {"short", "int16"});
-  check(std::uint16_t{}, AttributeType::float32, {"ushort", "uint16"});
-  check(std::int32_t{}, AttributeType::float32, {"int", "int32"});
-  check(std::uint32_t{}, AttributeType::float32, {"uint", "uint32"});
+  check(std::int16_t{}, AttributeType::int16, {"short", "int16"});
+  check(std::uint16_t{}, AttributeType::uint16, {"ushort", "uint16"});
+  check(std::int32_t{}, AttributeType::int32, {"int", "int32"});
+  check(std::uint32_t{}, AttributeType::uint32, {"uint", "uint32"});
   check(float{}, AttributeType::float32, {"float", "float32"});
-  check(double{}, AttributeType::float32, {"double", "float64"});
+  check(double{}, AttributeType::float64, {"double", "float64"});
 }
 
 TEST_P(PlyReaderIn, FindsTheVerticesBetweenOtherElementsAndLists) {
@@ -121,11 +121,11 @@ TEST_P(PlyReaderIn, GivesNormalsColoursAndScalarsTheirPlaces) {
   EXPECT_EQ(cloud.normals[0], (Vec3f{0, -1, 0}));
   ASSERT_EQ(cloud.attributes.size(), 4u);
   EXPECT_EQ(cloud.attributes[0].name, "red");
-  EXPECT_EQ(cloud.attributes[0].type, AttributeType::uint8);
-  EXPECT_EQ(cloud.attributes[0].values[0], 255);
+  EXPECT_EQ(cloud.attributes[0].type(), AttributeType::uint8);
+  EXPECT_EQ(cloud.attributes[0].values.at(0), 255);
   EXPECT_EQ(cloud.attributes[3].name, "confidence");
-  EXPECT_EQ(cloud.attributes[3].type, AttributeType::float32);
-  EXPECT_EQ(cloud.attributes[3].values[0], 0.5f);
+  EXPECT_EQ(cloud.attributes[3].type(), AttributeType::float32);
+  EXPECT_EQ(cloud.attributes[3].values.at(0), 0.5f);
 }
 
 TEST_P(PlyReaderIn, DropsAndCountsPointsThatAreNotFiniteAndZeroesSuchNormals) {
@@ -369,7 +369,7 @@ TEST(PlyReader, RejectsTextRowsOfTheWrongLengthWithTheirLine) {
 TEST(PlyReader, RejectsTextBytesOutOfTheirRange) {
   const std::string header =
       std::string("ply\nformat ascii 1.0\nelement vertex 1\n") + kXyz + "property uchar red\nend_header\n";
-  EXPECT_EQ(cloud_of("a.ply", header + "1 2 3 255\n").attributes[0].values[0], 255);
+  EXPECT_EQ(cloud_of("a.ply", header + "1 2 3 255\n").attributes[0].values.at(0), 255);
   for (const char* row : {"1 2 3 256\n", "1 2 3 -1\n", "1 2 3 0.5\n", "1 2 3 nan\n"})
     EXPECT_NE(story_of(ErrorCode::invalid_input, [&] { cloud_of("a.ply", header + row); }), "") << row;
 }

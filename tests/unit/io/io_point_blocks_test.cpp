@@ -51,7 +51,7 @@ void expect_the_good_rows(const Cloud& cloud, std::int64_t rows) {
     ASSERT_LT(at, cloud.positions.size());
     ASSERT_EQ(cloud.positions[at], (Vec3f{value, value / 2, -value})) << "row " << i;
     ASSERT_EQ(cloud.normals[at], (i % 5 == 0 ? Vec3f{} : Vec3f{value, 1, 2})) << "row " << i;
-    ASSERT_EQ(cloud.attributes[0].values[at], static_cast<float>(i % 256)) << "row " << i;
+    ASSERT_EQ(cloud.attributes[0].values.at(at), static_cast<float>(i % 256)) << "row " << i;
     ++at;
   }
   EXPECT_EQ(cloud.positions.size(), at);
@@ -67,7 +67,7 @@ TEST(PointBlocks, LeaveOutBadRowsWhereverTheyFall) {
                                           << ", " << threads << " threads");
           const Cloud cloud = cloud_of("a.ply", make_ply(rows, {y_is_double, big_endian}), {{}, threads});
           ASSERT_EQ(cloud.attributes.size(), 1u);
-          EXPECT_EQ(cloud.attributes[0].type, AttributeType::uint8);
+          EXPECT_EQ(cloud.attributes[0].type(), AttributeType::uint8);
           ASSERT_NO_FATAL_FAILURE(expect_the_good_rows(cloud, rows));
         }
 }

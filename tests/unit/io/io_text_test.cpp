@@ -36,12 +36,12 @@ TEST(TextReader, MeansByTheNumberOfColumns) {
   EXPECT_EQ(names_of(cloud_of("a.pts", "1 2 3 -7.5 10 20 30\n")), (Names{"scalar", "red", "green", "blue"}));
   const Cloud nine = cloud_of("a.txt", "1 2 3 10 20 30 0 0 1\n");
   EXPECT_EQ(names_of(nine), kColours);
-  EXPECT_EQ(nine.attributes[1].values[0], 20);
-  EXPECT_EQ(nine.attributes[1].type, AttributeType::uint8);
+  EXPECT_EQ(nine.attributes[1].values.at(0), 20);
+  EXPECT_EQ(nine.attributes[1].type(), AttributeType::uint8);
   EXPECT_EQ(nine.normals[0], (Vec3f{0, 0, 1}));
   const Cloud swapped = cloud_of("a.txt", "1 2 3 0.5 0 1 10 20 30\n");
   EXPECT_EQ(swapped.normals[0], (Vec3f{0.5f, 0, 1}));
-  EXPECT_EQ(swapped.attributes[2].values[0], 30);
+  EXPECT_EQ(swapped.attributes[2].values.at(0), 30);
 }
 
 TEST(TextReader, RejectsColumnsWithoutAnAgreedMeaning) {
@@ -59,8 +59,8 @@ TEST(TextReader, TakesTheNamesOfTheFirstLineOrOfAComment) {
     EXPECT_EQ(cloud.positions[0], (Vec3f{7, 8, 9}));
     EXPECT_EQ(cloud.normals[0], (Vec3f{0, 0, 1}));
     EXPECT_EQ(names_of(cloud), (Names{"point id", "red", "green", "blue"})) << head;
-    EXPECT_EQ(cloud.attributes[3].type, AttributeType::uint8);
-    EXPECT_EQ(cloud.attributes[0].type, AttributeType::float32);
+    EXPECT_EQ(cloud.attributes[3].type(), AttributeType::uint8);
+    EXPECT_EQ(cloud.attributes[0].type(), AttributeType::int32);
   }
 }
 

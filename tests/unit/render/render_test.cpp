@@ -29,7 +29,7 @@ Mesh coloured_square(float z, int red, int green, int blue) {
   Mesh mesh = test::translated(test::patch_mesh(1, 2), {-1, -1, z});
   const std::array<std::pair<const char*, int>, 3> channels{{{"red", red}, {"green", green}, {"blue", blue}}};
   for (const auto& [name, value] : channels)
-    mesh.attributes.push_back({name, AttributeType::uint8, std::vector<float>(4, static_cast<float>(value))});
+    mesh.attributes.push_back({name, std::vector<std::uint8_t>(4, static_cast<std::uint8_t>(value))});
   return mesh;
 }
 
@@ -37,10 +37,8 @@ Mesh coloured_square(float z, int red, int green, int blue) {
 Mesh together(const Mesh& first, const Mesh& second) {
   Mesh mesh = first;
   test::append(mesh, second);
-  for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
-    const std::vector<float>& more = second.attributes[a].values;
-    mesh.attributes[a].values.insert(mesh.attributes[a].values.end(), more.begin(), more.end());
-  }
+  for (std::size_t a = 0; a < mesh.attributes.size(); ++a)
+    mesh.attributes[a].values.append(second.attributes[a].values);
   return mesh;
 }
 
@@ -127,12 +125,19 @@ TEST(Render, TintsByVertexColours) {
   options.colours = false;
   const Pixel plain = middle(render(blue, options));
   EXPECT_LT(std::abs(plain[2] - plain[0]), 40);
-  Mesh in_floats = blue;  // 0 to 1 instead of 0 to 255
-  for (Attribute& attribute : in_floats.attributes) {
-    attribute.type = AttributeType::float32;
-    for (float& value : attribute.values) value /= 255;
-  }
-  EXPECT_EQ(differing(render(in_floats, front_view()), render(blue, front_view())), 0);
+  const auto scaled = [&](AttributeType type, float factor) {
+    Mesh mesh = blue;
+    for (Attribute& attribute : mesh.attributes) {
+      attribute.values = attribute.values.converted(AttributeType::float32);
+      for (float& value : attribute.values.edit<float>()) value *= factor;
+      attribute.values = attribute.values.converted(type);
+    }
+    return mesh;
+  };
+  const Image expected = render(blue, front_view());
+  EXPECT_EQ(differing(render(scaled(AttributeType::float32, 1.0F / 255), front_view()), expected), 0);
+  EXPECT_EQ(differing(render(scaled(AttributeType::float64, 1), front_view()), expected), 0);
+  EXPECT_EQ(differing(render(scaled(AttributeType::uint16, 257), front_view()), expected), 0);
 }
 
 TEST(Render, IsBrighterOnTopThanBelow) {

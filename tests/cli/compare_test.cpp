@@ -52,7 +52,7 @@ class CompareCommand : public testing::Test {
     const auto found =
         std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
     if (found == attributes.end()) throw std::runtime_error("no attribute " + name);
-    return found->values;
+    return found->values.as<float>();
   }
 
   TemporaryFolder folder_;
@@ -136,8 +136,8 @@ TEST_F(CompareCommand, WritesSignedDistancesOfACloudToAClosedMesh) {
   const std::string points = folder_ / "points.ply";
   Cloud cloud = sphere_cloud(500, 2, 0.5);
   append(cloud, sphere_cloud(500, 3, 2.0));
-  cloud.attributes.push_back({"signed_distance", AttributeType::float32, std::vector<float>(1000, 7)});
-  cloud.attributes.push_back({"quality", AttributeType::float32, std::vector<float>(1000, 3)});
+  cloud.attributes.push_back({"signed_distance", std::vector<float>(1000, 7)});
+  cloud.attributes.push_back({"quality", std::vector<float>(1000, 3)});
   write_cloud(points, cloud);
   json_of({points, mesh_, "--heat", heat_, "--signed", "--samples", "2000"});
   const Cloud heat = read_cloud(heat_);

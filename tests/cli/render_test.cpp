@@ -23,8 +23,9 @@ class RenderCommand : public testing::Test {
  protected:
   RenderCommand() {
     Mesh torus = torus_mesh(30, 15);
-    torus.attributes.push_back({"height", AttributeType::float32, {}});
-    for (const Vec3f& v : torus.vertices) torus.attributes[0].values.push_back(v.y);
+    std::vector<float> heights;
+    for (const Vec3f& v : torus.vertices) heights.push_back(v.y);
+    torus.attributes = {{"height", heights}};
     write_mesh(mesh_, torus);
     write_cloud(cloud_, torus_cloud(2'000, 1));
   }
@@ -154,9 +155,10 @@ class RenderSequence : public RenderCommand {
     for (int frame = 8; frame <= 11; ++frame) {
       Mesh balls = icosphere_mesh(3);
       append(balls, icosphere_mesh(2, 0.3, {2.0 + (frame < 10 ? 0 : frame), 0, 0}));
-      balls.attributes.push_back({"time", AttributeType::float32, {}});
+      std::vector<float> times;
       for (std::size_t v = 0; v < balls.vertices.size(); ++v)
-        balls.attributes[0].values.push_back(static_cast<float>(frame + (v % 2 == 0 ? 0 : 1)));
+        times.push_back(static_cast<float>(frame + (v % 2 == 0 ? 0 : 1)));
+      balls.attributes = {{"time", times}};
       write_mesh(frame_of(frame, ".ply"), balls);
     }
     write_file(folder_ / "frame_x.ply", "no frame");

@@ -150,9 +150,9 @@ Mesh behind_a_wall(bool wall) {
   Mesh mesh = test::translated(test::patch_mesh(4, 0.4), {-0.2F, -0.2F, 0});
   const std::size_t weak = mesh.vertices.size();
   if (wall) test::append(mesh, test::translated(test::patch_mesh(4, 1), {-0.5F, -0.5F, 0.6F}));
-  Attribute weakness{"weakness", AttributeType::float32, std::vector<float>(mesh.vertices.size(), 0)};
-  std::fill(weakness.values.begin(), weakness.values.begin() + static_cast<std::ptrdiff_t>(weak), 0.8F);
-  mesh.attributes = {weakness};
+  std::vector<float> weakness(weak, 0.8F);
+  weakness.resize(mesh.vertices.size(), 0);
+  mesh.attributes = {{"weakness", weakness}};
   return mesh;
 }
 
@@ -181,8 +181,7 @@ TEST(FindProblems, ViewsThatWouldSeeNothingAreLeftOut) {
                                          });
                                        }),
                         shaft.triangles.end());
-  const std::vector<float> none(shaft.vertices.size(), 0);
-  mesh.attributes[0].values.insert(mesh.attributes[0].values.end(), none.begin(), none.end());
+  mesh.attributes[0].values.append(std::vector<float>(shaft.vertices.size(), 0));
   const std::vector<Attribute> kept = mesh.attributes;
   mesh.attributes.clear();
   test::append(mesh, shaft);

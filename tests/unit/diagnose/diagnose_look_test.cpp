@@ -69,7 +69,9 @@ TEST(Look, CountsFlippedNormals) {
     const Findings seen = findings(with_flips(torus, share, 7));
     // 24,000 pairs: a share s of flips opposes 2 s (1 - s) of them, so s is known to about 0.003 / (1 - 2 s).
     EXPECT_NEAR(seen.opposed, 2 * share * (1 - share), 0.02) << share;
-    if (share < 0.4) EXPECT_NEAR(seen.flipped, share, 0.03) << share;
+    if (share < 0.4) {
+      EXPECT_NEAR(seen.flipped, share, 0.03) << share;
+    }
     EXPECT_TRUE(seen.is_chance);
     const NormalsVerdict verdict = diagnose::judge_normals(seen, true);
     EXPECT_EQ(verdict, share < 0.05 ? NormalsVerdict::suspicious : NormalsVerdict::wrong);

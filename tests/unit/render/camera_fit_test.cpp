@@ -172,8 +172,9 @@ TEST(FieldOfView, IsTheVerticalOneInDegrees) {
 
 TEST(CameraOf, IsTheCameraOfThePictureAlsoBesideAScaleOfColours) {
   Mesh mesh = test::torus_mesh(60, 30);
-  mesh.attributes.push_back({"height", AttributeType::float32, {}});
-  for (const Vec3f& v : mesh.vertices) mesh.attributes[0].values.push_back(v.z);
+  std::vector<float> heights;
+  for (const Vec3f& v : mesh.vertices) heights.push_back(v.z);
+  mesh.attributes.push_back({"height", heights});
   mesh.origin = {100, 200, 300};
   for (const std::string name : {"", "height"}) {
     RenderOptions options;

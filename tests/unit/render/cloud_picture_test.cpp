@@ -95,10 +95,9 @@ Cloud green_before_red(bool green_first) {
     cloud.positions.push_back({0, 0, depth});
     cloud.normals.push_back({0, 0, 1});
   }
-  const float first = green_first ? 0 : 255;
-  cloud.attributes.push_back({"red", AttributeType::uint8, {first, 255 - first}});
-  cloud.attributes.push_back({"green", AttributeType::uint8, {255 - first, first}});
-  cloud.attributes.push_back({"blue", AttributeType::uint8, {0, 0}});
+  using Bytes = std::vector<std::uint8_t>;
+  const Bytes red = green_first ? Bytes{0, 255} : Bytes{255, 0};
+  cloud.attributes = {{"red", red}, {"green", Bytes{red[1], red[0]}}, {"blue", Bytes{0, 0}}};
   return cloud;
 }
 

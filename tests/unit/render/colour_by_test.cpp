@@ -81,9 +81,9 @@ TEST(DivergingMap, IsLightAtZeroAndEquallyStrongOnBothSides) {
 template <class Value>
 Mesh square_with(const Value& value) {
   Mesh mesh = test::patch_mesh(50);
-  Attribute values{"value", AttributeType::float32, {}};
-  for (const Vec3f& v : mesh.vertices) values.values.push_back(static_cast<float>(value(v)));
-  mesh.attributes.push_back(values);
+  std::vector<float> values;
+  for (const Vec3f& v : mesh.vertices) values.push_back(static_cast<float>(value(v)));
+  mesh.attributes.push_back({"value", values});
   return mesh;
 }
 
@@ -127,7 +127,7 @@ TEST(ColourBy, DrawsWhatHasNoValueInNeutralGrey) {
 
 TEST(ColourBy, RefusesAnUnknownNameAndListsTheOthers) {
   Mesh mesh = square_with([](const Vec3f&) { return 1; });
-  mesh.attributes.push_back({"density", AttributeType::float32, mesh.attributes[0].values});
+  mesh.attributes.push_back({"density", mesh.attributes[0].values});
   RenderOptions options = by_value();
   options.colour_by = "valu";
   try {
@@ -157,30 +157,47 @@ TEST(ColourBy, WorksForPointsAndForCoordinates) {
 
 TEST(Range, IsFromTheFirstToTheNinetyNinthPercentileOfFiniteValues) {
   Cloud cloud;
-  Attribute values{"value", AttributeType::float32, {}};
+  std::vector<float> values;
   for (int i = 0; i <= 1000; ++i) {
     cloud.positions.push_back({static_cast<float>(i), 0, 0});
-    values.values.push_back(static_cast<float>(i * 37 % 1001));  // 0 to 1000 in another order
+    values.push_back(static_cast<float>(i * 37 % 1001));  // 0 to 1000 in another order
   }
   for (const float wild : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     cloud.positions.push_back({0, 1, 0});
-    values.values.push_back(wild);
+    values.push_back(wild);
   }
-  cloud.attributes = {values};
+  cloud.attributes = {{"value", values}};
   std::optional<ValueRange> range = value_range(cloud, "value");
   ASSERT_TRUE(range);
   EXPECT_EQ(range->low, 10);
   EXPECT_EQ(range->high, 990);
   // All but one are the same: from the smallest to the largest.
-  std::fill(cloud.attributes[0].values.begin(), cloud.attributes[0].values.end(), 3.0F);
-  cloud.attributes[0].values[5] = 8;
+  std::fill(values.begin(), values.end(), 3.0F);
+  values[5] = 8;
+  cloud.attributes = {{"value", values}};
   range = value_range(cloud, "value");
   EXPECT_EQ(range->low, 3);
   EXPECT_EQ(range->high, 8);
-  std::fill(cloud.attributes[0].values.begin(), cloud.attributes[0].values.end(),
-            std::numeric_limits<float>::quiet_NaN());
+  std::fill(values.begin(), values.end(), std::numeric_limits<float>::quiet_NaN());
+  cloud.attributes = {{"value", values}};
   EXPECT_FALSE(value_range(cloud, "value"));
   EXPECT_NO_THROW(render(cloud, by_value()));
+}
+
+TEST(Range, KeepsTheDigitsOfTimesAndLabels) {
+  Cloud cloud;
+  std::vector<double> times;
+  std::vector<std::int32_t> labels;
+  for (int i = 0; i <= 1000; ++i) {
+    cloud.positions.push_back({static_cast<float>(i), 0, 0});
+    times.push_back(3e8 + 0.001 * i);
+    labels.push_back((1 << 25) + i);
+  }
+  cloud.attributes = {{"gps_time", times}, {"label", labels}};
+  EXPECT_NEAR(value_range(cloud, "gps_time")->low, 3e8 + 0.010, 1e-6);
+  EXPECT_NEAR(value_range(cloud, "gps_time")->high, 3e8 + 0.990, 1e-6);
+  EXPECT_EQ(value_range(cloud, "label")->low, (1 << 25) + 10);
+  EXPECT_EQ(value_range(cloud, "label")->high, (1 << 25) + 990);
 }
 
 TEST(Range, OfEqualValuesIsWidened) {

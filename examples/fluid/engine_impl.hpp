@@ -30,12 +30,18 @@ class EngineOn final : public Engine {
     exec::fill(*ex_, particles_.velocity.view(), Vec3f{});
     particles_.multiplier = exec::make_buffer<float>(*ex_, n);
     exec::fill(*ex_, particles_.multiplier.view(), 0.0F);
+    particles_.standing = exec::make_buffer<float>(*ex_, n);
+    exec::fill(*ex_, particles_.standing.view(), 0.0F);
+    particles_.missing = exec::make_buffer<float>(*ex_, n);
+    // The lattice is denser than water at rest. That it counts as being at rest fades: nothing bursts at the start.
+    exec::fill(*ex_, particles_.missing.view(), static_cast<float>(1 - 1 / kRestOrder));
     particles_.density = exec::make_buffer<float>(*ex_, n);
     exec::fill(*ex_, particles_.density.view(), 1.0F);
     particles_.neighbours = exec::make_buffer<std::uint8_t>(*ex_, n * lanes_for(n));
     exec::fill(*ex_, particles_.neighbours.view(), std::uint8_t{0});
     particles_.id = exec::iota(*ex_, n);
     radius_world_ = radius_world;
+    walls_ = {{0, 0, 0}, scene.tank};
     grid_ = fluid::grid_around({{0, 0, 0}, per_metre * scene.tank}, 1);
   }
 
@@ -78,11 +84,14 @@ class EngineOn final : public Engine {
     fluid::Particles input{world.positions.cview()};
     input.bounds = Bounds{radius_world_ * box.lower, radius_world_ * box.upper};
     input.canonical = true;
+    input.walls = walls_;
     constexpr const char* kNames[3] = {"velocity_x", "velocity_y", "velocity_z"};
     if (options.attributes)
       for (std::size_t a = 0; a < 3; ++a)
         input.values.push_back(
-            {kNames[a], {AttributeType::float32, world.velocities[a].data(), nullptr, world.velocities[a].size()}});
+            {kNames[a],
+             {AttributeType::float32, world.velocities[a].data(), nullptr, world.velocities[a].size()},
+             static_cast<int>(a)});
     fluid::FluidSurface made = fluid::make_surface(*ex_, input, options, report);
     pointskin::detail::PhaseClock downloading(*ex_);
     mesh.origin = {};
@@ -130,6 +139,7 @@ class EngineOn final : public Engine {
   std::shared_ptr<Exec> ex_;
   Particles particles_;
   fluid::CellGrid grid_;
+  Bounds walls_;
   float radius_world_ = 1;
 };
 

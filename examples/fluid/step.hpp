@@ -1,7 +1,8 @@
 // One substep of position-based fluids.
 // Sources: Macklin & Mueller, "Position based fluids", ACM Transactions on Graphics 32(4), 2013; Schechter & Bridson,
 // "Ghost SPH for animating water", 2012 (XSPH as a filter of velocities).
-// Differs: only compression is corrected (a surface does not pull itself together); walls are mirrors and the
+// Differs: only compression is corrected (a surface does not pull itself together); at a free surface what is missing
+// counts for the density (kernels.hpp); multipliers outlive the substep; walls are mirrors and the
 // obstacle covers a share of the kernels near it, instead of being particles (kernels.hpp); the neighbours of the
 // predicted places are found once a substep.
 //
@@ -47,9 +48,13 @@ struct StepSettings {
   float longest_move = 1;  ///< of a substep: what is faster is slowed down
   float relaxation = 0;    ///< epsilon of the constraint
   float artificial_pressure = 0;
-  float viscosity = 0;   ///< c of XSPH
-  float vorticity = 0;   ///< 0: no confinement
-  float warm_start = 0;  ///< what is left of the last substep's multipliers
+  float viscosity = 0;      ///< c of XSPH
+  float vorticity = 0;      ///< 0: no confinement
+  float warm_start = 0;     ///< what is left of the last substep's multipliers
+  float standing = 0;       ///< part of their mean over time that is added
+  float rescale = 1;        ///< of the multipliers: squared quotient of the substeps' lengths, this over the last
+  float mean_share = 0;     ///< weight of the last substep's multiplier in that mean, in [0, 1]
+  float missing_share = 0;  ///< weight of this substep in Particles::missing, in [0, 1]
   int iterations = 4;
   KernelConstants kernel{};
   Solids solids{};
@@ -63,6 +68,8 @@ struct Particles {
   exec::Buffer<Vec3f> velocity;           ///< (n) per second
   exec::Buffer<std::int32_t> id;          ///< (n) place in the scene
   exec::Buffer<float> multiplier;         ///< (n) of the last substep: minus the pressure, times seconds^2
+  exec::Buffer<float> standing;           ///< (n) mean of the multipliers over time
+  exec::Buffer<float> missing;            ///< (n) density that the free surface takes away, mean over time
   exec::Buffer<float> density;            ///< (n) over the density at rest, after the last substep
   exec::Buffer<std::uint8_t> neighbours;  ///< (n, lanes_for(n)) found in the last substep, at most
                                           ///< most_neighbours() + 1

@@ -43,17 +43,21 @@ struct Reorder {
   ArrayView<const std::int32_t> order;
   ArrayView<const Vec3f> position, predicted;
   ArrayView<const std::int32_t> id;
-  ArrayView<const float> multiplier;
-  float warm_start;
+  ArrayView<const float> multiplier, standing, missing;
+  StepSettings settings;
   ArrayView<Vec3f> start;
   ArrayView<Placed> place;  // with what the last substep leaves of the multipliers
   ArrayView<std::int32_t> new_id;
-  ArrayView<float> sum;
+  ArrayView<float> sum, new_standing, new_missing;
   PSK_HD void operator()(std::int64_t i) const {
     const std::int32_t from = order[i];
     start[i] = position[from];
     new_id[i] = id[from];
-    sum[i] = warm_start * multiplier[from];
+    new_missing[i] = missing[from];
+    const float last = settings.rescale * multiplier[from];
+    const float mean = settings.rescale * standing[from];
+    new_standing[i] = mean + settings.mean_share * (last - mean);
+    sum[i] = settings.warm_start * last + settings.standing * new_standing[i];
     place[i] = {predicted[from], sum[i]};
   }
 };
@@ -121,6 +125,7 @@ struct FindMultipliers {
   StepSettings settings;
   ArrayView<const Placed> particles;
   NeighbourLists<Lanes> neighbours;
+  ArrayView<const float> missing;
   ArrayView<float> sum;    // of all iterations and the warm start, <= 0
   ArrayView<Placed> step;  // the places with what is added to it
 
@@ -142,7 +147,7 @@ struct FindMultipliers {
     const Vec3f p = particles[i].place;
     const KernelConstants& kernel = settings.kernel;
     const Cover cover = settings.solids.cover(p, kernel);
-    const float compression = (1 + near.weights) * kernel.per_weight + cover.share - 1;
+    const float compression = (1 + near.weights) * kernel.per_weight + cover.share + missing[i] - 1;
     const Vec3f gradient = kernel.slope * near.gradient + cover.gradient;
     const float scale =
         kernel.slope * kernel.slope * near.squares + dot(gradient, gradient) + dot(cover.gradient, cover.gradient);
@@ -204,12 +209,16 @@ void substep_by_lanes(Exec& ex, Particles& particles, const StepSettings& settin
   auto next = exec::make_buffer<step::Placed>(ex, n);
   auto id = exec::make_buffer<std::int32_t>(ex, n);
   auto sum = exec::make_buffer<float>(ex, n);
+  auto standing = exec::make_buffer<float>(ex, n);
+  auto missing = exec::make_buffer<float>(ex, n);
   for_each(ex, "simulation.reorder", n,
            step::Reorder{tree.order.cview(), particles.position.cview(), predicted.cview(), particles.id.cview(),
-                         particles.multiplier.cview(), settings.warm_start, start.view(), now.view(), id.view(),
-                         sum.view()});
+                         particles.multiplier.cview(), particles.standing.cview(), particles.missing.cview(), settings,
+                         start.view(), now.view(), id.view(), sum.view(), standing.view(), missing.view()});
   particles.id.swap(id);
   particles.multiplier.swap(sum);
+  particles.standing.swap(standing);
+  particles.missing.swap(missing);
 
   const std::int64_t lists = n * Lanes;
   auto list = exec::make_buffer<std::int32_t>(ex, lists * step::NeighbourLists<Lanes>::kMost);
@@ -227,11 +236,11 @@ void substep_by_lanes(Exec& ex, Particles& particles, const StepSettings& settin
                       step::Correct<Lanes>{settings, now.cview(), neighbours, next.view()});
     now.swap(next);
   };
-  if (settings.warm_start > 0) correct();
+  if (settings.warm_start > 0 || settings.standing > 0) correct();
   for (int i = 0; i < settings.iterations; ++i) {
-    for_each_by_lanes(
-        ex, "simulation.multipliers", n,
-        step::FindMultipliers<Lanes>{settings, now.cview(), neighbours, particles.multiplier.view(), next.view()});
+    for_each_by_lanes(ex, "simulation.multipliers", n,
+                      step::FindMultipliers<Lanes>{settings, now.cview(), neighbours, particles.missing.cview(),
+                                                   particles.multiplier.view(), next.view()});
     now.swap(next);
     correct();
   }

@@ -17,14 +17,17 @@ struct FindVelocities {
   PSK_HD void operator()(std::int64_t i) const { velocity[i] = per_second * (particles[i].place - start[i]); }
 };
 
-/// XSPH, and the densities of the new places: v_i + c sum_j (v_j - v_i) W_ij / rest density.
+/// XSPH, v_i + c sum_j (v_j - v_i) W_ij / rest density; the densities of the new places, and what the free surface
+/// takes away of them. That is a mean over time: taken anew in every iteration it drives the surface to and fro.
 template <int Lanes>
 struct Smooth {
   static constexpr int kLanes = Lanes;
   struct Sum {
     float weights = 0;
-    Vec3f change{};
-    PSK_HD Sum operator+(const Sum& o) const { return {weights + o.weights, simulation::operator+(change, o.change)}; }
+    Vec3f change{}, moment{};
+    PSK_HD Sum operator+(const Sum& o) const {
+      return {weights + o.weights, simulation::operator+(change, o.change), simulation::operator+(moment, o.moment)};
+    }
   };
 
   StepSettings settings;
@@ -32,15 +35,16 @@ struct Smooth {
   ArrayView<const Vec3f> velocity;
   NeighbourLists<Lanes> neighbours;
   ArrayView<Vec3f> position, smoothed;
-  ArrayView<float> density;
+  ArrayView<float> density, missing;
 
   [[nodiscard]] PSK_HD Sum part(std::int64_t i, int lane) const {
     const Vec3f v = velocity[i];
     Sum out;
     for_each_near(neighbours, particles, settings.solids.mirrors(particles[i].place), i, lane,
-                  [&](std::int32_t j, float /*value*/, const Vec3f& /*d*/, float squared, int set) {
+                  [&](std::int32_t j, float /*value*/, const Vec3f& d, float squared, int set) {
                     const float w = weight(squared);
                     out.weights += w;
+                    out.moment = out.moment + w * d;
                     out.change = out.change + w * (Mirrors::turned(velocity[j], set) - v);
                   });
     return out;
@@ -51,7 +55,11 @@ struct Smooth {
     const KernelConstants& kernel = settings.kernel;
     position[i] = p;
     smoothed[i] = velocity[i] + settings.viscosity * kernel.per_weight * near.change;
-    density[i] = (1 + near.weights) * kernel.per_weight + settings.solids.cover(p, kernel).share;
+    const Cover cover = settings.solids.cover(p, kernel);
+    density[i] = (1 + near.weights) * kernel.per_weight + cover.share;
+    const Vec3f moment = kernel.per_weight * near.moment + cover.moment;
+    const float now = missing_share(std::sqrt(dot(moment, moment)), kernel.surface);
+    missing[i] = missing[i] + settings.missing_share * (now - missing[i]);
   }
 };
 
@@ -130,7 +138,7 @@ void update_velocities(Exec& ex, Particles& particles, const StepSettings& setti
   }
   for_each_by_lanes(ex, "simulation.viscosity", n,
                     Smooth<Lanes>{settings, now, velocity, neighbours, particles.position.view(),
-                                  particles.velocity.view(), particles.density.view()});
+                                  particles.velocity.view(), particles.density.view(), particles.missing.view()});
 }
 
 }  // namespace pointskin::simulation::step

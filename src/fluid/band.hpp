@@ -16,6 +16,7 @@
 #include "exec/space.hpp"
 #include "field/field_view.hpp"
 #include "fluid/particle_tree.hpp"
+#include "fluid/walls.hpp"
 #include "octree/view.hpp"
 
 namespace pointskin::fluid {
@@ -47,6 +48,7 @@ struct BandOptions {
   int depth = 4;        ///< of the finest cells, in [3, octree::kMaxDepth]
   float doubt = 0.75F;  ///< values of smaller magnitude on the coarse level are near the surface; finest cells
   double particles_per_cell = 8;  ///< of the tree's cells, in the bulk; cells are deep by their count
+  Walls walls{};                  ///< where the field ends; `centres` beyond them count for it and nothing else
 };
 
 /// Finds the band of `field` (fluid/zhu_bridson.hpp, fluid/anisotropic.hpp).

@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -19,10 +20,12 @@ namespace band {
 // ---- Where the fluid is deep -------------------------------------------------------------------------------------
 
 /// 1 for cells of particles so well surrounded that no surface is near: the cells around them hold `total` together,
-/// and none is empty.
+/// none is empty, and no wall is within half a cell.
 struct FindDeep {
   octree::LevelView cells;
   std::int32_t total;
+  Walls walls;
+  float width;  // of the cells, unit cube
   ArrayView<std::uint8_t> deep;
   PSK_HD void operator()(std::int64_t i) const {
     const auto cell = static_cast<std::int32_t>(i);
@@ -34,7 +37,13 @@ struct FindDeep {
       sum += count;
       full = count > 0;
     }
-    deep[i] = full && sum >= total ? 1 : 0;
+    deep[i] = full && sum >= total && !is_at_wall(cell) ? 1 : 0;
+  }
+  [[nodiscard]] PSK_HD bool is_at_wall(std::int32_t cell) const {
+    if (walls.cells == 0) return false;
+    const octree::Coordinates c = octree::decode(cells.node_key(cell));
+    const auto middle = [this](std::int32_t v) { return (static_cast<float>(v) + 0.5F) * width; };
+    return !(walls.depth({middle(c.x), middle(c.y), middle(c.z)}) > walls.cells * width);
   }
 };
 
@@ -48,11 +57,13 @@ struct ReachOfParticle {
   ArrayView<const Vec3f> centres;
   int depth;    // of the coarse cells
   float reach;  // unit cube
+  Walls walls;  // what lies beyond are images: what they reach within, the particle reaches, too
 
   template <class Visit>
   PSK_HD void operator()(std::int64_t i, const Visit& visit) const {
     if (!deep.empty() && deep[tree.cell[i]] != 0) return;
     const Vec3f p = centres[i];
+    if (walls.depth(p) < 0) return;
     const float side = static_cast<float>(1 << depth);
     const std::int32_t last = (1 << (depth - 1)) - 1;
     const auto lower = [&](float v) {
@@ -189,9 +200,17 @@ struct KnownValues {
   const float* values = nullptr;
 };
 
+/// A field that ends at walls.
+template <class Field>
+struct WalledField {
+  Field field;
+  Walls walls;
+};
+
 template <class Field>
 struct Evaluate {
   Field field;
+  Walls walls;
   int depth;
   const std::uint64_t* brick_key;
   const std::int32_t* parent;  // (bricks) coarse node, where values are known
@@ -214,8 +233,8 @@ struct EvaluateNode : Evaluate<Field> {
     }
     const octree::Coordinates c = octree::decode(this->brick_key[n >> 3] << 3 | static_cast<unsigned>(n & 7));
     const float width = 1.0F / static_cast<float>(1 << this->depth);
-    this->values[n] = this->field.at(
-        {static_cast<float>(c.x) * width, static_cast<float>(c.y) * width, static_cast<float>(c.z) * width});
+    const Vec3f x{static_cast<float>(c.x) * width, static_cast<float>(c.y) * width, static_cast<float>(c.z) * width};
+    this->values[n] = this->walls.cut(this->field.at(x), x);
   }
 };
 
@@ -235,18 +254,24 @@ struct EvaluateBrick : Evaluate<Field> {
     }
     const octree::Coordinates c = octree::decode(this->brick_key[b] << 3);
     const float width = 1.0F / static_cast<float>(1 << this->depth);
-    this->field.at_brick(
-        {static_cast<float>(c.x) * width, static_cast<float>(c.y) * width, static_cast<float>(c.z) * width}, width,
-        this->values + 8 * b);
+    const auto at = [width](std::int32_t v) { return static_cast<float>(v) * width; };
+    float* const out = this->values + 8 * b;
+    this->field.at_brick({at(c.x), at(c.y), at(c.z)}, width, out);
+    if (this->walls.cells == 0) return;
+    for (int s = 0; s < 8; ++s)
+      out[s] = this->walls.cut(out[s],
+                               {at(c.x + octree::slot_x(s)), at(c.y + octree::slot_y(s)), at(c.z + octree::slot_z(s))});
   }
 #endif
 };
 
 template <exec::Space Exec, class Field>
-void evaluate(Exec& ex, const char* label, const Field& field, SparseLevel& level, const std::int32_t* parent,
+void evaluate(Exec& ex, const WalledField<Field>& field, SparseLevel& level, const std::int32_t* parent,
               const KnownValues& known) {
+  constexpr const char* label = "fluid.values";
   level.values = exec::make_buffer<float>(ex, 8 * level.bricks());
-  const Evaluate<Field> work{field, level.depth, level.brick_key.data(), parent, known, level.values.data()};
+  const Evaluate<Field> work{field.field, field.walls, level.depth,        level.brick_key.data(),
+                             parent,      known,       level.values.data()};
   if constexpr (Exec::kManyThreads)
     for_each(ex, label, 8 * level.bricks(), EvaluateNode<Field>{work});
   else
@@ -301,10 +326,12 @@ struct MarkDrops {
   ParticleTreeView tree;
   ArrayView<const std::uint8_t> deep;  // empty: none is
   ArrayView<const Vec3f> centres;
+  Walls walls;
   NodeBits crossed;
   PSK_HD void operator()(std::int64_t i) const {
     if (!deep.empty() && deep[tree.cell[i]] != 0) return;
     const Vec3f p = centres[i];
+    if (walls.depth(p) < 0) return;
     const std::uint64_t key = octree::cell_key(octree::point_key(p.x, p.y, p.z), coarse.depth);
     const auto node =
         static_cast<std::int32_t>(octree::build::find_node({coarse.brick_key, std::int64_t{coarse.bricks}}, key));
@@ -430,8 +457,8 @@ FineBricks list_fine(Exec& ex, const SparseLevel& coarse, const NodeBits& crosse
 
 /// The band, or false if the surface leaves the coarse level.
 template <exec::Space Exec, class Field>
-bool grow_band(Exec& ex, const Field& field, const ReachOfParticle& particles, const SparseLevel& coarse, float doubt,
-               Band& band) {
+bool grow_band(Exec& ex, const WalledField<Field>& field, const ReachOfParticle& particles, const SparseLevel& coarse,
+               float doubt, Band& band) {
   constexpr const char* kLabel = "fluid.crossed";
   const std::int64_t nodes = 8 * coarse.bricks();
   const std::int64_t words = (nodes + 31) / 32;
@@ -442,13 +469,13 @@ bool grow_band(Exec& ex, const Field& field, const ReachOfParticle& particles, c
   std::uint32_t* const status = bits.data() + 2 * words;
   for_each(ex, kLabel, nodes, MarkCrossed{coarse.view(), coarse.values.data(), doubt, crossed});
   for_each(ex, kLabel, particles.centres.size,
-           MarkDrops{coarse.view(), coarse.values.data(), particles.tree, particles.deep, particles.centres, crossed});
+           MarkDrops{coarse.view(), coarse.values.data(), particles.tree, particles.deep, particles.centres,
+                     particles.walls, crossed});
   FineBricks known;
   exec::Buffer<float> known_values;
   for (band.rounds = 0;; ++band.rounds) {
     FineBricks bricks = list_fine(ex, coarse, crossed, band);
-    evaluate(ex, "fluid.values", field, band.fine, bricks.parent.data(),
-             {known.child_brick.data(), known_values.data()});
+    evaluate(ex, field, band.fine, bricks.parent.data(), {known.child_brick.data(), known_values.data()});
     band.fine_corners = 8 * band.fine.bricks();
     for_each(ex, kLabel, band.fine.bricks(),
              MarkMissing{band.fine.view(), coarse.view(), band.fine.values.data(), bricks.parent.cview(),
@@ -475,19 +502,22 @@ Band find_band(Exec& ex, const Field& field, const ParticleTreeView& tree, Array
     deep = exec::make_buffer<std::uint8_t>(ex, std::int64_t{8} * tree.level.bricks);
     for_each(
         ex, "fluid.deep", deep.size(),
-        band::FindDeep{tree.level, static_cast<std::int32_t>(0.85 * 27 * options.particles_per_cell), deep.view()});
+        band::FindDeep{tree.level, static_cast<std::int32_t>(0.85 * 27 * options.particles_per_cell), options.walls,
+                       static_cast<float>(std::ldexp(tree.cube.size, -tree.level.depth)), deep.view()});
   }
+  const band::WalledField<Field> walled{field, options.walls};
   for (;;) {
-    const band::ReachOfParticle reach_of{tree, deep.cview(), centres, options.depth - 1, kRounding * field.reach()};
+    const band::ReachOfParticle reach_of{
+        tree, deep.cview(), centres, options.depth - 1, kRounding * field.reach(), options.walls};
     const std::int64_t words = std::max<std::int64_t>(1, (std::int64_t{1} << 3 * (options.depth - 2)) / 32);
     constexpr std::int64_t kSmall = 1 << 16;
     constexpr std::int64_t kMostWordsPerParticle = 16;
     const bool few = options.depth - 2 <= 12 && words <= std::max(kSmall, kMostWordsPerParticle * centres.size);
     SparseLevel coarse = few ? band::mark_coarse(ex, reach_of, words) : band::sort_coarse(ex, reach_of);
-    band::evaluate(ex, "fluid.values", field, coarse, nullptr, {});
+    band::evaluate(ex, walled, coarse, nullptr, {});
     Band band;
     band.coarse_corners = 8 * coarse.bricks();
-    if (band::grow_band(ex, field, reach_of, coarse, options.doubt, band)) return band;
+    if (band::grow_band(ex, walled, reach_of, coarse, options.doubt, band)) return band;
     if (deep.empty()) throw Error(ErrorCode::internal, "the surface lies beyond the reach of all particles");
     deep.reset();  // it was not as deep as it looked
   }

@@ -12,7 +12,7 @@
 
 namespace pointskin::fluid {
 
-FluidFrame fit_frame(const Bounds& box, const FluidOptions& options) {
+FluidFrame fit_frame(const Bounds& box, const FluidOptions& options, const std::optional<Bounds>& walls) {
   constexpr int kLeastDepth = 4;
   const double cell = options.cube_size * options.particle_radius;
   FluidFrame frame;
@@ -22,8 +22,13 @@ FluidFrame fit_frame(const Bounds& box, const FluidOptions& options) {
   const double lower[3] = {box.lower.x, box.lower.y, box.lower.z};
   const double upper[3] = {box.upper.x, box.upper.y, box.upper.z};
   double side = 0;
+  double origin[3] = {0, 0, 0};
+  if (walls) {
+    const double corner[3] = {walls->lower.x, walls->lower.y, walls->lower.z};
+    for (std::size_t a = 0; a < 3; ++a) origin[a] = corner[a] + 0.5 * cell;
+  }
   for (std::size_t a = 0; a < 3; ++a) {
-    frame.cube.lower[a] = std::floor((lower[a] - margin) / step) * step;
+    frame.cube.lower[a] = origin[a] + std::floor((lower[a] - origin[a] - margin) / step) * step;
     side = std::max(side, upper[a] + margin - frame.cube.lower[a]);
   }
   frame.depth = kLeastDepth;
@@ -36,6 +41,10 @@ FluidFrame fit_frame(const Bounds& box, const FluidOptions& options) {
                     side / cell, octree::kMaxDepth));
   frame.cube.size = std::ldexp(cell, frame.depth);
   return frame;
+}
+
+Walls walls_in(const octree::Frame& cube, int depth, const Bounds& box) {
+  return {cube.to_unit(box.lower), cube.to_unit(box.upper), static_cast<float>(std::int64_t{1} << depth)};
 }
 
 double threshold_of(const FluidOptions& options) {

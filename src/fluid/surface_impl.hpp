@@ -14,6 +14,7 @@
 #include "fluid/particle_tree_impl.hpp"
 #include "fluid/surface.hpp"
 #include "fluid/values_at.hpp"
+#include "fluid/walls_impl.hpp"
 #include "fluid/zhu_bridson.hpp"
 #include "octree/octree_data.hpp"
 #include "pipeline/phase_clock.hpp"
@@ -94,6 +95,18 @@ SortedParticles sort_particles(Exec& ex, const Particles& particles, const Fluid
   return sorted;
 }
 
+/// What the surface is made of: the particles and, where there are walls, their images.
+inline Particles with_images(const Particles& given, const MirroredParticles& mirrored) {
+  if (!given.walls) return given;
+  Particles all = given;
+  all.positions = mirrored.positions.cview();
+  for (std::size_t a = 0; a < all.values.size(); ++a) {
+    const exec::Buffer<float>& values = mirrored.values[a];
+    all.values[a].values = {AttributeType::float32, values.data(), nullptr, values.size()};
+  }
+  return all;
+}
+
 inline ZhuBridsonField isotropic_field(const SortedParticles& sorted, const FluidFrame& frame,
                                        const FluidOptions& options) {
   return {sorted.tree.view(), sorted.positions.cview(), static_cast<float>(frame.kernel_radius / frame.cube.size),
@@ -102,11 +115,12 @@ inline ZhuBridsonField isotropic_field(const SortedParticles& sorted, const Flui
 }
 
 template <exec::Space Exec>
-Band find_isotropic_band(Exec& ex, const SortedParticles& sorted, const FluidFrame& frame,
-                         const FluidOptions& options) {
+Band find_isotropic_band(Exec& ex, const SortedParticles& sorted, const FluidFrame& frame, const FluidOptions& options,
+                         const Walls& walls = {}) {
   const ZhuBridsonField field = isotropic_field(sorted, frame, options);
   BandOptions band;
   band.depth = frame.depth;
+  band.walls = walls;
   // A corner of a coarse cell is at most sqrt(3) finest cells from the middle of a drop.
   band.doubt = static_cast<float>(std::clamp(1.75 - threshold_of(options) / options.cube_size, 0.5, 1.25));
   band.particles_per_cell = options.smoothing_length * options.smoothing_length * options.smoothing_length;
@@ -133,9 +147,10 @@ Ellipsoids ellipsoids_of(Exec& ex, const SortedParticles& sorted, const FluidFra
 
 template <exec::Space Exec>
 Band find_anisotropic_band(Exec& ex, const AnisotropicField& field, const FluidFrame& frame,
-                           const FluidOptions& options) {
+                           const FluidOptions& options, const Walls& walls = {}) {
   BandOptions band;
   band.depth = frame.depth;
+  band.walls = walls;
   // Where there is nothing, the value is -threshold: that is no doubt.
   band.doubt = std::min(0.75F, 0.8F * field.threshold * field.cells);
   band.particles_per_cell = std::pow(options.smoothing_length, 3);
@@ -144,10 +159,11 @@ Band find_anisotropic_band(Exec& ex, const AnisotropicField& field, const FluidF
 
 /// The band of the field that the options ask for.
 template <exec::Space Exec>
-Band find_band_of(Exec& ex, const SortedParticles& sorted, const FluidFrame& frame, const FluidOptions& options) {
-  if (options.kernel == FluidKernel::isotropic) return find_isotropic_band(ex, sorted, frame, options);
+Band find_band_of(Exec& ex, const SortedParticles& sorted, const FluidFrame& frame, const FluidOptions& options,
+                  const Walls& walls) {
+  if (options.kernel == FluidKernel::isotropic) return find_isotropic_band(ex, sorted, frame, options, walls);
   const Ellipsoids ellipsoids = ellipsoids_of(ex, sorted, frame, options);
-  return find_anisotropic_band(ex, anisotropic_field(ellipsoids, frame, options), frame, options);
+  return find_anisotropic_band(ex, anisotropic_field(ellipsoids, frame, options), frame, options, walls);
 }
 
 /// Everything that follows the extraction.
@@ -184,18 +200,22 @@ void finish(Exec& ex, const SortedParticles& sorted, const Particles& particles,
 }  // namespace make
 
 template <exec::Space Exec>
-FluidSurface make_surface(Exec& ex, const Particles& particles, const FluidOptions& options, FluidReport& report) {
+FluidSurface make_surface(Exec& ex, const Particles& given, const FluidOptions& options, FluidReport& report) {
   using detail::PhaseClock;
-  if (particles.positions.empty())
+  if (given.positions.empty())
     throw Error(ErrorCode::empty_result, "there are no particles; nothing to make a surface of");
   PhaseClock clock(ex);
-  const Bounds box = particles.bounds ? *particles.bounds : octree::box_around(ex, particles.positions);
-  const FluidFrame frame = fit_frame(box, options);
+  const Bounds box = given.bounds ? *given.bounds : octree::box_around(ex, given.positions);
+  const FluidFrame frame = fit_frame(box, options, given.walls);
+  const MirroredParticles mirrored =
+      given.walls ? add_images(ex, given, static_cast<float>(frame.kernel_radius)) : MirroredParticles{};
+  const Particles particles = make::with_images(given, mirrored);
+  const Walls walls = given.walls ? walls_in(frame.cube, frame.depth, *given.walls) : Walls{};
   make::SortedParticles sorted = make::sort_particles(ex, particles, frame);
   clock.lap(report.particles_ms);
 
-  Band band = make::find_band_of(ex, sorted, frame, options);
-  report.particles = particles.positions.size;
+  Band band = make::find_band_of(ex, sorted, frame, options, walls);
+  report.particles = given.positions.size;
   report.depth = frame.depth;
   report.coarse_corners = band.coarse_corners;
   report.fine_corners = band.fine_corners;

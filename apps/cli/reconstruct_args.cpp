@@ -34,7 +34,7 @@ void define_normals(CLI::App& command, ReconstructArgs& args) {
   CLI::Option* policy =
       command
           .add_option("--normals", args.normals_policy,
-                      "given (as they are), auto (turned or repaired where clearly wrong), repair, estimate")
+                      "given (as they are), auto (turned or repaired where wrong), repair, estimate")
           ->type_name("WHAT")
           ->group(kNormalGroup)
           ->capture_default_str();

@@ -110,7 +110,7 @@ TEST_F(WarningsCommand, ACloudThatIsInsideOutGivesTheBytesOfTheRightOne) {
   ASSERT_EQ(reconstruct(save("right.ply", sphere(5000))).err, "");
   const std::string expected = bytes();
   const std::string inward = save("inward.ply", with_flips(sphere(5000), 1, 2));
-  for (const Args& more : {Args{}, Args{"--boundary", "dirichlet"}, Args{"--keep-attributes"}}) {
+  for (const Args& more : {Args{}, Args{"--boundary", "dirichlet"}, Args{"--open"}}) {
     const Result result = reconstruct(inward, more);
     expect_one_warning(result, "all were turned");
     EXPECT_EQ(report_of(result)["input"]["normals"], "turned");

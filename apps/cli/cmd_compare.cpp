@@ -206,7 +206,7 @@ void add_output_options(CLI::App& command, CompareArgs& args) {
       ->group("Output");
   command
       .add_flag("--signed", args.with_sign,
-                "with --heat: `signed_distance` instead, above 0 outside of B, which must be a watertight mesh")
+                "with --heat: `signed_distance` instead, above 0 outside of B, which must be watertight")
       ->group("Output");
   add_overwrite_option(command, args.overwrite);
 }

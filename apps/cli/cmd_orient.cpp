@@ -55,6 +55,7 @@ nlohmann::ordered_json report_json(const OrientArgs& args, const NormalOptions& 
   json["files"] = {{"inputs", args.inputs}, {"output", args.output}};
   json["input"] = {{"points", cloud.size() + cloud.dropped}, {"dropped", cloud.dropped}};
   json["options"] = to_json(options);
+  json["warnings"] = printed_warnings();
   json["normals"] = to_json(report);
   json["ms"] = {{"read", times.read_ms}, {"write", times.write_ms}, {"total", times.total_ms}};
   json["memory"] = {{"host_peak_bytes", host_peak_bytes()}, {"device_peak_bytes", report.device_peak_bytes}};

@@ -116,11 +116,14 @@ struct Estimate {
   [[nodiscard]] std::int64_t total() const { return buffers + cloud; }
 };
 
-Estimate estimate_memory(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
+std::int64_t shared_bytes(const Cloud& cloud, const Record& record) {
+  if (record.device.kind != DeviceKind::cpu) return 0;
   const Mesh* envelope = record.options.envelope.get();
-  const std::int64_t shared = host_bytes(cloud) + (envelope != nullptr ? host_bytes(*envelope) : 0);
-  const std::int64_t buffers = estimate_device_bytes(cloud, record.options, args.threads);
-  return {buffers, record.device.kind == DeviceKind::cpu ? shared : 0};
+  return host_bytes(cloud) + (envelope != nullptr ? host_bytes(*envelope) : 0);
+}
+
+Estimate estimate_memory(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
+  return {estimate_device_bytes(cloud, record.options, args.threads), shared_bytes(cloud, record)};
 }
 
 std::string bytes_text(std::int64_t bytes) {
@@ -183,6 +186,7 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
   record.run = reconstructor.report();
   for (const Warning& warning : record.run.warnings)
     if (warning.kind != WarningKind::coarse_depth || !chose_depth(args)) print_warning(warning.text);
+  if (record.run.normals) warn_about_unsettled(*record.run.normals);
   if (record.run.normals && !args.quiet) print_note(summary(*record.run.normals));
   warn_about_unused_normals(args, record.run);
   warn_about_envelope(record.run.envelope, record.run.points);
@@ -206,7 +210,10 @@ void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record)
 
 /// The deepest that the points support and the memory holds.
 int choose_depth(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
-  const DepthSuggestion chosen = suggest_depth(cloud, record.options, record.device);
+  Options options = record.options;
+  if (options.max_memory_bytes > 0)  // which is for both
+    options.max_memory_bytes = std::max<std::int64_t>(1, options.max_memory_bytes - shared_bytes(cloud, record));
+  const DepthSuggestion chosen = suggest_depth(cloud, options, record.device);
   if (chosen.depth < chosen.supported)
     print_warning(fmt::format("the memory holds depth {} only; the points hold detail for depth {}", chosen.depth,
                               chosen.supported));

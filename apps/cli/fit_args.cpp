@@ -72,8 +72,7 @@ void define_device_options(CLI::App& command, DeviceArgs& args) {
 
 void define_solve_options(CLI::App& command, SolveArgs& args) {
   Options& options = args.options;
-  add_surface_value(command, "--depth", args.depth,
-                    "octree depth D in levels, 1 to 20, or auto; cells are cube / 2^D wide")
+  add_surface_value(command, "--depth", args.depth, "octree depth D in levels, 1 to 20; cells are cube / 2^D wide")
       ->type_name("D")
       ->each([&args](const std::string&) { args.depth_given = true; });
   add_surface_value(command, "--screening", options.screening, "weight of the points, no unit, >= 0; 0: unscreened")
@@ -113,7 +112,7 @@ void define_fit_options(CLI::App& command, FitArgs& args) {
                     "distance of the mesh from the surface, world units, > 0 outwards")
       ->type_name("D");
   add_surface_value(command, "--trim", args.trim,
-                    "cut where samples end: share that counts as sparse, 0 (off) to below 1, or auto")
+                    "cut where samples end: share that counts as sparse, 0 (off) to below 1")
       ->type_name("Q");
   add_surface_value(command, "--island-ratio", options.island_ratio,
                     "trim: smallest piece, share of the area, 0 to below 1")

@@ -102,6 +102,11 @@ std::string summary(const NormalReport& report) {
   return line + "; assumed: " + report.assumed;
 }
 
+void warn_about_unsettled(const NormalReport& report) {
+  if (!report.settled)
+    print_warning("the signs of the normals had not settled when rounds or time ran out; allow more");
+}
+
 NormalReport estimate_normals(Cloud& cloud, const NormalOptions& options, const Device& device, bool quiet) {
   ProgressLine line(!quiet && stderr_is_terminal());
   NormalOptions with_progress = options;
@@ -113,8 +118,8 @@ NormalReport estimate_normals(Cloud& cloud, const NormalOptions& options, const 
   estimator.orient(cloud, with_progress);
   line.clear();
   const NormalReport& report = estimator.report();
-  if (!report.settled)
-    print_warning("the signs of the normals had not settled when rounds or time ran out; allow more");
+  warn_about_unsettled(report);
+  if (const std::optional<Warning> doubts = warning_of_doubts(report)) print_warning(doubts->text);
   if (!quiet) print_note(summary(report));
   return report;
 }

@@ -36,7 +36,10 @@ nlohmann::ordered_json to_json(const NormalReport& report);
 /// One line: method, what changed, doubts and times.
 std::string summary(const NormalReport& report);
 
-/// Gives `cloud` normals, with progress on a terminal unless `quiet`, and says what was assumed.
+/// Warns of signs that had not settled when rounds or time ran out.
+void warn_about_unsettled(const NormalReport& report);
+
+/// Gives `cloud` normals, with progress on a terminal unless `quiet`, and says what was assumed and what is doubtful.
 /// @throws Error as NormalEstimator::orient; interrupted after a signal
 NormalReport estimate_normals(Cloud& cloud, const NormalOptions& options, const Device& device, bool quiet);
 

@@ -30,14 +30,20 @@ void define_files(CLI::App& command, ReconstructArgs& args) {
       ->capture_default_str();
 }
 
+/// What a run of its own can find out; other commands fit surfaces again and again.
+void describe_automatic_values(CLI::App& command) {
+  command.get_option("--depth")->description("octree depth D in levels, 1 to 20, or auto; cells are cube / 2^D wide");
+  command.get_option("--trim")->description(
+      "cut where samples end: share that counts as sparse, 0 (off) to below 1, or auto");
+}
+
 void define_normals(CLI::App& command, ReconstructArgs& args) {
-  CLI::Option* policy =
-      command
-          .add_option("--normals", args.normals_policy,
-                      "given (as they are), auto (turned or repaired where clearly wrong), repair, estimate")
-          ->type_name("WHAT")
-          ->group(kNormalGroup)
-          ->capture_default_str();
+  CLI::Option* policy = command
+                            .add_option("--normals", args.normals_policy,
+                                        "given (as they are), auto (turned or repaired where wrong), repair, estimate")
+                            ->type_name("WHAT")
+                            ->group(kNormalGroup)
+                            ->capture_default_str();
   command
       .add_flag("--estimate-normals{auto}", args.estimate_normals,
                 "same as --normals estimate; =METHOD: auto, sensor, propagate, iterate, repair")
@@ -123,6 +129,7 @@ NormalOptions normal_estimation_of(const ReconstructArgs& args) {
 void define_reconstruct_options(CLI::App& command, ReconstructArgs& args) {
   define_files(command, args);
   define_fit_options(command, args);
+  describe_automatic_values(command);
   define_normals(command, args);
   define_device_options(command, args);
   define_limits(command, args);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <pointskin/device.hpp>
 #include <pointskin/progress.hpp>
 #include <pointskin/vector.hpp>
+#include <pointskin/warning.hpp>
 
 namespace pointskin {
 
@@ -94,6 +96,9 @@ class NormalEstimator {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// WarningKind::normals_doubtful where half of the points or more are doubtful, with their share; else none.
+std::optional<Warning> warning_of_doubts(const NormalReport& report);
 
 /// Device memory that NormalEstimator::orient takes for `cloud`, bytes: from what it measures
 /// (NormalReport::device_peak_bytes) to 1.6 times that. Positions must be finite. Host, time, memory and errors as

@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-namespace pointskin::diagnose {
+namespace pointskin {
+namespace diagnose {
 namespace {
 
 /// Samples that two faces of a cell hold where its level shows all that they know
@@ -115,16 +116,6 @@ void warn_of_repair(const NormalReport& report, std::vector<Warning>& warnings) 
                    percent(flipped), percent(replaced))});
 }
 
-void warn_of_doubts(const NormalReport& report, std::vector<Warning>& warnings) {
-  constexpr double kMost = 0.5;
-  const double share = static_cast<double>(report.doubtful) / std::max(1.0, static_cast<double>(report.points));
-  if (share < kMost) return;
-  warnings.push_back({WarningKind::normals_doubtful, share,
-                      fmt::format("{} of the estimated normals are doubtful: the points are too sparse or too noisy to "
-                                  "tell their sides; give the scanner's position with --sensor, or better points",
-                                  percent(share))});
-}
-
 int supported_depth(double cube, double spacing, double noise) {
   constexpr int kLeast = 4;
   constexpr int kMost = 16;
@@ -135,4 +126,16 @@ int supported_depth(double cube, double spacing, double noise) {
   return std::clamp(static_cast<int>(std::lround(std::log2(cube / cell))), kLeast, kMost);
 }
 
-}  // namespace pointskin::diagnose
+}  // namespace diagnose
+
+std::optional<Warning> warning_of_doubts(const NormalReport& report) {
+  constexpr double kMost = 0.5;
+  const double share = static_cast<double>(report.doubtful) / std::max(1.0, static_cast<double>(report.points));
+  if (share < kMost) return std::nullopt;
+  return Warning{WarningKind::normals_doubtful, share,
+                 fmt::format("{} of the estimated normals are doubtful: the points are too sparse or too noisy to "
+                             "tell their sides; give the scanner's position with --sensor, or better points",
+                             diagnose::percent(share))};
+}
+
+}  // namespace pointskin

@@ -41,9 +41,6 @@ void warn_of_turning(std::vector<Warning>& warnings);
 /// Given normals were repaired without having been asked for.
 void warn_of_repair(const NormalReport& report, std::vector<Warning>& warnings);
 
-/// Of normals that were estimated or repaired, most are a guess; nothing if they are not.
-void warn_of_doubts(const NormalReport& report, std::vector<Warning>& warnings);
-
 /// The depth that spacing and scatter support, for points whose samples and noise are known in units of `cube`.
 int supported_depth(double cube, double spacing, double noise);
 

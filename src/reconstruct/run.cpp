@@ -71,7 +71,8 @@ std::shared_ptr<FieldImpl> Run::solve(const Cloud& cloud) {
     }
   }
   diagnose::warn_of_strays(report_.strays, report_.farthest_strays, report_.warnings);
-  if (report_.normals) diagnose::warn_of_doubts(*report_.normals, report_.warnings);
+  if (report_.normals)
+    if (std::optional<Warning> doubts = warning_of_doubts(*report_.normals)) report_.warnings.push_back(*doubts);
   diagnose::warn_of_fit(diagnose::findings_of(field->seen()), {side_, report_.depth}, report_.warnings);
   return field;
 }

@@ -68,6 +68,9 @@ class HelpOptions : public testing::Test {
   HelpOptions() {
     save("scan.ply", open_scan());
     save("whole.ply", ply_bytes(sphere(1500)));
+    std::vector<Sample> apart = sphere(800);
+    for (Sample& s : apart) s.position = {2.5F + 0.5F * s.position.x, 0.5F * s.position.y, 0.5F * s.position.z};
+    save("apart.ply", ply_bytes(apart));
     save("moved.ply", ply_bytes(sphere(1500, {0.7F, 0.1F, 0.2F})));
     std::vector<Sample> with_stray = sphere(1500, {0.7F, 0.1F, 0.2F});
     with_stray.push_back({{90, 0, 0}, {1, 0, 0}});
@@ -179,6 +182,8 @@ Trials fit_trials() {
                  {"--trim", {{"--trim", "0.1"}}},
                  // what stays is less than nine tenths, and so an island itself
                  {"--island-ratio", {{"--trim", "0.3", "--island-ratio", "0.9"}, {"--trim", "0.3"}, true}},
+                 {"--largest", {{"apart.ply", "--largest"}, {"apart.ply"}}},
+                 {"--min-component", {{"apart.ply", "--min-component", "0.4"}, {"apart.ply"}}},
                  {"--density", {{"--density"}}},
                  {"--weakness", {{"--weakness"}}},
                  {"--keep-attributes", {{"--keep-attributes"}}},
@@ -192,6 +197,7 @@ Trials reconstruct_trials() {
   trials.insert({{"--output", {{"-o", "a.ply", "--repeat", "1"}, {"--repeat", "1"}}},
                  {"--overwrite", {{"-o", "scan.ply", "--overwrite"}, {"-o", "scan.ply"}}},
                  {"--ascii", {{"--ascii"}}},
+                 {"--normals", {{"--normals", "repair"}}},
                  {"--estimate-normals", {{"--estimate-normals"}}},
                  {"--sensor", {{"--estimate-normals", "--sensor", "0,0,0"}, {"--estimate-normals"}}},
                  {"--keep-within", {{"--estimate-normals", "--keep-within", "1"}, {"--estimate-normals"}}},

@@ -300,9 +300,12 @@ TEST_F(ReconstructCommand, ReportTellsWhatTheFileHolds) {
   EXPECT_EQ(report["mesh"]["euler"], 2);
   EXPECT_EQ(report["mesh"]["closed"], true);
   EXPECT_EQ(report["mesh"]["manifold"], true);
-  EXPECT_EQ(
-      report["input"],
-      (Json{{"points", 3000}, {"used", 3000}, {"dropped", 0}, {"strays", {{"count", 0}, {"points", Json::array()}}}}));
+  EXPECT_EQ(report["input"], (Json{{"points", 3000},
+                                   {"used", 3000},
+                                   {"dropped", 0},
+                                   {"normals", "kept"},
+                                   {"strays", {{"count", 0}, {"points", Json::array()}}}}));
+  EXPECT_EQ(report["warnings"], Json::array());
   EXPECT_EQ(report["options"]["depth"], 5);
   EXPECT_EQ(report["options"]["iterations"], 4);
   EXPECT_EQ(report["octree"]["depth"], 5);

@@ -85,8 +85,10 @@ TEST_F(StraysCommand, AreNamedInOneWarningAndInTheReport) {
   EXPECT_EQ(report["input"], (Json{{"points", 4002},
                                    {"used", 4000},
                                    {"dropped", 0},
+                                   {"normals", "kept"},
                                    {"strays", {{"count", 2}, {"points", {{4096, 0, 0}, {0, 0, 64}}}}}}));
   EXPECT_EQ(report["options"]["keep_strays"], false);
+  EXPECT_EQ("pointskin: warning: " + report["warnings"].at(0).get<std::string>() + "\n", result.err);
 }
 
 TEST_F(StraysCommand, AreListedUpToTen) {

@@ -116,15 +116,20 @@ TEST(WrongValues, NameTheirOption) {
       {{"render", "a.ply", "-o", "b.png", "--size", "1"}, "--size: '1'"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--max-memory", "lots"}, "--max-memory: 'lots'"},
       {{"fluid", "a.ply", "-o", "b.ply", "-r", "1", "--max-memory", "lots"}, "--max-memory: 'lots'"},
-      {{"reconstruct", "a.ply", "-o", "b.ply", "--depth", "40"}, "--depth must be in 1..20, but is 40"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--depth", "40"},
+       "--depth: '40' is not a whole number from 1 to 20 or auto"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--samplesPerNode", "101"}, "--samples-per-node must be in"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--samplesPerNode", "101"}, "but is 101"},
       {{"fluid", "a.ply", "-o", "b.ply", "-r", "1", "-c", "90"}, "--cube-size must be in 0.05..4, but is 90"},
       {{"fluid", "a.ply", "-o", "b.ply", "-r", "1", "--mesh-smoothing-iters", "-1"}, "--mesh-smoothing-iters must"},
       {{"orient", "a.ply", "-o", "b.ply", "--max-rounds", "0"}, "--max-rounds must be in 1..1000, but is 0"},
-      {{"reconstruct", "a.ply", "-o", "b.ply", "--depth", "eight"}, "--depth: 'eight' is no valid number"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--depth", "eight"},
+       "--depth: 'eight' is not a whole number from 1 to 20 or auto"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--depth"}, "--depth: its value D is missing"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--depth", "3", "--depth", "4"}, "--depth is given 2 times"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--trim", "1"}, "--trim: '1' is not a number from 0 to below 1 or auto"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--min-component", "1.5"}, "--min-component must be a whole number"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--min-component", "-1"}, "but is -1"},
       {{"fluid", "--simulate", "drop", "-o", "m_{}.ply", "--particles", "1"}, "--particles: 1 is not in [200, "},
       {{"fluid", "--simulate", "drop", "-o", "m_{}.ply", "--viscosity", "2"}, "--viscosity: 2 is not in [0, 1]"},
       {{"bench", "--depths", "8,99"}, "--depths: '99'"},
@@ -136,6 +141,8 @@ TEST(WrongValues, NameTheirOption) {
 TEST(WrongValues, NameTheWordsThatAreAllowed) {
   const std::vector<std::pair<Args, std::string>> cases = {
       {{"reconstruct", "a.ply", "-o", "b.ply", "--boundary", "x"}, "--boundary: 'x' is not free, dirichlet or neumann"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--normals", "x"},
+       "--normals: 'x' is not given, auto, repair or estimate"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--field", "x"}, "--field: 'x' is not poisson or distance"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--bType", "9"}, "--bType: '9' is not 1, 2 or 3"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--device", "x"}, "--device: 'x' is not auto, cpu, cuda or cuda:N"},
@@ -150,7 +157,7 @@ TEST(WrongValues, NameTheWordsThatAreAllowed) {
       {{"fluid", "a.ply", "-o", "b.ply", "-r", "1", "--kernel", "x"}, "--kernel: 'x' is not isotropic or anisotropic"},
       {{"fluid", "--simulate", "x", "-o", "m_{}.ply"},
        "--simulate: 'x' is not dam-break, double-dam-break, drop, obstacle or stir"},
-      {{"render", "a.ply", "-o", "b.png", "--up", "x"}, "--up: 'x' is not y or z"},
+      {{"render", "a.ply", "-o", "b.png", "--up", "w"}, "--up: 'w' is not x, y, z, -x, -y or -z"},
       {{"bench", "--devices", "cpu,x"}, "--devices: 'x' is not all, cpu, cuda or cuda:N"}};
   for (const auto& [args, part] : cases) expect_usage(args, part);
 }

@@ -175,15 +175,26 @@ TEST(Normals, ThatAreRightStayByteForByte) {
   EXPECT_TRUE(test::same_bytes(cloud.positions, truth.positions));
 }
 
-TEST(Normals, TurnedInwardsOnPurposeStay) {
-  const Cloud truth = test::flipped(test::sphere_cloud(5'000, 12));
-  Cloud cloud = truth;
-  orient(cloud);
-  EXPECT_TRUE(test::same_bytes(cloud.normals, truth.normals));
+TEST(Normals, TurnedInwardsStayWithRepairAlone) {
+  const Cloud inward = test::flipped(test::sphere_cloud(5'000, 12));
+  Cloud cloud = inward;
+  NormalOptions on_purpose;
+  on_purpose.method = NormalMethod::repair;
+  orient(cloud, on_purpose);
+  EXPECT_TRUE(test::same_bytes(cloud.normals, inward.normals));
   NormalOptions anew;
   anew.method = NormalMethod::propagate;
   orient(cloud, anew);
-  EXPECT_EQ(right_share(cloud, truth), 0);
+  EXPECT_EQ(right_share(cloud, inward), 0);
+}
+
+TEST(Normals, TurnedInwardsAreTurnedAllByDefault) {
+  const Cloud truth = test::sphere_cloud(5'000, 12);
+  Cloud cloud = test::flipped(truth);
+  const NormalReport report = orient(cloud);
+  EXPECT_EQ(report.flipped, cloud.size());
+  EXPECT_NE(report.assumed.find("pointed into"), std::string::npos) << report.assumed;
+  EXPECT_TRUE(test::same_bytes(cloud.normals, truth.normals));
 }
 
 TEST(Normals, SettleFromARandomStart) {

@@ -303,11 +303,13 @@ TEST(Errors, NameOptionsThatAreOutOfRange) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<Options> bad;
-  for (const int depth : {-1, 0, 21, 1000}) bad.push_back({.depth = depth});
+  for (const int depth : {-1, 21, 1000}) bad.push_back({.depth = depth});
   for (const double w : {-1e-9, kNan, kInfinity}) bad.push_back({.screening = w});
   for (const int iterations : {-3, 0, 1001}) bad.push_back({.iterations = iterations});
   for (const double scale : {0.999, -1.0, 100.5, kNan, kInfinity}) bad.push_back({.scale = scale});
   for (const double samples : {-0.5, 101.0, kNan, kInfinity}) bad.push_back({.samples_per_node = samples});
+  for (const double trim : {-0.5, -2.0, 1.0, kNan}) bad.push_back({.trim = trim});
+  for (const double least : {-1.0, 1.5, kNan, kInfinity}) bad.push_back({.min_component = least});
   bad.push_back({.max_memory_bytes = -1});
   const Cloud cloud = test::sphere_cloud(100, 17);
   for (std::size_t i = 0; i < bad.size(); ++i) {
@@ -315,6 +317,7 @@ TEST(Errors, NameOptionsThatAreOutOfRange) {
     EXPECT_EQ(reconstruct_error(cloud, bad[i]), ErrorCode::usage) << i;
   }
   EXPECT_NO_THROW(validate({.depth = 20, .screening = 0, .iterations = 1000, .scale = 100, .samples_per_node = 100}));
+  EXPECT_NO_THROW(validate({.depth = Options::kAutomaticDepth}));
   EXPECT_NO_THROW(validate({.depth = 1, .screening = 1e6, .iterations = 1, .scale = 1, .samples_per_node = 0}));
 }
 

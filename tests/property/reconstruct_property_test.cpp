@@ -213,10 +213,10 @@ TEST(Reconstruct, ScalesWithOtherFactorsAndMovesInFloat) {
   }
 }
 
-TEST(Reconstruct, TurnsInsideOutWithTheNormals) {
+TEST(Reconstruct, TurnsInsideOutWithTheNormalsThatAreGiven) {
   // The outside of flipped normals is the ball: the solid is the rest of the cube, capped at its faces.
   const Cloud cloud = test::sphere_cloud(10'000, 19);
-  const MeshReport report = measure(reconstructed(flipped(cloud), {.depth = 6}));
+  const MeshReport report = measure(reconstructed(flipped(cloud), {.depth = 6, .point_normals = PointNormals::given}));
   EXPECT_TRUE(report.watertight());
   EXPECT_EQ(report.components, 2);
   EXPECT_EQ(report.euler, 4);

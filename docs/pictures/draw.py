@@ -65,7 +65,7 @@ def draw_lion(studio):
 
 
 def draw_normals(studio):
-    """The Armadillo with every second normal flipped at random: the points, the given normals, and what happens by default."""
+    """The Armadillo with half of its normals flipped at random: the points, the given normals, and what happens by default."""
     positions, normals = clouds.read_ply(studio.cloud("armadillo_oriented.ply"))
     chance = random.Random(1)
     for i in range(0, len(normals), 3):

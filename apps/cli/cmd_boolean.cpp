@@ -21,6 +21,7 @@
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "run_memory.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
 #include "summary_words.hpp"

@@ -23,6 +23,7 @@
 #include "json_text.hpp"
 #include "output_check.hpp"
 #include "report.hpp"
+#include "run_memory.hpp"
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"

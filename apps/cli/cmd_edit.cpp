@@ -17,6 +17,7 @@
 #include "json_text.hpp"
 #include "output_check.hpp"
 #include "report.hpp"
+#include "run_memory.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
 #include "summary_words.hpp"

@@ -18,6 +18,7 @@
 #include "normal_args.hpp"
 #include "output_check.hpp"
 #include "report.hpp"
+#include "run_memory.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
 #include "summary_words.hpp"

@@ -17,6 +17,7 @@
 #include "progress.hpp"
 #include "reconstruct_args.hpp"
 #include "report.hpp"
+#include "run_memory.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
 #include "summary_words.hpp"
@@ -94,57 +95,15 @@ double cube_world(const Cloud& cloud, const Options& options, int threads) {
                                    double{box.upper.z} - box.lower.z});
 }
 
-std::int64_t host_bytes(const Cloud& cloud) {
-  std::int64_t bytes = cloud.size() * static_cast<std::int64_t>(2 * sizeof(Vec3f));
-  for (const Attribute& attribute : cloud.attributes) bytes += static_cast<std::int64_t>(attribute.values.bytes());
-  return bytes;
-}
-
-/// The mesh itself and what measuring distances to it takes.
-std::int64_t host_bytes(const Mesh& envelope) {
-  constexpr std::int64_t kTriangle = 12 + 76 + 16 + 36 + 72;  // ids, tree, its nodes, normal and neighbours; being made
-  constexpr std::int64_t kVertex = 12 + 24;                   // its normal
-  return kTriangle * static_cast<std::int64_t>(envelope.triangles.size()) +
-         kVertex * static_cast<std::int64_t>(envelope.vertices.size());
-}
-
-/// What a run takes where the limit counts.
-struct Estimate {
-  std::int64_t buffers = 0;  ///< of the work; memory.device_peak_bytes of the report
-  std::int64_t cloud = 0;    ///< on the CPU, the cloud and the envelope share the memory with the work
-
-  [[nodiscard]] std::int64_t total() const { return buffers + cloud; }
-};
-
-std::int64_t shared_bytes(const Cloud& cloud, const Record& record) {
-  if (record.device.kind != DeviceKind::cpu) return 0;
-  const Mesh* envelope = record.options.envelope.get();
-  return host_bytes(cloud) + (envelope != nullptr ? host_bytes(*envelope) : 0);
-}
-
-Estimate estimate_memory(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
-  return {estimate_device_bytes(cloud, record.options, args.threads), shared_bytes(cloud, record)};
-}
-
-std::string bytes_text(std::int64_t bytes) {
-  return fmt::format("{} ({} bytes)", format_bytes(static_cast<double>(bytes)), bytes);
-}
-
-void check_memory(std::int64_t estimate, std::int64_t limit) {
-  if (limit == 0 || estimate <= limit) return;
-  throw Error(ErrorCode::over_limit,
-              fmt::format("the estimate of {} is above --max-memory {}; use a smaller --depth or allow more",
-                          bytes_text(estimate), format_bytes(static_cast<double>(limit))));
-}
-
-void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record, const Estimate& estimate) {
-  const std::string with_cloud =
-      estimate.cloud > 0 ? (args.envelope.empty() ? ", with the cloud " : ", with the cloud and the envelope ") +
-                               bytes_text(estimate.total())
-                         : "";
+void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Record& record,
+                    const MemoryEstimate& estimate) {
+  const std::string together =
+      estimate.beside > 0 ? fmt::format(", with the cloud{} and the program {}",
+                                        args.envelope.empty() ? "" : ", the envelope", bytes_text(estimate.total()))
+                          : "";
   const std::string text = fmt::format("points {}, depth {}, device {}: estimate {}{}, available {}", cloud.size(),
                                        record.options.depth, record.device.name(), bytes_text(estimate.buffers),
-                                       with_cloud, format_bytes(static_cast<double>(record.device.available_bytes())));
+                                       together, format_bytes(static_cast<double>(record.device.available_bytes())));
   if (args.output == "-") return print_note(text);  // stdout is kept for PLY.
   write_stdout(text + "\n");
 }
@@ -172,16 +131,16 @@ void warn_about_unused_normals(const ReconstructArgs& args, const RunReport& run
 }
 
 /// Runs the reconstruction, with progress, and the repeated runs, without.
-Mesh compute(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
+Mesh compute(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& memory, Record& record) {
   Reconstructor reconstructor(record.device);
   ProgressLine line(!args.quiet && stderr_is_terminal());
   Options options = record.options;
-  options.max_memory_bytes = 0;  // checked before, with the cloud
+  options.max_memory_bytes = memory.limit_of_run();
   options.progress = [&line](const Progress& progress) {
     line.update(progress);
     return !interrupted();
   };
-  Mesh mesh = reconstructor.reconstruct(cloud, options);
+  Mesh mesh = memory.within_limit([&] { return reconstructor.reconstruct(cloud, options); });
   line.clear();
   record.run = reconstructor.report();
   for (const Warning& warning : record.run.warnings)
@@ -209,11 +168,10 @@ void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record)
 }
 
 /// The deepest that the points support and the memory holds.
-int choose_depth(const ReconstructArgs& args, const Cloud& cloud, const Record& record) {
+int choose_depth(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& memory, const Record& record) {
   Options options = record.options;
-  if (options.max_memory_bytes > 0)  // which is for both
-    options.max_memory_bytes = std::max<std::int64_t>(1, options.max_memory_bytes - shared_bytes(cloud, record));
-  const DepthSuggestion chosen = suggest_depth(cloud, options, record.device);
+  options.max_memory_bytes = memory.limit_of_run();
+  const DepthSuggestion chosen = memory.within_limit([&] { return suggest_depth(cloud, options, record.device); });
   if (chosen.depth < chosen.supported)
     print_warning(fmt::format("the memory holds depth {} only; the points hold detail for depth {}", chosen.depth,
                               chosen.supported));
@@ -224,12 +182,12 @@ int choose_depth(const ReconstructArgs& args, const Cloud& cloud, const Record& 
 }
 
 /// Settles what depends on the points.
-void settle_options(const ReconstructArgs& args, const Cloud& cloud, Record& record) {
+void settle_options(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& memory, Record& record) {
   Options& options = record.options;
   if (args.width_given)
     options.depth = depth_for_width(cube_world(cloud, options, args.threads), args.width_world);
   else if (options.depth == Options::kAutomaticDepth)
-    options.depth = choose_depth(args, cloud, record);
+    options.depth = choose_depth(args, cloud, memory, record);
   record.other_options = other_options(args, options);
 }
 
@@ -247,18 +205,22 @@ int run(const ReconstructArgs& given) {
 
   record.options.envelope = read_envelope(args.envelope, args.threads);
   Cloud cloud = read_input(args, record);
-  settle_options(args, cloud, record);
-  if (args.dry_run || record.options.max_memory_bytes > 0) {
-    const Estimate estimate = estimate_memory(args, cloud, record);
-    if (args.dry_run && !record.options.keep_strays) warn_about_strays(cloud, args.threads);
-    if (args.dry_run) print_estimate(args, cloud, record, estimate);
-    check_memory(estimate.total(), record.options.max_memory_bytes);
+  const bool counts = args.dry_run || record.options.max_memory_bytes > 0;
+  const RunMemory memory =
+      counts ? RunMemory(record.device, record.options, record.options.max_memory_bytes) : RunMemory();
+  memory.check(cloud);
+  settle_options(args, cloud, memory, record);
+  if (args.dry_run && !record.options.keep_strays) warn_about_strays(cloud, args.threads);
+  if (args.dry_run) {
+    const MemoryEstimate estimate = memory.estimate(cloud, record.options);
+    print_estimate(args, cloud, record, estimate);
+    memory.check(estimate);
   }
   if (args.dry_run) return 0;
 
   on_interrupt(OnInterrupt::remember);
   warn_about_unused(args.given, record.options, cloud, mesh_file(args));
-  const Mesh mesh = compute(args, cloud, record);
+  const Mesh mesh = compute(args, cloud, memory, record);
   cloud = Cloud();
   write_output(args, mesh, record);
   record.total_ms = watch.ms();

@@ -19,6 +19,7 @@
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "run_memory.hpp"
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"

@@ -1,9 +1,6 @@
 #include "report.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -238,17 +235,6 @@ std::string level_table(const Record& record) {
                          level.iterations, level.residual_before, level.residual_after);
   }
   return table;
-}
-
-std::int64_t host_peak_bytes() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    std::int64_t kibibytes = 0;
-    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
-  }
-  struct rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
 }  // namespace pointskin::cli

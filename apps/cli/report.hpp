@@ -56,7 +56,4 @@ std::string problem_table(const std::vector<ProblemRegion>& problems);
 /// A table of the solve's levels, with residuals.
 std::string level_table(const Record& record);
 
-/// Largest resident size of this process so far, in bytes.
-std::int64_t host_peak_bytes();
-
 }  // namespace pointskin::cli

@@ -109,7 +109,9 @@ struct Options {
   double offset = 0;
   bool keep_strays = false;           ///< true: stray points count, too (see Strays); the cube is made for all points
   bool residuals = false;             ///< true: measure the residual of every level before and after its solve
-  std::int64_t max_memory_bytes = 0;  ///< refuse to start when the estimate is larger; 0: no limit
+  /// What the run may take on its device, cloud and mesh on the host not counted: it does not start where the estimate
+  /// is larger, and ends with over_limit where it comes to need more. 0: no limit.
+  std::int64_t max_memory_bytes = 0;
 
   /// Called a few times per run from the calling thread; returning false cancels the run (Error interrupted).
   std::function<bool(const Progress&)> progress{};

@@ -21,8 +21,8 @@ constexpr std::size_t kAlignment = 256;
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
-/// Part of the most ever used that may be cached on top: a little more memory for far fewer first touches.
-constexpr std::size_t kSpareShare = 8;
+/// Part of the most ever used that may be cached on top: what a run takes is to be what it was said to take.
+constexpr std::size_t kSpareShare = 64;
 
 /// Blocks from here on are cut from ranges. The address sanitizer watches the blocks of malloc only.
 #ifdef __SANITIZE_ADDRESS__
@@ -111,6 +111,12 @@ class LargeBlocks {
 
   void trim() noexcept { release(cached_); }
 
+  /// Used and cached memory stay below `bytes` as far as what is used does; 0: no limit.
+  void set_limit(std::size_t bytes) noexcept {
+    limit_ = bytes > 0 ? bytes : std::numeric_limits<std::size_t>::max();
+    if (used_ + cached_ > limit_) release(used_ + cached_ - limit_);
+  }
+
   /// Gives at least `bytes` of what is cached back to the system, or all, the ends of the largest ranges first.
   void release(std::size_t bytes) noexcept {
     while (bytes > 0 && !free_.empty()) {
@@ -141,7 +147,8 @@ class LargeBlocks {
     if (bytes > std::numeric_limits<std::size_t>::max() / 2) return free_.end();
     const std::size_t wanted = round_up(bytes, kHugePage);
     const std::size_t most = std::max(most_used_, used_ + bytes);
-    const std::size_t allowed = most + most / kSpareShare - used_ - bytes;
+    const std::size_t together = std::min(most + most / kSpareShare, std::max(limit_, used_ + bytes));
+    const std::size_t allowed = together - used_ - bytes;
     if (cached_ > allowed) release(cached_ - allowed);
     void* mapping = ::mmap(nullptr, wanted + kHugePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (mapping == MAP_FAILED) return free_.end();
@@ -173,6 +180,7 @@ class LargeBlocks {
   std::size_t used_ = 0;
   std::size_t cached_ = 0;
   std::size_t most_used_ = 0;
+  std::size_t limit_ = std::numeric_limits<std::size_t>::max();
 };
 
 class CpuPool final : public MemoryPool {
@@ -185,6 +193,10 @@ class CpuPool final : public MemoryPool {
   void trim() noexcept override {
     small_.trim();
     large_.trim();
+  }
+  void set_limit(std::int64_t bytes) noexcept override {
+    MemoryPool::set_limit(bytes);
+    large_.set_limit(static_cast<std::size_t>(bytes));
   }
   void release_cached(std::int64_t bytes) noexcept override { large_.release(static_cast<std::size_t>(bytes)); }
 

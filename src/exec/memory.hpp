@@ -19,7 +19,7 @@ class MemoryPool {
   MemoryPool(const MemoryPool&) = delete;
   MemoryPool& operator=(const MemoryPool&) = delete;
 
-  /// @throws Error over_limit, naming the size, when the space has no such memory left
+  /// @throws Error over_limit, naming the size, when the space has no such memory left or the limit would be passed
   void* allocate(std::size_t bytes);
   void deallocate(void* block, std::size_t bytes) noexcept;
 
@@ -28,6 +28,9 @@ class MemoryPool {
   /// The same, but no more than about `bytes` of them: for a caller that is about to take as much of the same memory
   /// elsewhere.
   virtual void release_cached(std::int64_t /*bytes*/) noexcept {}
+
+  /// What all blocks may hold together, in bytes; 0: no limit. What is held already stays.
+  virtual void set_limit(std::int64_t bytes) noexcept { limit_ = bytes; }
 
   [[nodiscard]] std::int64_t held_bytes() const noexcept { return held_; }
   [[nodiscard]] std::int64_t peak_bytes() const noexcept { return peak_; }
@@ -39,6 +42,7 @@ class MemoryPool {
 
   std::int64_t held_ = 0;
   std::int64_t peak_ = 0;
+  std::int64_t limit_ = 0;
 };
 
 /// An owned array of trivially copyable T, uninitialised, in the space of its pool. Move-only. Keeps its pool alive.

@@ -46,6 +46,10 @@ struct Input {
 class Engine {
  public:
   virtual ~Engine() = default;
+  /// What all arrays may take together from now on, in bytes; 0: no limit. Fields of the engine are held to it, too.
+  virtual void limit_memory(std::int64_t bytes) = 0;
+  /// Gives memory that is kept for the next run back to the system.
+  virtual void release_memory() = 0;
   virtual std::shared_ptr<FieldImpl> solve(const Input& input, const Options& options, RunReport& report) = 0;
   /// Up to `count` of the points that a run uses, evenly spread over their Morton order, with their normals.
   virtual Cloud thin(const Cloud& cloud, const Options& options, std::int64_t count) = 0;

@@ -20,6 +20,13 @@ class EngineOn final : public Engine {
  public:
   explicit EngineOn(std::shared_ptr<Exec> ex) : ex_(std::move(ex)) {}
 
+  void limit_memory(std::int64_t bytes) override { ex_->pool()->set_limit(bytes); }
+
+  void release_memory() override {
+    ex_->activate();
+    ex_->pool()->trim();
+  }
+
   std::shared_ptr<FieldImpl> solve(const Input& input, const Options& options, RunReport& report) override {
     const Cloud& cloud = input.cloud;
     ex_->activate();

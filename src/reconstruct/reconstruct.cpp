@@ -45,6 +45,7 @@ class Reconstructor::Impl {
   Options begin(const Cloud& cloud, const Options& options) {
     validate(options);
     report_ = {};
+    engine_->limit_memory(options.max_memory_bytes);
     Options settled = options;
     if (options.depth == Options::kAutomaticDepth)
       settled.depth = detail::suggest_depth(*engine_, device_, cloud, options).depth;

@@ -136,8 +136,9 @@ double Run::flipped_parts(const Cloud& cloud) {
 }
 
 bool Run::may_take_normals(const Cloud& cloud) const {
-  return options_.max_memory_bytes == 0 ||
-         estimate_normals_device_bytes(cloud, device_.threads) <= options_.max_memory_bytes;
+  if (options_.max_memory_bytes == 0) return true;
+  const std::int64_t own = cloud.size() * static_cast<std::int64_t>(2 * sizeof(Vec3f));  // a copy, to be changed
+  return estimate_normals_device_bytes(cloud, device_.threads) + own <= options_.max_memory_bytes;
 }
 
 /// @param field  of the normals as they came; stays if these cannot be repaired
@@ -165,6 +166,7 @@ NormalReport Run::orient(Cloud& cloud, NormalMethod method) {
     options.progress = [this](const Progress& progress) {
       return options_.progress({progress.phase, from_ + progress.fraction * (until_ - from_)});
     };
+  engine_.release_memory();
   NormalEstimator estimator(device_);  // its memory is gone before the solve
   estimator.orient(cloud, options);
   return estimator.report();

@@ -248,6 +248,9 @@ TEST_F(HelpOptions, OfReconstruct) {
 TEST_F(HelpOptions, OfProblems) {
   Trials trials = reconstruct_trials();
   for (const char* name : {"--field", "--offset", "--weakness"}) trials.erase(name);
+  trials.insert({{"--pictures", {{"--pictures", "."}}},
+                 {"--pictures-most", {{"--pictures", ".", "--pictures-most", "0"}, {"--pictures", "."}, true}},
+                 {"--up", {{"--up", "z"}}}});
   try_all("problems", {"problems", "scan.ply"}, behind({"-o", "out.ply"}, trials, kOutputs));
 }
 

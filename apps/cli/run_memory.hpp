@@ -21,7 +21,7 @@ std::int64_t host_peak_bytes();
 struct MemoryEstimate {
   std::int64_t buffers = 0;  ///< of the work: memory.device_peak_bytes of the report
   std::int64_t beside = 0;   ///< the program, the cloud and the envelope, which share the CPU's memory with the work
-  std::int64_t read = 0;     ///< the most that reading took
+  std::int64_t so_far = 0;   ///< the most that reading, and finding a depth, took
 
   [[nodiscard]] std::int64_t total() const;
 };
@@ -61,12 +61,14 @@ class RunMemory {
 
  private:
   [[noreturn]] void throw_named(const Error& error) const;
+  /// The most that was taken of what the limit counts.
+  [[nodiscard]] std::int64_t so_far() const;
   /// What the limit is compared with: pages that the system counts come and go by about as much.
   [[nodiscard]] std::int64_t most() const;
 
   Device device_;
   std::int64_t limit_ = 0;
-  std::int64_t beside_ = 0, read_ = 0;
+  std::int64_t beside_ = 0;
 };
 
 /// "62.5 MiB (65536000 bytes)".

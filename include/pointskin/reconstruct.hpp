@@ -107,8 +107,8 @@ struct Options {
   /// is then minus the signed distance to that surface, in finest cells. Finite; excludes `trim`, `density`,
   /// `attributes`, `envelope` and open `domain_faces`.
   double offset = 0;
-  bool keep_strays = false;           ///< true: stray points count, too (see Strays); the cube is made for all points
-  bool residuals = false;             ///< true: measure the residual of every level before and after its solve
+  bool keep_strays = false;  ///< true: stray points count, too (see Strays); the cube is made for all points
+  bool residuals = false;    ///< true: measure the residual of every level before and after its solve
   /// What the run may take on its device, cloud and mesh on the host not counted: it does not start where the estimate
   /// is larger, and ends with over_limit where it comes to need more. 0: no limit.
   std::int64_t max_memory_bytes = 0;
@@ -241,8 +241,9 @@ class Reconstructor {
 /// Estimate of the memory that solve() and Field::extract() take on their device, in bytes:
 /// RunReport::device_peak_bytes within 15 %, from the bricks that the octree of these points would have on every level.
 /// With Options::offset it is an upper bound for common shapes, 1.2 to 3 times what is taken.
-/// What repeat() keeps beyond that, 24 bytes a point and its attributes, and the host's own copy of the cloud are not
-/// in it.
+/// With PointNormals::automatic it is that of a run whose normals are kept or turned: to doubt and repair them takes
+/// more, and is left undone where Options::max_memory_bytes does not allow it. What repeat() keeps beyond that, 24
+/// bytes a point and its attributes, and the host's own copy of the cloud are not in it.
 /// @param threads  CPU threads that count, 0: all
 /// @throws Error usage (an option out of range), over_limit (a level beyond 32-bit node ids)
 /// Takes less memory than it predicts and a fraction of the run's time. O(n log n + nodes log nodes).

@@ -57,7 +57,7 @@ constexpr std::int64_t kTrianglesPerVertex = 2;
 /// Vertices a sample where samples are sparse: cells that they do not resolve have none. Complete levels have some
 /// anyway.
 constexpr std::int64_t kVerticesPerPoint = 10;
-constexpr std::int64_t kCompleteVertices = 5000;
+constexpr std::int64_t kCompleteVertices = 4500;
 
 /// Sums over the levels.
 struct Model {
@@ -150,10 +150,12 @@ struct Model {
     return (kSorted + weight) * points + kept() + kept_counts() + kNodeValue * bricks;
   }
 
-  /// The vector field, as if there were samples for the coarsest levels too, and its divergence.
+  /// The vector field of the finest level, the divergence of all and, once more, of the coarser ones, as if there were
+  /// samples for them.
   [[nodiscard]] std::int64_t splat() const {
     const bool trusts = options.screening > 0 && !options.fixed_screening;
-    return (kWeighed + (trusts ? kTrust : 0)) * points + kept() + kept_counts() + 4 * kNodeValue * bricks;
+    return (kWeighed + (trusts ? kTrust : 0)) * points + kept() + kept_counts() +
+           kNodeValue * (2 * bricks + 2 * level(depth()).bricks);
   }
 
   /// Divergence and solution of all levels; the other solution of one level.

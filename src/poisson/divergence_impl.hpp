@@ -420,24 +420,53 @@ struct FieldLevel {
   }
 };
 
-/// V on the levels from `coarsest` to the finest: what is splatted at a depth and, since hats are nested, all that was
-/// splatted at coarser ones.
+/// V of one level: what is splatted there and, since hats are nested, all that was splatted at coarser ones.
+/// @param above  of the level above; empty at the coarsest level that has a field
 template <exec::Space Exec>
-std::vector<FieldLevel> splat_field(Exec& ex, const octree::OctreeView& tree, const SamplesView& samples,
-                                    int coarsest) {
-  std::vector<FieldLevel> field(static_cast<std::size_t>(tree.depth) + 1);
-  for (int d = coarsest; d <= tree.depth; ++d) {
-    const octree::LevelView& level = tree.levels[d];
-    FieldLevel& own = field[static_cast<std::size_t>(d)];
-    own.values = exec::make_buffer<float>(ex, 3 * level.nodes());
-    if (d == coarsest)
-      exec::fill(ex, own.values.view(), 0.0F);
-    else
-      for_each(ex, "splat.prolong", level.nodes(),
-               ProlongField{level, tree.levels[d - 1], field[static_cast<std::size_t>(d) - 1].view(), own.view()});
-    splat_samples(ex, tree, level, samples, own.view());
+FieldLevel splat_level(Exec& ex, const octree::OctreeView& tree, const SamplesView& samples, int depth,
+                       const FieldLevel& above) {
+  const octree::LevelView& level = tree.levels[depth];
+  FieldLevel own{exec::make_buffer<float>(ex, 3 * level.nodes())};
+  if (above.values.empty())
+    exec::fill(ex, own.values.view(), 0.0F);
+  else
+    for_each(ex, "splat.prolong", level.nodes(), ProlongField{level, tree.levels[depth - 1], above.view(), own.view()});
+  splat_samples(ex, tree, level, samples, own.view());
+  return own;
+}
+
+/// The divergence of V alone, level by level from the coarsest that has a field: no more than two levels of V are there
+/// at once, and of the finest one, beside the divergence, that one alone. Where there is no field nothing is set.
+/// @returns shape (nodes of all levels)
+template <exec::Space Exec>
+exec::Buffer<float> divergence_of_field(Exec& ex, const octree::OctreeView& tree, const SamplesView& samples,
+                                        const Resolution& resolution) {
+  const int coarsest = samples.coarsest_splat_depth;
+  const octree::LevelView& finest = tree.levels[tree.depth];
+  const auto find = [&](int depth, const FieldLevel& field, const exec::Buffer<float>& b) {
+    const octree::LevelView& level = tree.levels[depth];
+    const octree::LevelView* below = depth < tree.depth ? &tree.levels[depth + 1] : nullptr;
+    find_divergence(ex, {level, below != nullptr ? below->cell_bricks : 0, field.view(), make_coefficients(),
+                         b.view().part(level.first_node, level.nodes()), resolution.counts(level),
+                         below != nullptr ? resolution.counts(*below) : nullptr});
+  };
+  exec::Buffer<float> coarse;  // of all levels but the finest
+  if (coarsest < tree.depth) coarse = exec::make_buffer<float>(ex, finest.first_node);
+  FieldLevel field;
+  for (int d = coarsest; d < tree.depth; ++d) {
+    field = splat_level(ex, tree, samples, d, field);
+    find(d, field, coarse);
   }
-  return field;
+  field = splat_level(ex, tree, samples, tree.depth, field);
+  auto b = exec::make_buffer<float>(ex, tree.nodes);
+  if (!coarse.empty()) {
+    const std::int64_t first = tree.levels[coarsest].first_node;
+    const std::int64_t count = finest.first_node - first;
+    exec::copy(ex, coarse.cview().part(first, count), b.view().part(first, count));
+    coarse.reset();
+  }
+  find(tree.depth, field, b);
+  return b;
 }
 
 }  // namespace divergence
@@ -448,29 +477,14 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
   using namespace divergence;
   const octree::OctreeView view = tree.view();
   const int coarsest = samples.coarsest_splat_depth;
-  std::vector<FieldLevel> field = splat_field(ex, view, samples, coarsest);
-  auto b = exec::make_buffer<float>(ex, view.nodes);
+  exec::Buffer<float> b = divergence_of_field(ex, view, samples, resolution);
   const int complete = std::min({view.depth - 1, coarsest - 1, octree::kCompleteDepth});
-  for (int d = view.depth; d > complete; --d) {
+  for (int d = view.depth - 1; d > complete; --d) {
     const octree::LevelView& level = view.levels[d];
-    const ArrayView<float> own = b.view().part(level.first_node, level.nodes());
-    const bool finest = d == view.depth;
-    const bool has_field = d >= coarsest;
-    if (has_field) {
-      const Divergence divergence{level,
-                                  finest ? 0 : view.levels[d + 1].cell_bricks,
-                                  field[static_cast<std::size_t>(d)].view(),
-                                  make_coefficients(),
-                                  own,
-                                  resolution.counts(level),
-                                  finest ? nullptr : resolution.counts(view.levels[d + 1])};
-      find_divergence(ex, divergence);
-    }
-    field[static_cast<std::size_t>(d)] = {};
-    if (finest) continue;
     const octree::LevelView& below = view.levels[d + 1];
     for_each(ex, "splat.restrict", level.nodes(),
-             AddRestriction{level, below, b.data() + below.first_node, has_field, own});
+             AddRestriction{level, below, b.data() + below.first_node, d >= coarsest,
+                            b.view().part(level.first_node, level.nodes())});
   }
   if (complete >= 0)
     sweep(ex, "splat.restrict", complete + 1, view.levels[complete].nodes(),

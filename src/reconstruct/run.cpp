@@ -107,9 +107,12 @@ std::shared_ptr<FieldImpl> Run::fit_judged(const Cloud& cloud) {
       diagnose::warn_of_turning(report_.warnings);
       return field;
     case NormalsVerdict::suspicious: {
-      const double parts = flipped_parts(cloud);
-      if (parts >= kParts) return fit_repaired(cloud, std::move(field));
-      diagnose::warn_of_parts(parts, report_.warnings);
+      const std::optional<double> parts = flipped_parts(cloud);
+      if (parts && *parts >= kParts) return fit_repaired(cloud, std::move(field));
+      if (parts)
+        diagnose::warn_of_parts(*parts, report_.warnings);
+      else
+        warn_of_normals(*field);
       return field;
     }
     case NormalsVerdict::wrong:
@@ -128,11 +131,15 @@ void Run::warn_of_normals(const FieldImpl& field) {
 }
 
 /// The share of points whose normals are flipped: a few thousand of them tell, in a fraction of the time that all take.
-double Run::flipped_parts(const Cloud& cloud) {
+/// @returns nothing if a limit leaves no memory for it
+std::optional<double> Run::flipped_parts(const Cloud& cloud) try {
   constexpr std::int64_t kFew = 16384;
   Cloud few = engine_.thin(cloud, engine_options_, kFew);
   const NormalReport report = orient(few, NormalMethod::automatic);
   return static_cast<double>(report.flipped) / std::max(1.0, static_cast<double>(report.given));
+} catch (const Error& error) {
+  if (options_.max_memory_bytes == 0 || error.code() != ErrorCode::over_limit) throw;
+  return std::nullopt;
 }
 
 bool Run::may_take_normals(const Cloud& cloud) const {

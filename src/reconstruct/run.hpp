@@ -4,6 +4,7 @@
 #include <pointskin/reconstruct.hpp>
 
 #include <memory>
+#include <optional>
 
 #include "diagnose/verdict.hpp"
 #include "pipeline/engine.hpp"
@@ -39,7 +40,7 @@ class Run {
   std::shared_ptr<FieldImpl> fit_repaired(const Cloud& cloud, std::shared_ptr<FieldImpl> field);
   void warn_of_normals(const FieldImpl& field);
   NormalReport orient(Cloud& cloud, NormalMethod method);
-  [[nodiscard]] double flipped_parts(const Cloud& cloud);
+  [[nodiscard]] std::optional<double> flipped_parts(const Cloud& cloud);
   [[nodiscard]] bool may_take_normals(const Cloud& cloud) const;
   [[nodiscard]] diagnose::NormalsVerdict judge(const FieldImpl& field) const;
 

@@ -6,6 +6,7 @@ namespace pointskin {
 namespace detail {
 
 DepthSuggestion suggest_depth(Engine& engine, const Device& device, const Cloud& cloud, const Options& options) {
+  engine.limit_memory(options.max_memory_bytes);
   const Detail detail = engine.measure_detail(cloud, options);
   DepthSuggestion suggestion;
   suggestion.spacing = detail.spacing;

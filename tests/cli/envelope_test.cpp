@@ -114,7 +114,7 @@ TEST_F(EnvelopeOption, CountsInTheMemoryEstimate) {
       pointskin_run({"reconstruct", input_, "--dry-run", "--depth", "5", "--device", "cpu", "--envelope", envelope_});
   EXPECT_EQ(within.exit_code, 0) << within.err;
   EXPECT_NE(within.out, without.out);
-  EXPECT_NE(within.out.find("with the cloud and the envelope"), std::string::npos) << within.out;
+  EXPECT_NE(within.out.find("with the cloud, the envelope and the program"), std::string::npos) << within.out;
 }
 
 }  // namespace

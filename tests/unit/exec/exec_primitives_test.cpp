@@ -1,6 +1,8 @@
 // The primitives on the CPU: the bodies that all spaces share, and what only threads can get wrong.
 #include "unit/exec/primitives_tests.hpp"
 
+#include <pointskin/error.hpp>
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -249,6 +251,44 @@ TEST(SpacesOfACpu, LeaveNothingBehindWhenTheyGo) {
   const std::int64_t before = resident_bytes();
   make_some();
   EXPECT_LT(resident_bytes(), before + (std::int64_t{1} << 20));
+}
+
+TEST(PoolOfACpu, HoldsNoMoreThanItsLimit) {
+  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+  exec::Cpu ex(2);
+  ex.pool()->set_limit(4 * kMiB);
+  auto first = exec::make_buffer<char>(ex, 3 * kMiB);
+  EXPECT_NO_THROW((void)exec::make_buffer<char>(ex, kMiB));
+  try {
+    (void)exec::make_buffer<char>(ex, kMiB + 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::over_limit);
+  }
+  EXPECT_EQ(ex.pool()->held_bytes(), 3 * kMiB);
+  first.reset();
+  EXPECT_NO_THROW((void)exec::make_buffer<char>(ex, kMiB + 1));
+  ex.pool()->set_limit(0);
+  EXPECT_NO_THROW((void)exec::make_buffer<char>(ex, 16 * kMiB));
+}
+
+TEST(PoolOfACpu, CachesNothingBeyondItsLimit) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer watches blocks of malloc, which are not given up one by one";
+#endif
+  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+  exec::Cpu ex(2);
+  const std::int64_t before = resident_bytes();
+  ex.pool()->set_limit(48 * kMiB);
+  for (const std::int64_t size : {16, 20, 24, 28, 32, 36, 40, 44}) {  // none fits where the one before it was
+    auto low = exec::make_buffer<char>(ex, kMiB);
+    auto block = exec::make_buffer<char>(ex, size * kMiB);
+    exec::fill(ex, block.view(), 'x');
+    low.reset();
+    low = exec::make_buffer<char>(ex, 2 * kMiB);
+    exec::fill(ex, low.view(), 'x');
+    EXPECT_LE(resident_bytes() - before, 49 * kMiB) << size;
+  }
 }
 
 TEST(PoolOfACpu, GivesUpWhatItCachesForVectorsOfTheHost) {

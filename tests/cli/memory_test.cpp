@@ -1,0 +1,92 @@
+// Memory of the process: what is said of it, and what --max-memory makes of it.
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <pointskin/io.hpp>
+
+#include "cli/files.hpp"
+#include "cli/program.hpp"
+#include "support/shapes.hpp"
+
+namespace pointskin::test {
+namespace {
+
+using Args = std::vector<std::string>;
+
+class ProcessMemory : public testing::Test {
+ protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+  }
+
+  Result run(const std::string& cloud, const std::string& depth, const Args& more) {
+    Args args = {"reconstruct", cloud, "-o", output_, "--depth", depth, "--device", "cpu", "--threads", "2"};
+    args.insert(args.end(), more.begin(), more.end());
+    return pointskin_run(args);
+  }
+
+  /// Largest size of the process that reconstructs, by its own report.
+  std::int64_t peak(const std::string& cloud, const std::string& depth, Args more = {}) {
+    more.insert(more.end(), {"--report", report_});
+    const Result result = run(cloud, depth, more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(read_file(report_))["memory"]["host_peak_bytes"].get<std::int64_t>();
+  }
+
+  std::string write(const Cloud& cloud, const std::string& name) {
+    write_cloud(folder_ / name, cloud);
+    return folder_ / name;
+  }
+
+  TemporaryFolder folder_;
+  std::string output_ = folder_ / "mesh.ply";
+  std::string report_ = folder_ / "report.json";
+};
+
+TEST_F(ProcessMemory, IsWhatTheDryRunSaysWithin5PercentFrom64MiBOn) {
+  struct Case {
+    Cloud cloud;
+    const char* depth;
+  };
+  for (const Case& one : {Case{torus_cloud(300'000, 1), "8"}, Case{torus_cloud(100'000, 1), "9"},
+                          Case{sphere_cloud(400'000, 2), "8"}, Case{sphere_cloud(800'000, 3), "6"}}) {
+    const std::string cloud = write(one.cloud, "cloud.ply");
+    const auto said = static_cast<double>(bytes_after("with the cloud", run(cloud, one.depth, {"--dry-run"}).out));
+    const auto taken = static_cast<double>(peak(cloud, one.depth));
+    ASSERT_GT(taken, 64 << 20) << "too small a case";
+    EXPECT_NEAR(said / taken, 1, 0.05) << one.cloud.size() << " points, depth " << one.depth;
+  }
+}
+
+TEST_F(ProcessMemory, StaysBelowTheLimitWhateverIsAllowed) {
+  const std::string cloud = write(sphere_cloud(200'000, 4), "cloud.ply");
+  const std::int64_t needed = peak(cloud, "8");
+  std::filesystem::remove(output_);
+  for (const double share : {0.5, 0.7, 0.9}) {
+    const std::string limit = std::to_string(static_cast<std::int64_t>(share * static_cast<double>(needed)));
+    const Result result = run(cloud, "8", {"--max-memory", limit});
+    EXPECT_EQ(result.exit_code, 6) << share;
+    EXPECT_NE(result.err.find("--max-memory"), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(output_));
+  }
+  for (const double share : {1.05, 1.3}) {
+    const auto limit = static_cast<std::int64_t>(share * static_cast<double>(needed));
+    EXPECT_LE(peak(cloud, "8", {"--max-memory", std::to_string(limit)}), limit + limit / 20) << share;
+  }
+}
+
+TEST_F(ProcessMemory, OfAutomaticDepthStaysBelowTheLimit) {
+  const std::string cloud = write(sphere_cloud(200'000, 5), "cloud.ply");
+  constexpr std::int64_t kLimit = 96 << 20;
+  EXPECT_LE(peak(cloud, "auto", {"--max-memory", "96M"}), kLimit + kLimit / 20);
+}
+
+}  // namespace
+}  // namespace pointskin::test

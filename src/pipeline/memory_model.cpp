@@ -51,13 +51,13 @@ constexpr std::int64_t kPieces = 4 + 8;  // trimming: piece, its area
 
 /// Nodes a vertex: 6 to 9 for scans and common shapes, whose nodes are a band of cells around the surface; 4 where the
 /// surface fills the cube like a sponge. Meshes have two triangles a vertex.
-constexpr std::int64_t kNodesPerVertex = 7;
+constexpr std::int64_t kNodesPerTenVertices = 72;
 constexpr std::int64_t kTrianglesPerVertex = 2;
 
 /// Vertices a sample where samples are sparse: cells that they do not resolve have none. Complete levels have some
 /// anyway.
 constexpr std::int64_t kVerticesPerPoint = 10;
-constexpr std::int64_t kCompleteVertices = 4500;
+constexpr std::int64_t kCompleteVertices = 5000;
 
 /// Sums over the levels.
 struct Model {
@@ -96,8 +96,8 @@ struct Model {
     return options.density || options.weakness || trims() ? kNodeValue * counted_bricks : 0;
   }
   [[nodiscard]] std::int64_t vertices() const {
-    if (is_distance()) return 8 * bricks / kNodesPerVertex;
-    return std::min(8 * bricks / kNodesPerVertex, kVerticesPerPoint * points + kCompleteVertices);
+    if (is_distance()) return 80 * bricks / kNodesPerTenVertices;
+    return std::min(80 * bricks / kNodesPerTenVertices, kVerticesPerPoint * points + kCompleteVertices);
   }
   [[nodiscard]] std::int64_t vertex() const { return options.normals || trims() ? 2 * kPosition : kPosition; }
   [[nodiscard]] std::int64_t mesh() const { return (vertex() + kTrianglesPerVertex * kTriangle) * vertices(); }

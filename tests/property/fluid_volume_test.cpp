@@ -85,7 +85,7 @@ TEST(SurfaceOfTheFluid, LiesOnTheWallsThatTheWaterTouches) {
     on_the_floor += v.y < rounding ? 1 : 0;
     if (v.z > rounding && v.z < tank.z - rounding) continue;
     ++on_the_sides;
-    EXPECT_NEAR(mesh.attributes[2].values[i], 0, 1e-3) << "water runs through the wall at vertex " << i;
+    EXPECT_NEAR(mesh.attributes[2].values.at(i), 0, 1e-3) << "water runs through the wall at vertex " << i;
   }
   const double cell = 0.25 * double{simulation.scene().spacing};
   EXPECT_GT(static_cast<double>(on_the_floor) * cell * cell, 0.8 * 0.8 * 0.9);  // the block's foot, which only grows

@@ -49,9 +49,9 @@ constexpr std::int64_t kOrder = 4;
 constexpr std::int64_t kSides = 5;       // trimming: spacing, whether it stays
 constexpr std::int64_t kPieces = 4 + 8;  // trimming: piece, its area
 
-/// Nodes a vertex: 6 to 9 for scans and common shapes, whose nodes are a band of cells around the surface; 4 where the
-/// surface fills the cube like a sponge. Meshes have two triangles a vertex.
-constexpr std::int64_t kNodesPerTenVertices = 72;
+/// Nodes to ten vertices: 76 to 90 for scans and common shapes, whose nodes are a band of cells around the surface; 40
+/// where the surface fills the cube like a sponge. Meshes have two triangles a vertex.
+constexpr std::int64_t kNodesPerTenVertices = 75;
 constexpr std::int64_t kTrianglesPerVertex = 2;
 
 /// Vertices a sample where samples are sparse: cells that they do not resolve have none. Complete levels have some

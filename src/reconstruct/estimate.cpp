@@ -122,7 +122,8 @@ std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, i
   const std::int64_t plain = std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) {
                                return a.bytes < b.bytes;
                              })->bytes;
-  return options.offset == 0 ? plain : with_offset(plain, options.depth);
+  constexpr std::int64_t kScratch = 8192;  // sums and counts on the way
+  return kScratch + (options.offset == 0 ? plain : with_offset(plain, options.depth));
 }
 
 }  // namespace pointskin

@@ -207,6 +207,18 @@ TEST(MemoryEstimate, OfCloudsWithoutASurfaceIsSmall) {
   EXPECT_EQ(error_of([] { (void)estimate_device_bytes(one_place(2), {.depth = 21}); }), ErrorCode::usage);
 }
 
+TEST(MaxMemory, OfTheEstimateIsEnough) {
+  const std::vector<Cloud> clouds = {test::sphere_cloud(40'000, 20), test::torus_cloud(60'000, 21),
+                                     test::box_cloud(10'000, 22), test::linked_tori_cloud(5'000, 23)};
+  for (const Cloud& cloud : clouds)
+    for (const int depth : {3, 5, 7, 8}) {
+      Options options{.depth = depth};
+      options.max_memory_bytes = estimate_device_bytes(cloud, options);
+      EXPECT_EQ(error_of([&] { (void)test::reconstructed(cloud, options); }), std::nullopt)
+          << cloud.size() << " points, depth " << depth;
+    }
+}
+
 TEST(MaxMemory, RefusesOneByteBelowTheEstimateAndRunsAtIt) {
   const Cloud cloud = test::sphere_cloud(5'000, 19);
   Options options{.depth = 6};

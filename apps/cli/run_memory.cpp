@@ -27,6 +27,9 @@ std::int64_t status_bytes(std::string_view name) {
 /// Pages of the program, of its threads and of small blocks that the work touches first: 3.3 to 4.4 MiB measured.
 constexpr std::int64_t kTouchedByWork = std::int64_t{4} << 20;
 
+/// By how much the size of a process differs from run to run, however small it is.
+constexpr std::int64_t kPagesThatComeAndGo = std::int64_t{1} << 20;
+
 /// What measuring distances to an envelope takes beside its mesh.
 std::int64_t bytes_around(const Mesh& envelope) {
   constexpr std::int64_t kTriangle = 76 + 16 + 36 + 72;  // tree, its nodes, normal and neighbours; while it is made
@@ -65,7 +68,7 @@ RunMemory::RunMemory(const Device& device, const Options& options, std::int64_t 
 
 std::int64_t RunMemory::so_far() const { return device_.kind == DeviceKind::cpu ? host_peak_bytes() : 0; }
 
-std::int64_t RunMemory::most() const { return limit_ + limit_ / 50; }
+std::int64_t RunMemory::most() const { return limit_ + std::max(limit_ / 50, kPagesThatComeAndGo); }
 
 void RunMemory::check(const Cloud& cloud) const {
   if (limit_ == 0) return;

@@ -63,7 +63,8 @@ class RunMemory {
   [[noreturn]] void throw_named(const Error& error) const;
   /// The most that was taken of what the limit counts.
   [[nodiscard]] std::int64_t so_far() const;
-  /// What the limit is compared with: pages that the system counts come and go by about as much.
+  /// What the limit is compared with: a fiftieth more, or 1 MiB, by which the size of a process
+  /// differs from run to run.
   [[nodiscard]] std::int64_t most() const;
 
   Device device_;

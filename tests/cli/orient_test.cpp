@@ -151,7 +151,7 @@ TEST_F(OrientCommand, ReconstructCountsTheMemoryOfNormals) {
   EXPECT_GE(report["memory"]["device_peak_bytes"].get<std::int64_t>(), 400 * 4000);
   EXPECT_LE(report["memory"]["device_peak_bytes"].get<std::int64_t>(), estimate);
   std::filesystem::remove(output_);
-  expect_failure(with({"--max-memory", std::to_string(estimate * 19 / 20)}), 6, "--max-memory");
+  expect_failure(with({"--max-memory", std::to_string(estimate * 3 / 4)}), 6, "--max-memory");
 }
 
 TEST_F(OrientCommand, ReconstructRepairsGivenNormals) {

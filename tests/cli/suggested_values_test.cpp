@@ -104,21 +104,22 @@ TEST_F(Suggested, AutomaticDepthFollowsTheDensity) {
 }
 
 TEST_F(Suggested, AutomaticDepthKeepsWithinTheMemoryThatIsAllowed) {
-  const std::string input = save("sphere.ply", sphere(30'000));
+  const std::string input = save("sphere.ply", sphere(60'000));
   const auto dry = [&](const std::string& depth, const Args& more = {}) {
     Args args = {"reconstruct", input, "--dry-run", "--device", "cpu", "--depth", depth};
     args.insert(args.end(), more.begin(), more.end());
     return pointskin_run(args);
   };
-  // Depth 6 fits, depth 7 does not.
-  const std::int64_t limit = bytes_after("with the cloud", dry("6").out);
-  ASSERT_GT(limit, 0);
-  ASSERT_GT(bytes_after("with the cloud", dry("7").out), limit + limit / 10);
-  for (const std::int64_t less : {std::int64_t{0}, limit / 10}) {
+  // Between what two depths take, nearer to the lower one: a process varies, and a little more is let pass.
+  for (const int depth : {5, 6}) {
+    const std::int64_t fits = bytes_after("with the cloud", dry(std::to_string(depth)).out);
+    const std::int64_t next = bytes_after("with the cloud", dry(std::to_string(depth + 1)).out);
+    ASSERT_GT(next, fits);
+    const std::int64_t limit = fits + (next - fits) / 4;
     const Result result =
-        reconstruct(input, {"--depth", "auto", "--device", "cpu", "--max-memory", std::to_string(limit - less)});
+        reconstruct(input, {"--depth", "auto", "--device", "cpu", "--max-memory", std::to_string(limit)});
     const Json report = report_of(result);
-    EXPECT_EQ(report["octree"]["depth"], less == 0 ? 6 : 5);
+    EXPECT_EQ(report["octree"]["depth"], depth);
     EXPECT_NE(report["warnings"].dump().find("the points hold detail for depth 7"), std::string::npos) << result.err;
   }
 }

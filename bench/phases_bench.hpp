@@ -36,12 +36,12 @@
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
 #include "on_spaces.hpp"
-#include "pipeline/points_impl.hpp"
 #include "poisson/density.hpp"
 #include "poisson/divergence.hpp"
 #include "poisson/resolution.hpp"
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
+#include "reconstruct/points_impl.hpp"
 #include "shapes.hpp"
 #include "surface/extract.hpp"
 

@@ -8,7 +8,7 @@
 #include "engine.hpp"
 #include "exec/algorithms.hpp"
 #include "fluid/surface.hpp"
-#include "pipeline/phase_clock.hpp"
+#include "reconstruct/phase_clock.hpp"
 
 namespace pointskin::simulation {
 

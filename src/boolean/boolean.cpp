@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "boolean/engine.hpp"
-#include "pipeline/engine.hpp"
+#include "reconstruct/engine.hpp"
 
 namespace pointskin {
 namespace {

@@ -10,21 +10,21 @@
 #include <type_traits>
 #include <utility>
 
+#include "boolean/crease.hpp"
 #include "boolean/engine.hpp"
-#include "cloud/crease.hpp"
-#include "cloud/keep_apart.hpp"
-#include "cloud/set_operation.hpp"
+#include "boolean/keep_apart.hpp"
+#include "boolean/set_operation.hpp"
 #include "exec/algorithms.hpp"
 #include "field/surface_distance.hpp"
 #include "mesh/oriented_samples.hpp"
 #include "octree/frame.hpp"
 #include "octree/strays.hpp"
-#include "pipeline/fit_field.hpp"
-#include "pipeline/phase_clock.hpp"
-#include "pipeline/points.hpp"
+#include "reconstruct/fit_field.hpp"
+#include "reconstruct/phase_clock.hpp"
+#include "reconstruct/points.hpp"
 
 namespace pointskin::detail {
-namespace boolean {
+namespace operands {
 
 /// Samples of a mesh along a finest cell: what a cell needs to be resolved (Options::samples_per_node), twice over.
 inline constexpr double kMeshSamplesPerCell = 2;
@@ -93,7 +93,7 @@ inline const char* name_of(BooleanOp op) {
   return "symmetric difference";
 }
 
-}  // namespace boolean
+}  // namespace operands
 
 template <exec::Space Exec>
 class BooleansOn final : public Booleans::Impl {
@@ -116,7 +116,7 @@ class BooleansOn final : public Booleans::Impl {
     report_fates(second, op, false, report.b);
     if (report.a.kept + report.b.kept == 0)
       throw Error(ErrorCode::empty_result,
-                  std::string("the ") + boolean::name_of(op) + " is empty: no point of either lies on its surface");
+                  std::string("the ") + operands::name_of(op) + " is empty: no point of either lies on its surface");
     clock.lap(report.classify_ms);
     const double steepness = find_samples(first, second, op, options, report);
     clock.lap(report.crease_ms);
@@ -127,7 +127,7 @@ class BooleansOn final : public Booleans::Impl {
     release(second, steepness > 0);
     download_cloud(kept, result.cloud);
 
-    const Options part = boolean::part_of_run(options.reconstruction, 0.6, 0.4);
+    const Options part = operands::part_of_run(options.reconstruction, 0.6, 0.4);
     FieldData field = fit_field(*ex_, kept, {.cube = frame_}, part, report.result);
     if (steepness > 0)
       keep_apart(first.field, second.field, steepness, options.reconstruction.domain_faces, field, report);
@@ -147,7 +147,7 @@ class BooleansOn final : public Booleans::Impl {
     Bounds box;
     octree::StrayPoints strays;
     FieldData field;
-    exec::Buffer<cloud::Place> places;  // of the points that are used
+    exec::Buffer<boolean::Place> places;  // of the points that are used
   };
 
   void fit_both(const BooleanOperand& a, const BooleanOperand& b, const Options& given, Solid& first, Solid& second,
@@ -155,13 +155,13 @@ class BooleansOn final : public Booleans::Impl {
     Options options = given;
     options.trim = 0;
     options.density = false;
-    boolean::saying("taking A", [&] { take(a, options, first); });
-    boolean::saying("taking B", [&] { take(b, options, second); });
-    frame_ = octree::frame_around(boolean::joined(first.box, second.box), options.scale);
+    operands::saying("taking A", [&] { take(a, options, first); });
+    operands::saying("taking B", [&] { take(b, options, second); });
+    frame_ = octree::frame_around(operands::joined(first.box, second.box), options.scale);
     if (a.mesh() != nullptr) sample(*a.mesh(), options, first);
     if (b.mesh() != nullptr) sample(*b.mesh(), options, second);
-    boolean::saying("reconstructing A", [&] { fit(boolean::part_of_run(options, 0, 0.3), first, report.a); });
-    boolean::saying("reconstructing B", [&] { fit(boolean::part_of_run(options, 0.3, 0.3), second, report.b); });
+    operands::saying("reconstructing A", [&] { fit(operands::part_of_run(options, 0, 0.3), first, report.a); });
+    operands::saying("reconstructing B", [&] { fit(operands::part_of_run(options, 0.3, 0.3), second, report.b); });
   }
 
   void take(const BooleanOperand& operand, const Options& options, Solid& solid) {
@@ -177,19 +177,19 @@ class BooleansOn final : public Booleans::Impl {
     solid.strays = octree::find_strays(*ex_, solid.points.positions.cview());
     solid.box = solid.strays.core;
     if (!options.keep_strays) return leave_out(*ex_, solid.strays, solid.points);
-    for (const Vec3f& p : solid.strays.positions) boolean::join(p, solid.box);
+    for (const Vec3f& p : solid.strays.positions) operands::join(p, solid.box);
     solid.strays = {};
   }
 
   Bounds box_of(const Mesh& mesh) const {
     Bounds box = mesh_detail::bounds_of_solid(mesh, threads());
-    for (Vec3f* corner : {&box.lower, &box.upper}) boolean::Rebase{move_from(mesh.origin), {corner, 1}}(0);
+    for (Vec3f* corner : {&box.lower, &box.upper}) operands::Rebase{move_from(mesh.origin), {corner, 1}}(0);
     return box;
   }
 
   void sample(const Mesh& mesh, const Options& options, Solid& solid) {
     const double cell = frame_.size / static_cast<double>(std::int64_t{1} << options.depth);
-    const Cloud cloud = mesh_detail::sample_surface(mesh, cell / boolean::kMeshSamplesPerCell, threads());
+    const Cloud cloud = mesh_detail::sample_surface(mesh, cell / operands::kMeshSamplesPerCell, threads());
     solid.points = upload(*ex_, cloud);
     rebase(cloud.origin, solid.points);
   }
@@ -215,13 +215,13 @@ class BooleansOn final : public Booleans::Impl {
     auto to_other = exec::make_buffer<field::SurfaceDistance>(*ex_, n);
     field::measure_distances(*ex_, solid.field.view(faces), unit.cview(), to_own.view());
     field::measure_distances(*ex_, other.view(faces), unit.cview(), to_other.view());
-    solid.places = exec::make_buffer<cloud::Place>(*ex_, n);
-    cloud::find_places(*ex_, to_own.cview(), to_other.cview(), static_cast<float>(options.coincidence_cells),
-                       solid.places.view());
+    solid.places = exec::make_buffer<boolean::Place>(*ex_, n);
+    boolean::find_places(*ex_, to_own.cview(), to_other.cview(), static_cast<float>(options.coincidence_cells),
+                         solid.places.view());
   }
 
   void report_fates(const Solid& solid, BooleanOp op, bool is_first, BooleanPart& part) {
-    const cloud::FateCounts counts = cloud::count_fates(*ex_, solid.places.cview(), op, is_first);
+    const boolean::FateCounts counts = boolean::count_fates(*ex_, solid.places.cview(), op, is_first);
     part.kept = counts.kept;
     part.flipped = counts.flipped;
     part.dropped = part.points - counts.kept;
@@ -237,12 +237,12 @@ class BooleansOn final : public Booleans::Impl {
     const DomainFaces faces = options.reconstruction.domain_faces;
     const field::FieldView a = first.field.view(faces);
     const field::FieldView b = second.field.view(faces);
-    const cloud::Crease crease = cloud::find_crease(*ex_, a, b);
+    const boolean::Crease crease = boolean::find_crease(*ex_, a, b);
     report.curve_length = crease.length_unit * frame_.size;
     if (crease.size() == 0) return 0;
-    added_ = cloud::sample_sheets(*ex_, a, b, crease, op);
+    added_ = boolean::sample_sheets(*ex_, a, b, crease, op);
     report.added = added_.positions.size();
-    return op == BooleanOp::symmetric_difference ? cloud::steepness_at(*ex_, crease) : 0;
+    return op == BooleanOp::symmetric_difference ? boolean::steepness_at(*ex_, crease) : 0;
   }
 
   /// What is kept of A, what is kept of B, and what was added; takes these over.
@@ -258,7 +258,7 @@ class BooleansOn final : public Booleans::Impl {
     gather_part(first, op, true, positions.part(0, a), normals.part(0, a));
     gather_part(second, op, false, positions.part(a, b), normals.part(a, b));
     if (c == 0) return kept;
-    for_each(*ex_, "boolean.world", c, boolean::AddSample{frame_, added_.positions.cview(), positions.part(a + b, c)});
+    for_each(*ex_, "boolean.world", c, operands::AddSample{frame_, added_.positions.cview(), positions.part(a + b, c)});
     copy(*ex_, added_.normals.cview(), normals.part(a + b, c));
     kept.added = exec::make_buffer<std::uint8_t>(*ex_, a + b + c);
     exec::fill(*ex_, kept.added.view().part(0, a + b), std::uint8_t{0});
@@ -269,8 +269,8 @@ class BooleansOn final : public Booleans::Impl {
   void gather_part(const Solid& solid, BooleanOp op, bool is_first, ArrayView<Vec3f> positions,
                    ArrayView<Vec3f> normals) {
     const DevicePoints& points = solid.points;
-    cloud::gather_kept(*ex_, {points.positions.cview(), points.normals.cview(), points.used.cview()},
-                       solid.places.cview(), op, is_first, positions, normals);
+    boolean::gather_kept(*ex_, {points.positions.cview(), points.normals.cview(), points.used.cview()},
+                         solid.places.cview(), op, is_first, positions, normals);
   }
 
   void download_cloud(const DevicePoints& points, Cloud& cloud) {
@@ -291,8 +291,8 @@ class BooleansOn final : public Booleans::Impl {
   void keep_apart(const FieldData& a, const FieldData& b, double steepness, DomainFaces faces, FieldData& field,
                   BooleanReport& report) {
     PhaseClock clock(*ex_);
-    cloud::keep_apart(*ex_, a.view(faces), b.view(faces), steepness, field.resolution.view(field.tree),
-                      field.values.view());
+    boolean::keep_apart(*ex_, a.view(faces), b.view(faces), steepness, field.resolution.view(field.tree),
+                        field.values.view());
     clock.lap(report.apart_ms);
     clock.read();
   }
@@ -303,7 +303,7 @@ class BooleansOn final : public Booleans::Impl {
   void rebase(const Vec3d& origin, DevicePoints& points) {
     if (origin == origin_) return;
     for_each(*ex_, "boolean.rebase", points.positions.size(),
-             boolean::Rebase{move_from(origin), points.positions.view()});
+             operands::Rebase{move_from(origin), points.positions.view()});
   }
   [[nodiscard]] int threads() const {
     if constexpr (std::is_same_v<Exec, exec::Cpu>) return ex_->threads();
@@ -313,7 +313,7 @@ class BooleansOn final : public Booleans::Impl {
   std::shared_ptr<Exec> ex_;
   Vec3d origin_{};       // of the run: that of A
   octree::Frame frame_;  // of the run
-  cloud::SheetSamples added_;
+  boolean::SheetSamples added_;
 };
 
 }  // namespace pointskin::detail

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "deform/engine.hpp"
-#include "pipeline/engine.hpp"
+#include "reconstruct/engine.hpp"
 
 namespace pointskin {
 

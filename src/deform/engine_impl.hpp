@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "cloud/prepare_deformation.hpp"
 #include "deform/engine.hpp"
+#include "deform/prepare_deformation.hpp"
 #include "deform/rest.hpp"
 #include "deform/spacing.hpp"
-#include "pipeline/kept_names.hpp"
-#include "pipeline/phase_clock.hpp"
-#include "pipeline/within_envelope.hpp"
+#include "reconstruct/kept_names.hpp"
+#include "reconstruct/phase_clock.hpp"
+#include "reconstruct/within_envelope.hpp"
 
 namespace pointskin::detail {
 
@@ -61,7 +61,7 @@ class DeformOn final : public DeformEngine {
 
   void deform(const Deformation& deformation, DeformReport& report) override {
     ex_->activate();
-    const cloud::PreparedDeformation prepared = cloud::prepare(deformation, rest_.origin);
+    const deform::PreparedDeformation prepared = deform::prepare(deformation, rest_.origin);
     if (prepared.identity)
       stay(report);
     else
@@ -148,25 +148,25 @@ class DeformOn final : public DeformEngine {
     report.map_ms = 0;
   }
 
-  void move(const cloud::PreparedDeformation& prepared, DeformReport& report) {
+  void move(const deform::PreparedDeformation& prepared, DeformReport& report) {
     PhaseClock clock(*ex_);
-    const exec::Buffer<cloud::HandleData> handles = on_device(prepared.handles);
-    const exec::Buffer<cloud::LatticeData> lattices = on_device(prepared.lattices);
+    const exec::Buffer<deform::HandleData> handles = on_device(prepared.handles);
+    const exec::Buffer<deform::LatticeData> lattices = on_device(prepared.lattices);
     const exec::Buffer<Double3> moves = on_device(prepared.moves);
     find_chosen(prepared);
-    cloud::MapView map{handles.cview(), lattices.cview(), moves.cview(), {}, 0};
+    deform::MapView map{handles.cview(), lattices.cview(), moves.cview(), {}, 0};
 
     exec::Buffer<Vec3f> nearest = nearest_at_rest(prepared);
     map.nearest = nearest.cview();
     map.nearest_stride = rest_.size();
-    cloud::Resampled samples = cloud::resample(*ex_, map, rest_.samples(), rest_.surface());
+    deform::Resampled samples = deform::resample(*ex_, map, rest_.samples(), rest_.surface());
     clock.lap(report.sample_ms);
     if (!prepared.point_sets.empty()) {
       nearest = nearest_to(prepared, samples.positions);
       map.nearest = nearest.cview();
       map.nearest_stride = samples.positions.size();
     }
-    cloud::map_samples(*ex_, map, samples.positions.view(), samples.normals.view());
+    deform::map_samples(*ex_, map, samples.positions.view(), samples.normals.view());
     samples_ = std::move(samples);
     clock.lap(report.map_ms);
     clock.read();
@@ -190,7 +190,7 @@ class DeformOn final : public DeformEngine {
   }
 
   /// Makes the lists of points ready that are new, and forgets those that are no longer used.
-  void find_chosen(const cloud::PreparedDeformation& prepared) {
+  void find_chosen(const deform::PreparedDeformation& prepared) {
     for (ChosenPoints& chosen : chosen_) chosen.in_use = false;
     for (const std::vector<std::int64_t>& points : prepared.point_sets) {
       auto known = std::find_if(chosen_.begin(), chosen_.end(),
@@ -239,12 +239,12 @@ class DeformOn final : public DeformEngine {
   }
 
   /// Row r: for every rest sample the nearest point of list r.
-  [[nodiscard]] exec::Buffer<Vec3f> nearest_at_rest(const cloud::PreparedDeformation& prepared) const {
+  [[nodiscard]] exec::Buffer<Vec3f> nearest_at_rest(const deform::PreparedDeformation& prepared) const {
     return rows(prepared, rest_.size(), [](const ChosenPoints& c) { return c.nearest_at_rest.cview(); });
   }
 
   /// The same for other points of the rest pose.
-  [[nodiscard]] exec::Buffer<Vec3f> nearest_to(const cloud::PreparedDeformation& prepared,
+  [[nodiscard]] exec::Buffer<Vec3f> nearest_to(const deform::PreparedDeformation& prepared,
                                                const exec::Buffer<Vec3f>& positions) const {
     const exec::Buffer<Vec3f> unit = to_unit(positions);
     exec::Buffer<std::int32_t> ids;
@@ -255,7 +255,7 @@ class DeformOn final : public DeformEngine {
   }
 
   template <class Ids>
-  [[nodiscard]] exec::Buffer<Vec3f> rows(const cloud::PreparedDeformation& prepared, std::int64_t n,
+  [[nodiscard]] exec::Buffer<Vec3f> rows(const deform::PreparedDeformation& prepared, std::int64_t n,
                                          const Ids& ids_of) const {
     const auto count = static_cast<std::int64_t>(prepared.point_sets.size());
     auto out = exec::make_buffer<Vec3f>(*ex_, count * n);
@@ -270,7 +270,7 @@ class DeformOn final : public DeformEngine {
   Options options_;
   std::shared_ptr<const envelope::Envelope> envelope_;
   RestCloud rest_;
-  cloud::Resampled samples_;  ///< deformed
+  deform::Resampled samples_;  ///< deformed
   std::vector<ChosenPoints> chosen_;
   mutable std::vector<float> rest_distances_;  ///< measured when first asked for
 };

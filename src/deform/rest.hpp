@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "cloud/resample.hpp"
 #include "core/mix_bits.hpp"
+#include "deform/resample.hpp"
 #include "exec/algorithms.hpp"
 #include "octree/search.hpp"
-#include "pipeline/fit_field.hpp"
+#include "reconstruct/fit_field.hpp"
 
 namespace pointskin::detail {
 
@@ -29,8 +29,8 @@ struct RestCloud {
   FieldData field;
 
   [[nodiscard]] std::int64_t size() const { return positions.size(); }
-  [[nodiscard]] cloud::RestSamples samples() const { return {positions.cview(), normals.cview(), spacings.cview()}; }
-  [[nodiscard]] cloud::RestSurface surface() const { return {field.view(DomainFaces::closed), field.frame}; }
+  [[nodiscard]] deform::RestSamples samples() const { return {positions.cview(), normals.cview(), spacings.cview()}; }
+  [[nodiscard]] deform::RestSurface surface() const { return {field.view(DomainFaces::closed), field.frame}; }
 };
 
 namespace rest {

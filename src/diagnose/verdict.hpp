@@ -48,7 +48,7 @@ NormalsVerdict judge_normals(const Findings& findings, bool free_faces);
 bool runs_into_faces(const Findings& findings);
 
 /// What is farther than this from all samples is far, finest cells: 4 typical spacings, 1.75 of those that one sample
-/// in twenty exceeds (as trimming has it, src/pipeline/trim_to_samples.hpp), 3 cells.
+/// in twenty exceeds (as trimming has it, src/reconstruct/trim_to_samples.hpp), 3 cells.
 double far_spacing(const Findings& findings);
 
 /// The value of Options::trim that cuts off what is far and nothing that need not go: the smallest of kTrims that does.

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "exec/space.hpp"
-#include "pipeline/fit_field.hpp"
-#include "pipeline/points.hpp"
+#include "reconstruct/fit_field.hpp"
+#include "reconstruct/points.hpp"
 
 namespace pointskin::detail {
 

@@ -8,16 +8,16 @@
 #include <utility>
 #include <variant>
 
-#include "cloud/guide.hpp"
-#include "cloud/normals_around.hpp"
-#include "cloud/placement.hpp"
-#include "cloud/point_kind.hpp"
-#include "cloud/view_frame.hpp"
+#include "edit/guide.hpp"
+#include "edit/normals_around.hpp"
+#include "edit/placement.hpp"
+#include "edit/point_kind.hpp"
 #include "edit/points.hpp"
+#include "edit/view_frame.hpp"
 #include "exec/algorithms.hpp"
 
 namespace pointskin::detail {
-namespace edit {
+namespace operations {
 
 /// 1 for points that say something of normals, and for those that may be removed.
 struct IsKindOtherThan {
@@ -104,58 +104,58 @@ DevicePoints append(Exec& ex, const DevicePoints& points, const DevicePoints& ad
   return out;
 }
 
-inline cloud::GuideShape shape_of(const Guide& guide, const cloud::ViewFrame& view, const EditInput& input) {
-  cloud::GuideShape shape;
+inline edit::GuideShape shape_of(const Guide& guide, const edit::ViewFrame& view, const EditInput& input) {
+  edit::GuideShape shape;
   const double cell = input.field.frame.size / static_cast<double>(std::int64_t{1} << input.field.tree.depth);
   shape.interval = guide.interval > 0 ? guide.interval : cell;
-  const cloud::DepthRange depths = cloud::depth_range(view, input.base_box, shape.interval);
+  const edit::DepthRange depths = edit::depth_range(view, input.base_box, shape.interval);
   shape.first_depth = depths.first;
   shape.last_depth = depths.last;
-  for (const Pixel& pixel : guide.stroke) shape.stroke.push_back(cloud::to_plane(guide.camera, pixel));
+  for (const Pixel& pixel : guide.stroke) shape.stroke.push_back(edit::to_plane(guide.camera, pixel));
   return shape;
 }
 
 /// The sides of an area's polygons.
-inline std::vector<cloud::PlaneEdge> edges_of(const Camera& camera, const Area& area) {
-  std::vector<cloud::PlaneEdge> edges;
+inline std::vector<edit::PlaneEdge> edges_of(const Camera& camera, const Area& area) {
+  std::vector<edit::PlaneEdge> edges;
   for (const std::vector<Pixel>& polygon : area)
     for (std::size_t i = 0; i < polygon.size(); ++i)
       edges.push_back(
-          {cloud::to_plane(camera, polygon[i]), cloud::to_plane(camera, polygon[i + 1 < polygon.size() ? i + 1 : 0])});
+          {edit::to_plane(camera, polygon[i]), edit::to_plane(camera, polygon[i + 1 < polygon.size() ? i + 1 : 0])});
   return edges;
 }
 
 template <exec::Space Exec>
 EditedPoints apply(Exec& ex, const EditInput& input, const Guide& guide) {
-  const cloud::ViewFrame view = cloud::frame_of(guide.camera, input.origin);
-  cloud::GuideShape shape = shape_of(guide, view, input);
+  const edit::ViewFrame view = edit::frame_of(guide.camera, input.origin);
+  edit::GuideShape shape = shape_of(guide, view, input);
   if (guide.stroke.empty()) shape.edges = edges_of(guide.camera, guide.area);
   EditedPoints edited;
   if (!(shape.last_depth >= shape.first_depth)) return edited;  // all of the cloud is behind the eye
   const FieldData& field = input.field;
-  const cloud::KeepInside keep{field.view(input.options.domain_faces), field.frame, guide.inside_only};
+  const edit::KeepInside keep{field.view(input.options.domain_faces), field.frame, guide.inside_only};
   const bool by_stroke = guide.normals == GuideNormals::stroke;
-  cloud::GuidePoints points = cloud::guide_points(ex, view, shape, keep, by_stroke);
+  edit::GuidePoints points = edit::guide_points(ex, view, shape, keep, by_stroke);
   edited.added = points.positions.size();
   if (edited.added == 0) return edited;
   if (!by_stroke) {
     const FieldSamples& samples = field.samples;
     auto counts = exec::make_buffer<std::uint8_t>(ex, samples.added.size());
-    for_each(ex, "guide.count", counts.size(), IsKindOtherThan{samples.added.cview(), cloud::kGuide, counts.view()});
-    points.normals = cloud::interpolate_normals(
+    for_each(ex, "guide.count", counts.size(), IsKindOtherThan{samples.added.cview(), edit::kGuide, counts.view()});
+    points.normals = edit::interpolate_normals(
         ex, {field.tree.view(), samples.positions.cview(), samples.normals.cview(), counts.cview()}, field.frame,
         points.positions.cview());
   }
   if (input.normal_length != 1)
     for_each(ex, "guide.length", edited.added, Scale{points.normals.view(), static_cast<float>(input.normal_length)});
-  edited.points = append(ex, input.points, {std::move(points.positions), std::move(points.normals)}, cloud::kGuide);
+  edited.points = append(ex, input.points, {std::move(points.positions), std::move(points.normals)}, edit::kGuide);
   return edited;
 }
 
 template <exec::Space Exec>
 EditedPoints apply(Exec& ex, const EditInput& input, const Remove& remove) {
-  const std::vector<cloud::PlaneEdge> edges = edges_of(remove.camera, remove.area);
-  auto on_device = exec::make_buffer<cloud::PlaneEdge>(ex, static_cast<std::int64_t>(edges.size()));
+  const std::vector<edit::PlaneEdge> edges = edges_of(remove.camera, remove.area);
+  auto on_device = exec::make_buffer<edit::PlaneEdge>(ex, static_cast<std::int64_t>(edges.size()));
   copy_to_device(ex, edges.data(), on_device.view());
   const DevicePoints& points = input.points;
   exec::Buffer<std::uint8_t> all;
@@ -163,10 +163,10 @@ EditedPoints apply(Exec& ex, const EditInput& input, const Remove& remove) {
     all = exec::make_buffer<std::uint8_t>(ex, points.positions.size());
     exec::fill(ex, all.view(), std::uint8_t{1});
   }
-  static_assert(cloud::kOriginal == 0);  // so that the kinds tell what may be removed
+  static_assert(edit::kOriginal == 0);  // so that the kinds tell what may be removed
   const exec::Buffer<std::int32_t> kept =
-      cloud::points_not_in(ex, cloud::frame_of(remove.camera, input.origin), {on_device.cview()},
-                           points.positions.cview(), remove.originals ? all.cview() : points.added.cview());
+      edit::points_not_in(ex, edit::frame_of(remove.camera, input.origin), {on_device.cview()},
+                          points.positions.cview(), remove.originals ? all.cview() : points.added.cview());
   EditedPoints edited;
   edited.removed = points.positions.size() - kept.size();
   if (kept.empty()) throw Error(ErrorCode::empty_result, "the operation would remove all points");
@@ -175,8 +175,8 @@ EditedPoints apply(Exec& ex, const EditInput& input, const Remove& remove) {
 }
 
 /// From the part's coordinates, relative to its origin, to those of the cloud, relative to `origin`.
-inline cloud::Placement placement_of(const Insert& insert, const Vec3d& origin) {
-  cloud::Placement placement;
+inline edit::Placement placement_of(const Insert& insert, const Vec3d& origin) {
+  edit::Placement placement;
   const Similarity& s = insert.placement;
   for (std::size_t i = 0; i < 9; ++i) {
     placement.turn[i] = s.rotation[i];
@@ -217,39 +217,39 @@ DevicePoints upload_part(Exec& ex, const Insert& insert, const Options& options)
 template <exec::Space Exec>
 EditedPoints apply(Exec& ex, const EditInput& input, const Insert& insert) {
   DevicePoints part = upload_part(ex, insert, input.options);
-  cloud::place(ex, placement_of(insert, input.origin), part.positions.view(), part.normals.view());
+  edit::place(ex, placement_of(insert, input.origin), part.positions.view(), part.normals.view());
   EditedPoints edited;
   if (insert.snap) {
     const FieldData& field = input.field;
     const exec::Buffer<std::int32_t> ids = exec::iota(ex, field.samples.positions.size());
-    const cloud::SnapTarget target{
+    const edit::SnapTarget target{
         {field.tree.view(), field.samples.positions.cview(), ids.cview()}, field.samples.normals.cview(), field.frame};
-    const auto motion = cloud::find_snap(ex, target, part.positions.cview(), part.normals.cview());
+    const auto motion = edit::find_snap(ex, target, part.positions.cview(), part.normals.cview());
     edited.snapped = motion.has_value();
-    if (motion) cloud::place(ex, *motion, part.positions.view(), part.normals.view());
+    if (motion) edit::place(ex, *motion, part.positions.view(), part.normals.view());
   }
   edited.added = part.positions.size();
-  edited.points = append(ex, input.points, part, cloud::kInserted);
+  edited.points = append(ex, input.points, part, edit::kInserted);
   return edited;
 }
 
-}  // namespace edit
+}  // namespace operations
 
 template <exec::Space Exec>
 EditedPoints edit_points(Exec& ex, const EditInput& input, const Operation& operation) {
-  return std::visit([&](const auto& kind) { return edit::apply(ex, input, kind); }, operation);
+  return std::visit([&](const auto& kind) { return operations::apply(ex, input, kind); }, operation);
 }
 
 template <exec::Space Exec>
 DevicePoints copy_used(Exec& ex, const DevicePoints& points) {
   const exec::Buffer<std::int32_t> all =
       points.used.empty() ? exec::iota(ex, points.positions.size()) : exec::Buffer<std::int32_t>();
-  return edit::choose(ex, points, points.used.empty() ? all.cview() : points.used.cview());
+  return operations::choose(ex, points, points.used.empty() ? all.cview() : points.used.cview());
 }
 
 template <exec::Space Exec>
 double mean_length(Exec& ex, ArrayView<const Vec3f> normals) {
-  return exec::reduce<double>(ex, "edit.length", normals.size, edit::LengthOf{normals}, edit::Add{}) /
+  return exec::reduce<double>(ex, "edit.length", normals.size, operations::LengthOf{normals}, operations::Add{}) /
          static_cast<double>(normals.size);
 }
 

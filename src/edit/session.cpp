@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "edit/points.hpp"
-#include "pipeline/engine.hpp"
+#include "reconstruct/engine.hpp"
 
 namespace pointskin {
 namespace {

@@ -9,13 +9,13 @@
 #include <variant>
 #include <vector>
 
-#include "cloud/point_kind.hpp"
+#include "edit/point_kind.hpp"
 #include "edit/points.hpp"
 #include "edit/session.hpp"
 #include "exec/algorithms.hpp"
-#include "pipeline/fit_field.hpp"
-#include "pipeline/points.hpp"
-#include "pipeline/within_envelope.hpp"
+#include "reconstruct/fit_field.hpp"
+#include "reconstruct/points.hpp"
+#include "reconstruct/within_envelope.hpp"
 
 namespace pointskin::detail {
 
@@ -148,7 +148,7 @@ class SessionOn final : public EditSession::Impl {
 
   exec::Buffer<std::uint8_t> zeros(std::int64_t size) const {
     auto buffer = exec::make_buffer<std::uint8_t>(*ex_, size);
-    exec::fill(*ex_, buffer.view(), cloud::kOriginal);
+    exec::fill(*ex_, buffer.view(), edit::kOriginal);
     return buffer;
   }
 

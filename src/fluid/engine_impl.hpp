@@ -13,9 +13,9 @@
 #include "fluid/engine.hpp"
 #include "fluid/surface.hpp"
 #include "octree/frame_impl.hpp"
-#include "pipeline/kept_names.hpp"
-#include "pipeline/phase_clock.hpp"
-#include "pipeline/points.hpp"
+#include "reconstruct/kept_names.hpp"
+#include "reconstruct/phase_clock.hpp"
+#include "reconstruct/points.hpp"
 
 namespace pointskin::detail {
 

@@ -17,7 +17,7 @@
 #include "fluid/walls_impl.hpp"
 #include "fluid/zhu_bridson.hpp"
 #include "octree/octree_data.hpp"
-#include "pipeline/phase_clock.hpp"
+#include "reconstruct/phase_clock.hpp"
 
 namespace pointskin::fluid {
 namespace make {

@@ -10,17 +10,17 @@
 #include <utility>
 #include <vector>
 
-#include "cloud/estimate_normals.hpp"
-#include "cloud/likely_signs.hpp"
-#include "cloud/neighbours.hpp"
 #include "exec/algorithms.hpp"
 #include "normals/engine.hpp"
+#include "normals/estimate_normals.hpp"
+#include "normals/likely_signs.hpp"
+#include "normals/neighbours.hpp"
 #include "normals/prepared_cloud.hpp"
 #include "normals/sign_solver.hpp"
-#include "pipeline/phase_clock.hpp"
+#include "reconstruct/phase_clock.hpp"
 
 namespace pointskin::detail {
-namespace normals {
+namespace lines {
 
 enum Fate : std::int32_t { estimated, kept, flipped, replaced };
 
@@ -135,7 +135,7 @@ inline std::string assumption(const NormalReport& report, bool is_certain) {
   return "the points enclose nothing: which side is outside is a guess; give the sensor's position";
 }
 
-}  // namespace normals
+}  // namespace lines
 
 template <exec::Space Exec>
 class NormalsOn final : public NormalEngine {
@@ -150,14 +150,14 @@ class NormalsOn final : public NormalEngine {
     PhaseClock clock(*ex_);
     const PreparedCloud points = prepare_cloud(*ex_, cloud);
     const octree::SearchView search{points.tree.view(), points.positions.cview(), {}};
-    const exec::Buffer<std::int32_t> neighbours = cloud::find_neighbours(*ex_, search);
-    cloud::NormalLines lines = cloud::estimate_lines(*ex_, search, neighbours.cview());
+    const exec::Buffer<std::int32_t> neighbours = normals::find_neighbours(*ex_, search);
+    normals::NormalLines lines = normals::estimate_lines(*ex_, search, neighbours.cview());
     clock.lap(report.estimate_ms);
 
     announce(options, "propagate", 0.3);
     exec::Buffer<std::int32_t> evidence = find_evidence(points, lines, views, options);
-    const cloud::LinkedLines linked{points.positions.cview(), lines.normals.cview(), lines.flatness.cview(),
-                                    lines.noise.cview(), neighbours.cview()};
+    const normals::LinkedLines linked{points.positions.cview(), lines.normals.cview(), lines.flatness.cview(),
+                                      lines.noise.cview(), neighbours.cview()};
     const double typical = evidence.empty() ? 0 : turn_lines(linked, lines, evidence);
     const Evidence known{evidence.cview(), typical, views.turns_given};
     SignSolver<Exec> solver(*ex_, linked, points.tree, known, options, report);
@@ -168,7 +168,7 @@ class NormalsOn final : public NormalEngine {
     clock.lap(report.iterate_ms);
     write(points, lines, solver, options, cloud, report);
     clock.read();
-    report.assumed = normals::assumption(report, known.is_certain());
+    report.assumed = lines::assumption(report, known.is_certain());
     report.device_peak_bytes = ex_->pool()->peak_bytes();
   }
 
@@ -178,7 +178,7 @@ class NormalsOn final : public NormalEngine {
       throw Error(ErrorCode::interrupted, std::string("cancelled before the phase \"") + phase + "\"");
   }
 
-  exec::Buffer<std::int32_t> find_evidence(const PreparedCloud& points, const cloud::NormalLines& lines,
+  exec::Buffer<std::int32_t> find_evidence(const PreparedCloud& points, const normals::NormalLines& lines,
                                            const Views& views, const NormalOptions& options) {
     exec::Buffer<std::int32_t> evidence;
     const std::int64_t n = points.positions.size();
@@ -200,14 +200,15 @@ class NormalsOn final : public NormalEngine {
   }
 
   /// @returns the mean vote of links; 0: the evidence says nothing of single points
-  double turn_lines(const cloud::LinkedLines& linked, cloud::NormalLines& lines, exec::Buffer<std::int32_t>& evidence) {
-    const cloud::LikelySigns likely = cloud::spread_evidence(*ex_, linked, evidence.cview());
+  double turn_lines(const normals::LinkedLines& linked, normals::NormalLines& lines,
+                    exec::Buffer<std::int32_t>& evidence) {
+    const normals::LikelySigns likely = normals::spread_evidence(*ex_, linked, evidence.cview());
     for_each(*ex_, "normals.turn", likely.signs.size(),
-             normals::TurnLines{likely.signs.cview(), lines.normals.view(), lines.curvature.view(), evidence.view()});
+             lines::TurnLines{likely.signs.cview(), lines.normals.view(), lines.curvature.view(), evidence.view()});
     return likely.typical;
   }
 
-  void write(const PreparedCloud& points, const cloud::NormalLines& lines, const SignSolver<Exec>& solver,
+  void write(const PreparedCloud& points, const normals::NormalLines& lines, const SignSolver<Exec>& solver,
              const NormalOptions& options, Cloud& cloud, NormalReport& report) {
     const std::int64_t n = points.positions.size();
     auto out = exec::make_buffer<Vec3f>(*ex_, n);
@@ -215,19 +216,19 @@ class NormalsOn final : public NormalEngine {
     const double cosine = std::cos(options.keep_within_degrees * 3.14159265358979323846 / 180);
     const bool keep = options.method == NormalMethod::repair;
     for_each(*ex_, "normals.write", n,
-             normals::WriteNormals{points.order.cview(), solver.signs().cview(), lines.normals.cview(),
-                                   keep ? points.given.cview() : ArrayView<const Vec3f>{}, cosine * cosine, out.view(),
-                                   fates.view()});
-    const auto counts = exec::reduce<normals::FateCounts>(
-        *ex_, "normals.count", n, normals::CountFates{fates.cview(), solver.confidence().cview()}, normals::AddFates{});
-    report.kept = counts.of[normals::kept];
-    report.flipped = counts.of[normals::flipped];
-    report.replaced = counts.of[normals::replaced];
+             lines::WriteNormals{points.order.cview(), solver.signs().cview(), lines.normals.cview(),
+                                 keep ? points.given.cview() : ArrayView<const Vec3f>{}, cosine * cosine, out.view(),
+                                 fates.view()});
+    const auto counts = exec::reduce<lines::FateCounts>(
+        *ex_, "normals.count", n, lines::CountFates{fates.cview(), solver.confidence().cview()}, lines::AddFates{});
+    report.kept = counts.of[lines::kept];
+    report.flipped = counts.of[lines::flipped];
+    report.replaced = counts.of[lines::replaced];
     report.given = report.kept + report.flipped + report.replaced;
     report.doubtful = counts.doubtful;
-    if (options.confidence) normals::set_attribute(cloud, "confidence", scattered(points, solver.confidence(), {}, 1));
+    if (options.confidence) lines::set_attribute(cloud, "confidence", scattered(points, solver.confidence(), {}, 1));
     if (options.curvature)
-      normals::set_attribute(
+      lines::set_attribute(
           cloud, "curvature",
           scattered(points, lines.curvature, solver.signs().cview(), static_cast<float>(1 / points.frame.size)));
     download_array(*ex_, out, cloud.normals);
@@ -237,7 +238,7 @@ class NormalsOn final : public NormalEngine {
                                ArrayView<const std::int32_t> signs, float factor) {
     auto out = exec::make_buffer<float>(*ex_, values.size());
     for_each(*ex_, "normals.scatter", values.size(),
-             normals::Scatter{points.order.cview(), signs, values.cview(), factor, out.view()});
+             lines::Scatter{points.order.cview(), signs, values.cview(), factor, out.view()});
     std::vector<float> host;
     download_array(*ex_, out, host);
     return host;

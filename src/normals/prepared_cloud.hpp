@@ -16,8 +16,8 @@
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
 #include "octree/strays.hpp"
-#include "pipeline/points.hpp"
-#include "pipeline/points_impl.hpp"
+#include "reconstruct/points.hpp"
+#include "reconstruct/points_impl.hpp"
 
 namespace pointskin::detail {
 

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "cloud/sign_graph.hpp"
 #include "exec/algorithms.hpp"
 #include "normals/disjoint_sets.hpp"
 #include "normals/judge.hpp"
+#include "normals/sign_graph.hpp"
 #include "normals/sign_kernels.hpp"
 #include "normals/trial_field.hpp"
 
@@ -34,7 +34,7 @@ inline constexpr double kSettled = 0.001;
 /// What the input says of signs.
 struct Evidence {
   ArrayView<const std::int32_t> signs;  ///< (n) 1, -1 or 0: which sign of the line it speaks for; empty: of none
-  double typical = 0;                   ///< unless 0, lines have their likely signs (cloud::LikelySigns)
+  double typical = 0;                   ///< unless 0, lines have their likely signs (normals::LikelySigns)
   bool may_be_inside_out = false;       ///< all signs of a closed part may be wrong
 
   /// The input knows more than neighbours do.
@@ -44,16 +44,17 @@ struct Evidence {
 template <exec::Space Exec>
 class SignSolver {
  public:
-  SignSolver(Exec& ex, const cloud::LinkedLines& lines, const octree::OctreeData& tree, const Evidence& evidence,
+  SignSolver(Exec& ex, const normals::LinkedLines& lines, const octree::OctreeData& tree, const Evidence& evidence,
              const NormalOptions& options, NormalReport& report)
       : ex_(ex), lines_(lines), tree_(tree), evidence_(evidence), options_(options), report_(report) {}
 
   /// Neighbours alone.
   void propagate() {
     const std::int64_t n = lines_.positions.size;
-    patches_ = cloud::start_patches(ex_, lines_, evidence_.typical > 0);
-    for (const double agreement : kAgreements) cloud::merge_patches(ex_, {agreement, 0, evidence_.typical}, patches_);
-    cloud::merge_patches(ex_, {kAgreements.back(), std::max<std::int64_t>(32, n / 2000), evidence_.typical}, patches_);
+    patches_ = normals::start_patches(ex_, lines_, evidence_.typical > 0);
+    for (const double agreement : kAgreements) normals::merge_patches(ex_, {agreement, 0, evidence_.typical}, patches_);
+    normals::merge_patches(ex_, {kAgreements.back(), std::max<std::int64_t>(32, n / 2000), evidence_.typical},
+                           patches_);
     report_.patches = patches_.count;
     join_patches();
     signs_ = exec::make_buffer<std::int32_t>(ex_, n);
@@ -102,7 +103,7 @@ class SignSolver {
 
   /// Components of patches, with the less sure votes.
   void join_patches() {
-    cloud::SignPatches upper;
+    normals::SignPatches upper;
     upper.count = patches_.count;
     upper.labels = exec::iota(ex_, patches_.count);
     upper.signs = exec::make_buffer<std::int32_t>(ex_, patches_.count);
@@ -111,7 +112,7 @@ class SignSolver {
     copy(ex_, patches_.sizes.cview(), upper.sizes.view());
     upper.pairs = std::move(patches_.pairs);
     upper.votes = std::move(patches_.votes);
-    cloud::merge_patches(ex_, {0, 0, evidence_.typical}, upper);
+    normals::merge_patches(ex_, {0, 0, evidence_.typical}, upper);
     report_.components = upper.count;
     components_ = to_host(upper.labels);
     const std::vector<std::int32_t> signs = to_host(upper.signs);
@@ -388,7 +389,7 @@ class SignSolver {
     auto changed = exec::make_buffer<std::int32_t>(ex_, n);
     for (int round = 0; round < kRounds; ++round) {
       trial.solve(signs_.cview());
-      cloud::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
+      normals::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
       for_each(ex_, "normals.clean", n,
                signs::CleanUp{trial.view(), lines_.positions, lines_.normals, agreement.cview(), signs_.view(),
                               changed.view()});
@@ -399,7 +400,7 @@ class SignSolver {
   void settle_confidence(TrialField<Exec>& trial) {
     const std::int64_t n = signs_.size();
     auto agreement = exec::make_buffer<float>(ex_, n);
-    cloud::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
+    normals::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
     const double sides = options_.method == NormalMethod::sensor || options_.method == NormalMethod::repair
                              ? 1.0
                              : std::clamp(5 * std::abs(report_.enclosing), 0.5, 1.0);
@@ -411,14 +412,14 @@ class SignSolver {
 
   using Clock = std::chrono::steady_clock;
   Exec& ex_;
-  cloud::LinkedLines lines_;
+  normals::LinkedLines lines_;
   const octree::OctreeData& tree_;
   Evidence evidence_;
   const NormalOptions& options_;
   NormalReport& report_;
   Clock::time_point start_ = Clock::now();
 
-  cloud::SignPatches patches_;
+  normals::SignPatches patches_;
   std::vector<std::int32_t> components_;  // of patches
   std::vector<int> patch_signs_;
   std::vector<std::uint64_t> sizes_;

@@ -10,7 +10,7 @@
 #include "octree/frame.hpp"
 #include "octree/keys.hpp"
 #include "octree/strays.hpp"
-#include "pipeline/memory_model.hpp"
+#include "reconstruct/memory_model.hpp"
 
 namespace pointskin {
 namespace {

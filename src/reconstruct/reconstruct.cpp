@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/engine.hpp"
+#include "reconstruct/engine.hpp"
 #include "reconstruct/run.hpp"
 #include "reconstruct/suggest_depth.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "diagnose/verdict.hpp"
-#include "pipeline/engine.hpp"
+#include "reconstruct/engine.hpp"
 
 namespace pointskin::detail {
 

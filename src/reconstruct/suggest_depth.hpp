@@ -3,7 +3,7 @@
 
 #include <pointskin/reconstruct.hpp>
 
-#include "pipeline/engine.hpp"
+#include "reconstruct/engine.hpp"
 
 namespace pointskin::detail {
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks who includes whom: data flows io -> cloud -> octree -> poisson -> field -> surface, and no arrow runs back.
+"""Checks who includes whom: data flows octree -> poisson -> field -> surface, and no arrow runs back.
 
     check_layers.py [ROOT]      checks the sources under ROOT (default: this repository); exit 1 and a line per violation
     check_layers.py --self-test plants every kind of violation in a temporary tree and expects it to be found
@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 # What the files of src/<folder> may include with quotes. All may include <pointskin/...>; src/*.cpp may include all.
-PARTS = {"core", "exec", "octree", "poisson", "field", "surface", "cloud", "mesh", "envelope"}
+SOLVE = {"core", "exec", "octree", "poisson", "field", "surface", "mesh", "envelope", "diagnose", "reconstruct"}
 LAYERS = {
     "core": {"core"},
     "exec": {"core", "exec"},
@@ -18,19 +18,17 @@ LAYERS = {
     "poisson": {"core", "exec", "octree", "poisson"},
     "field": {"core", "exec", "octree", "field"},
     "surface": {"core", "exec", "octree", "field", "surface"},
-    "cloud": {"core", "exec", "octree", "field", "cloud"},
     "mesh": {"core", "exec", "mesh"},
     "envelope": {"core", "exec", "octree", "mesh", "envelope"},
     "io": {"core", "exec", "io"},
     "diagnose": {"core", "exec", "octree", "poisson", "field", "surface", "diagnose"},
-    # What joins the parts: one reconstruction, and what is built on it.
-    "pipeline": PARTS | {"diagnose", "pipeline"},
-    "reconstruct": PARTS | {"diagnose", "pipeline", "reconstruct"},
-    "edit": PARTS | {"pipeline", "edit"},
-    "deform": PARTS | {"pipeline", "deform"},
-    "boolean": PARTS | {"pipeline", "boolean"},
-    "fluid": {"core", "exec", "octree", "field", "surface", "pipeline", "mesh", "fluid"},
-    "normals": PARTS | {"pipeline", "normals"},
+    # What joins the parts to one reconstruction, and the features that are built on it: none knows another.
+    "reconstruct": SOLVE,
+    "normals": SOLVE | {"normals"},
+    "edit": SOLVE | {"edit"},
+    "deform": SOLVE | {"deform"},
+    "boolean": SOLVE | {"boolean"},
+    "fluid": SOLVE | {"fluid"},
     "render": {"core", "exec", "octree", "mesh", "render"},
     "problems": {"core", "exec", "mesh", "render", "problems"},
 }

@@ -8,7 +8,7 @@
 
 #include "diagnose/verdict.hpp"
 #include "diagnose/warnings.hpp"
-#include "pipeline/engine.hpp"
+#include "reconstruct/engine.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin {

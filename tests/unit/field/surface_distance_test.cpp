@@ -9,7 +9,7 @@
 
 #include "field/evaluate.hpp"
 #include "field/surface_distance.hpp"
-#include "pipeline/fit_field.hpp"
+#include "reconstruct/fit_field.hpp"
 #include "support/shapes.hpp"
 #include "support/spaces.hpp"
 

@@ -1,9 +1,0 @@
-#include "cloud/normals_around_impl.hpp"
-#include "exec/cpu_primitives.hpp"
-
-namespace pointskin::cloud {
-
-template exec::Buffer<Vec3f> interpolate_normals(exec::Cpu&, const NormalSamples&, const octree::Frame&,
-                                                 ArrayView<const Vec3f>);
-
-}  // namespace pointskin::cloud

@@ -1,0 +1,36 @@
+// The working cube of a run and the points that it is made for, once for every space.
+#pragma once
+
+#include <pointskin/reconstruct.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "octree/frame.hpp"
+#include "octree/strays.hpp"
+#include "reconstruct/points.hpp"
+
+namespace pointskin::detail {
+
+inline void report_strays(const octree::StrayPoints& strays, RunReport& report) {
+  constexpr std::size_t kListed = 10;
+  report.strays = strays.size();
+  for (std::size_t i = 0; i < std::min(kListed, strays.positions.size()); ++i) {
+    const Vec3f& p = strays.positions[i];
+    report.farthest_strays.push_back({p.x, p.y, p.z});
+  }
+}
+
+/// The working cube; leaves strays out of the points that are used, unless they are to be kept.
+template <exec::Space Exec>
+octree::Frame fit_cube(Exec& ex, DevicePoints& points, const Options& options, RunReport& report) {
+  report.strays = 0;
+  report.farthest_strays.clear();
+  if (options.keep_strays) return octree::fit_frame(ex, points.positions.cview(), options.scale);
+  const octree::StrayPoints strays = octree::find_strays(ex, points.positions.cview());
+  report_strays(strays, report);
+  leave_out(ex, strays, points);
+  return octree::frame_around(strays.core, options.scale);
+}
+
+}  // namespace pointskin::detail

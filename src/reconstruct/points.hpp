@@ -1,0 +1,102 @@
+// Between the host's clouds and meshes and the device's arrays.
+#pragma once
+
+#include <pointskin/cloud.hpp>
+#include <pointskin/mesh.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "exec/cpu.hpp"
+#include "exec/host_array.hpp"
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+#include "exec/typed_buffer.hpp"
+#include "field/attributes.hpp"
+#include "octree/frame.hpp"
+#include "octree/strays.hpp"
+#include "poisson/samples.hpp"
+#include "surface/extract.hpp"
+
+namespace pointskin::detail {
+
+/// An attribute in a space, in the caller's order.
+struct DeviceAttribute {
+  std::string name;
+  exec::TypedBuffer values;
+
+  [[nodiscard]] bool is_label() const { return pointskin::is_label(name, values.type); }
+};
+
+/// A cloud in a space, in the caller's order and coordinates.
+struct DevicePoints {
+  exec::Buffer<Vec3f> positions, normals;
+  std::vector<DeviceAttribute> attributes{};  ///< those that the mesh is to keep
+  exec::Buffer<std::uint8_t>
+      added{};  ///< (n) edit/point_kind.hpp; only original points have a say in the isovalue; empty: all are original
+  exec::Buffer<std::int32_t> used{};  ///< indices of the points to use, ascending; empty: all of them
+
+  [[nodiscard]] std::int64_t used_count() const { return used.empty() ? positions.size() : used.size(); }
+};
+
+/// Copies a cloud to the space, whose normals may be missing or zero.
+/// @throws Error empty_result without points, invalid_input if some are not finite, over_limit beyond 2^31 - 1
+template <exec::Space Exec>
+DevicePoints upload_some(Exec& ex, const Cloud& cloud);
+
+/// Copies a cloud to the space.
+/// @throws Error no_normals if there are none or all have zero length, empty_result without points, invalid_input if
+/// some
+///         are not finite, over_limit beyond 2^31 - 1
+template <exec::Space Exec>
+DevicePoints upload(Exec& ex, const Cloud& cloud);
+
+/// Turns all normals the other way round.
+template <exec::Space Exec>
+void turn_normals(Exec& ex, ArrayView<Vec3f> normals);
+
+/// Copies the attributes that the mesh is to keep, under the names that they have there (kept_names).
+/// @throws Error invalid_input if an attribute has another length than the cloud
+template <exec::Space Exec>
+std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options);
+
+/// Leaves strays out of the points to use. O(n), and nothing if there are none.
+/// @throws Error no_normals if there are normals, and those of all others have zero length
+template <exec::Space Exec>
+void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points);
+
+/// The points to use, in the order of their keys.
+struct SortedSamples {
+  poisson::Samples samples;            ///< positions in the unit cube, normals as they came
+  exec::Buffer<std::uint64_t> keys;    ///< (n) point keys
+  field::AttributeSamples attributes;  ///< without positions and weights
+  exec::Buffer<std::uint8_t> added;    ///< as DevicePoints::added
+};
+
+/// Moves the points to use into the unit cube and sorts them. Points that differ in nothing else are sorted by their
+/// attributes.
+template <exec::Space Exec>
+SortedSamples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame);
+
+/// Copies a surface to the host, into world coordinates relative to `origin` and the memory that `mesh` has. Every
+/// array is freed as soon as it is copied.
+template <exec::Space Exec>
+void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh);
+
+/// Moves an array to the host, into memory that `to` may have already.
+template <class T, exec::Space Exec>
+void download_array(Exec& ex, exec::Buffer<T>& from, std::vector<T>& to) {
+  if constexpr (std::is_same_v<Exec, exec::Cpu>)
+    exec::resize(ex, to, static_cast<std::size_t>(from.size()));
+  else
+    to.resize(static_cast<std::size_t>(from.size()));
+  copy_to_host(ex, from.cview(), to.data());
+  from.reset();
+}
+
+}  // namespace pointskin::detail

@@ -47,12 +47,10 @@ enum class PointNormals {
   estimate,   ///< made first, as Options::normal_estimation says; the points need none
 };
 
-struct Options {
+/// What the implicit function is fitted to, and how.
+struct SolveOptions {
   /// As `depth`: the deepest that spacing and noise of the points support and the memory holds (suggest_depth).
   static constexpr int kAutomaticDepth = 0;
-  /// As `trim`: the value that RunReport::warnings would name where the surface is far from the points or runs into the
-  /// faces of the working cube, which then stay open; else off.
-  static constexpr double kAutomaticTrim = -1;
 
   int depth = 8;  ///< octree depth D, in [1, 20], or kAutomaticDepth; the finest cells are cube / 2^D wide
   PointNormals point_normals = PointNormals::automatic;
@@ -72,11 +70,45 @@ struct Options {
                                   ///< splatted coarser, and where they hold less than 0.42 of it the surface keeps to
                                   ///< the level above; 0: all levels are used everywhere
   bool confidence = false;        ///< true: a normal's length, relative to the mean length, is the weight of its point
-  bool linear_fit = false;        ///< true: edge crossings by linear instead of rescaled quadratic interpolation
-  bool density = false;           ///< true: the mesh carries "density", samples per unit of area (world units^-2)
+  Boundary boundary = Boundary::free;
+  /// A watertight mesh that the surface stays inside of, in world coordinates (its origin counts): the field is 0 at
+  /// corners of the octree outside of it, and no vertex lies farther outside than the cube's side times 2^-23. Points
+  /// outside are used, but not for the isovalue. Null: none. Must not change while runs or Fields use it.
+  /// Costs a query of the distance for every corner near it, on the host (docs/algorithm.md, section 10).
+  std::shared_ptr<const Mesh> envelope{};
+  /// Not 0: the surface at this distance from that of the field, world units, outwards where positive, inwards where
+  /// negative; round around edges, and the working cube grows where it must (docs/algorithm.md, section 14). The Field
+  /// is then minus the signed distance to that surface, in finest cells. Finite; excludes `trim`, `density`,
+  /// `weakness`, `attributes`, `envelope`, `isovalue` and open `domain_faces`.
+  double offset = 0;
+  bool keep_strays = false;  ///< true: stray points count, too (see Strays); the cube is made for all points
+};
+
+/// Which surface of an implicit function becomes a mesh, and what the mesh carries. One Field may be extracted again
+/// and again with different ones.
+struct ExtractOptions {
+  /// As `trim`: the value that RunReport::warnings would name where the surface is far from the points or runs into the
+  /// faces of the working cube, which then stay open; else off.
+  static constexpr double kAutomaticTrim = -1;
+
+  /// The value of the field that the surface lies at, finite, in the field's unit (Field). Unset: Field::isovalue().
+  std::optional<double> isovalue{};
+  bool normals = true;      ///< true: the mesh carries vertex normals, from the gradient of the field
+  bool linear_fit = false;  ///< true: edge crossings by linear instead of rescaled quadratic interpolation
+  DomainFaces domain_faces = DomainFaces::closed;
+  double trim = 0;  ///< > 0: the mesh ends where samples lie 1.75 times farther apart than at the sparsest samples,
+                    ///< this share of all; in [0, 1), or kAutomaticTrim; 0: off, the mesh is closed. 0.01 to 0.1 suit
+                    ///< open scans
+  double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,
+                                ///< islands are removed and pinholes stay closed; in [0, 1)
+  bool largest = false;         ///< true: only the connected piece with the largest area stays, of closed meshes too
+  double min_component =
+      0;                 ///< connected pieces that are smaller are left out, of closed meshes too, cavities as well:
+                         ///< >= 1: than so many triangles; in (0, 1): than this share of the whole area; 0: none
+  bool density = false;  ///< true: the mesh carries "density", samples per unit of area (world units^-2)
   /// true: the mesh carries "weakness", in [0, 1]: where samples are sparser and the field flatter than at half of the
   /// samples, so that the topology is a guess (docs/algorithm.md, section 15); for find_problems(). Needs the field
-  /// poisson; excludes `offset`.
+  /// poisson.
   bool weakness = false;
   /// true: the mesh carries every attribute of the cloud in its type (docs/algorithm.md, section 9). Labels (is_label)
   /// are those of the nearest point that has one, exactly; all else is interpolated at the vertices, smoothly extended
@@ -85,36 +117,25 @@ struct Options {
   /// z, nx, ny, nz, with `density` also density, with `weakness` that), or that came before, gets `input_` in front of
   /// it.
   bool attributes = false;
-  bool normals = true;  ///< true: the mesh carries vertex normals, from the gradient of the field
-  DomainFaces domain_faces = DomainFaces::closed;
-  Boundary boundary = Boundary::free;
-  /// A watertight mesh that the surface stays inside of, in world coordinates (its origin counts): the field is 0 at
-  /// corners of the octree outside of it, and no vertex lies farther outside than the cube's side times 2^-23. Points
-  /// outside are used, but not for the isovalue. Null: none. Must not change while runs or Fields use it.
-  /// Costs a query of the distance for every corner near it, on the host (docs/algorithm.md, section 10).
-  std::shared_ptr<const Mesh> envelope{};
-  double trim = 0;  ///< > 0: the mesh ends where samples lie 1.75 times farther apart than at the sparsest samples,
-                    ///< this share of all; in [0, 1), or kAutomaticTrim; 0: off, the mesh is closed. 0.01 to 0.1 suit
-                    ///< open scans
-  double island_ratio = 0.001;  ///< with trim: connected pieces below this share of the surface's area change sides,
-                                ///< islands are removed and pinholes stay closed; in [0, 1)
-  bool largest = false;         ///< true: only the connected piece with the largest area stays, of closed meshes too
-  double min_component =
-      0;  ///< connected pieces that are smaller are left out, of closed meshes too, cavities as well:
-          ///< >= 1: than so many triangles; in (0, 1): than this share of the whole area; 0: none
-  /// Not 0: the surface at this distance from that of the field, world units, outwards where positive, inwards where
-  /// negative; round around edges, and the working cube grows where it must (docs/algorithm.md, section 14). The Field
-  /// is then minus the signed distance to that surface, in finest cells. Finite; excludes `trim`, `density`,
-  /// `attributes`, `envelope` and open `domain_faces`.
-  double offset = 0;
-  bool keep_strays = false;  ///< true: stray points count, too (see Strays); the cube is made for all points
-  bool residuals = false;    ///< true: measure the residual of every level before and after its solve
+};
+
+/// How a run runs. Nothing of it changes a result.
+struct RunOptions {
+  bool residuals = false;  ///< true: measure the residual of every level before and after its solve
   /// What the run may take on its device, cloud and mesh on the host not counted: it does not start where the estimate
   /// is larger, and ends with over_limit where it comes to need more. 0: no limit.
   std::int64_t max_memory_bytes = 0;
 
   /// Called a few times per run from the calling thread; returning false cancels the run (Error interrupted).
   std::function<bool(const Progress&)> progress{};
+};
+
+/// Points to mesh: all options in one.
+struct Options : SolveOptions, ExtractOptions, RunOptions {
+  Options() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): what is not said has its default
+  Options(const SolveOptions& solve, const ExtractOptions& extract = {}, const RunOptions& run = {})
+      : SolveOptions(solve), ExtractOptions(extract), RunOptions(run) {}
 };
 
 struct LevelReport {

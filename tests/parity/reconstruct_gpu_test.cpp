@@ -95,11 +95,11 @@ TEST_P(GpuOnCloud, GivesTheSameBytesAsTheCpu) {
   const NamedCloud c = cloud_number(number);
   SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
   // Depth 1 resolves no surface of some: the same error then.
-  const auto cpu_error = test::error_of([&] { (void)test::reconstructed(c.cloud, {.depth = depth}); });
-  const auto gpu_error = test::error_of([&] { (void)Reconstructor(gpu_).reconstruct(c.cloud, {.depth = depth}); });
+  const auto cpu_error = test::error_of([&] { (void)test::reconstructed(c.cloud, {{.depth = depth}}); });
+  const auto gpu_error = test::error_of([&] { (void)Reconstructor(gpu_).reconstruct(c.cloud, {{.depth = depth}}); });
   EXPECT_EQ(gpu_error, cpu_error);
   EXPECT_TRUE(!cpu_error || depth == 1);
-  if (!cpu_error) expect_parity(c.cloud, {.depth = depth});
+  if (!cpu_error) expect_parity(c.cloud, {{.depth = depth}});
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryShapeAndDepth, GpuOnCloud,
@@ -107,30 +107,30 @@ INSTANTIATE_TEST_SUITE_P(EveryShapeAndDepth, GpuOnCloud,
 
 std::vector<Options> options_to_try() {
   std::vector<Options> all;
-  for (const double screening : {0.0, 50.0}) all.push_back({.depth = 7, .screening = screening});
-  for (const int iterations : {1, 7, 40}) all.push_back({.depth = 7, .iterations = iterations});
-  for (const double scale : {1.0, 2.5}) all.push_back({.depth = 7, .scale = scale});
-  for (const double samples : {0.0, 20.0}) all.push_back({.depth = 7, .samples_per_node = samples});
-  all.push_back({.depth = 7, .confidence = true});
-  all.push_back({.depth = 7, .linear_fit = true});
-  all.push_back({.depth = 7, .density = true});
-  all.push_back({.depth = 7, .normals = false});
-  all.push_back({.depth = 7, .domain_faces = DomainFaces::open});
-  all.push_back({.depth = 7, .boundary = Boundary::dirichlet});
-  all.push_back({.depth = 7, .residuals = true});
-  all.push_back({.depth = 7, .trim = 0.3});
-  all.push_back({.depth = 7, .weakness = true});
-  all.push_back({.depth = 7, .field = FieldKind::distance});
-  all.push_back({.depth = 7, .field = FieldKind::distance, .confidence = true, .density = true, .trim = 0.1});
+  for (const double screening : {0.0, 50.0}) all.push_back({{.depth = 7, .screening = screening}});
+  for (const int iterations : {1, 7, 40}) all.push_back({{.depth = 7, .iterations = iterations}});
+  for (const double scale : {1.0, 2.5}) all.push_back({{.depth = 7, .scale = scale}});
+  for (const double samples : {0.0, 20.0}) all.push_back({{.depth = 7, .samples_per_node = samples}});
+  all.push_back({{.depth = 7, .confidence = true}});
+  all.push_back({{.depth = 7}, {.linear_fit = true}});
+  all.push_back({{.depth = 7}, {.density = true}});
+  all.push_back({{.depth = 7}, {.normals = false}});
+  all.push_back({{.depth = 7}, {.domain_faces = DomainFaces::open}});
+  all.push_back({{.depth = 7, .boundary = Boundary::dirichlet}});
+  all.push_back({{.depth = 7}, {}, {.residuals = true}});
+  all.push_back({{.depth = 7}, {.trim = 0.3}});
+  all.push_back({{.depth = 7}, {.weakness = true}});
+  all.push_back({{.depth = 7, .field = FieldKind::distance}});
+  all.push_back({{.depth = 7, .field = FieldKind::distance, .confidence = true}, {.trim = 0.1, .density = true}});
   for (const double offset : {0.1, -0.03}) {
-    all.push_back({.depth = 6, .offset = offset});
-    all.push_back({.depth = 6, .field = FieldKind::distance, .offset = offset});
+    all.push_back({{.depth = 6, .offset = offset}});
+    all.push_back({{.depth = 6, .field = FieldKind::distance, .offset = offset}});
   }
-  all.push_back({.depth = 7, .density = true, .normals = false, .trim = 0.9, .island_ratio = 0});
-  all.push_back({.depth = Options::kAutomaticDepth});
-  all.push_back({.depth = 7, .trim = Options::kAutomaticTrim});
-  all.push_back({.depth = 7, .largest = true});
-  all.push_back({.depth = 7, .min_component = 0.1});
+  all.push_back({{.depth = 7}, {.normals = false, .trim = 0.9, .island_ratio = 0, .density = true}});
+  all.push_back({{.depth = Options::kAutomaticDepth}});
+  all.push_back({{.depth = 7}, {.trim = Options::kAutomaticTrim}});
+  all.push_back({{.depth = 7}, {.largest = true}});
+  all.push_back({{.depth = 7}, {.min_component = 0.1}});
   return all;
 }
 constexpr int kOptions = 29;
@@ -149,8 +149,8 @@ TEST_F(Gpu, LeavesOutTheSamePiecesAsTheCpu) {
   Cloud cloud = test::sphere_cloud(20'000, 30);
   test::append(cloud, test::sphere_cloud(3'000, 31, 0.4, {1.8, 0, 0}));
   test::append(cloud, test::sphere_cloud(1'000, 32, 0.1, {1.8, 0.8, 0}));
-  expect_parity(cloud, {.depth = 7, .largest = true});
-  for (const double least : {0.02, 0.3, 2000.0}) expect_parity(cloud, {.depth = 7, .min_component = least});
+  expect_parity(cloud, {{.depth = 7}, {.largest = true}});
+  for (const double least : {0.02, 0.3, 2000.0}) expect_parity(cloud, {{.depth = 7}, {.min_component = least}});
 }
 
 TEST_F(Gpu, DoesTheSameAboutNormalsAsTheCpu) {
@@ -164,8 +164,8 @@ TEST_F(Gpu, DoesTheSameAboutNormalsAsTheCpu) {
     if (part.positions[i].x > 0) part.normals[i] = {-part.normals[i].x, -part.normals[i].y, -part.normals[i].z};
   for (const Cloud& cloud : {test::flipped(torus), flips, part, test::plane_cloud(20'000, 35)}) {
     for (const PointNormals policy : {PointNormals::automatic, PointNormals::given, PointNormals::repair})
-      expect_parity(cloud, {.depth = 6, .point_normals = policy});
-    expect_parity(cloud, {.depth = 6, .trim = Options::kAutomaticTrim});
+      expect_parity(cloud, {{.depth = 6, .point_normals = policy}});
+    expect_parity(cloud, {{.depth = 6}, {.trim = Options::kAutomaticTrim}});
   }
 }
 
@@ -175,7 +175,7 @@ TEST_P(GpuOnCloud, StaysInsideOfAnEnvelopeWithTheSameBytesAsTheCpu) {
   SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
   const auto sphere = std::make_shared<const Mesh>(test::icosphere_mesh(4, 0.98));
   for (const Boundary boundary : {Boundary::free, Boundary::dirichlet}) {
-    const Options options{.depth = depth, .boundary = boundary, .envelope = sphere};
+    const Options options{{.depth = depth, .boundary = boundary, .envelope = sphere}};
     const auto cpu_error = test::error_of([&] { (void)test::reconstructed(c.cloud, options); });
     const auto gpu_error = test::error_of([&] { (void)Reconstructor(gpu_).reconstruct(c.cloud, options); });
     EXPECT_EQ(gpu_error, cpu_error);
@@ -191,12 +191,14 @@ TEST_P(GpuOnCloud, TrimsToTheSameBytesAsTheCpu) {
   const auto [number, depth] = GetParam();
   const NamedCloud c = cloud_number(number);
   SCOPED_TRACE(c.name + ", depth " + std::to_string(depth));
-  const auto cpu_error =
-      test::error_of([&] { (void)test::reconstructed(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01}); });
-  const auto gpu_error = test::error_of(
-      [&] { (void)Reconstructor(gpu_).reconstruct(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01}); });
+  const auto cpu_error = test::error_of([&] {
+    (void)test::reconstructed(c.cloud, {{.depth = depth}, {.trim = 0.2, .island_ratio = 0.01}});
+  });
+  const auto gpu_error = test::error_of([&] {
+    (void)Reconstructor(gpu_).reconstruct(c.cloud, {{.depth = depth}, {.trim = 0.2, .island_ratio = 0.01}});
+  });
   EXPECT_EQ(gpu_error, cpu_error);
-  if (!cpu_error) expect_parity(c.cloud, {.depth = depth, .trim = 0.2, .island_ratio = 0.01});
+  if (!cpu_error) expect_parity(c.cloud, {{.depth = depth}, {.trim = 0.2, .island_ratio = 0.01}});
 }
 
 /// Attributes of all kinds, of which points lack some, and points that differ in nothing else.
@@ -225,14 +227,14 @@ TEST_F(Gpu, GivesVerticesTheSameAttributesAsTheCpu) {
   const Cloud cloud = coloured(test::jittered(test::linked_tori_cloud(30'000, 21), 22, 0.01), 23);
   for (const int depth : {2, 4, 7, 9}) {
     SCOPED_TRACE("depth " + std::to_string(depth));
-    expect_parity(cloud, {.depth = depth, .attributes = true});
-    expect_parity(cloud, {.depth = depth, .confidence = true, .density = true, .attributes = true});
+    expect_parity(cloud, {{.depth = depth}, {.attributes = true}});
+    expect_parity(cloud, {{.depth = depth, .confidence = true}, {.density = true, .attributes = true}});
   }
   Reconstructor r(gpu_);
-  const Mesh expected = r.reconstruct(cloud, {.depth = 7, .attributes = true});
-  EXPECT_EQ(r.repeat(cloud, {.depth = 7, .attributes = true}, 3).size(), 3U);
-  expect_same_bytes(r.solve(cloud, {.depth = 7, .attributes = true}).extract(), expected);
-  expect_same_bytes(r.reconstruct(test::shuffled(cloud, 24), {.depth = 7, .attributes = true}), expected);
+  const Mesh expected = r.reconstruct(cloud, {{.depth = 7}, {.attributes = true}});
+  EXPECT_EQ(r.repeat(cloud, {{.depth = 7}, {.attributes = true}}, 3).size(), 3U);
+  expect_same_bytes(r.solve(cloud, {{.depth = 7}, {.attributes = true}}).extract(), expected);
+  expect_same_bytes(r.reconstruct(test::shuffled(cloud, 24), {{.depth = 7}, {.attributes = true}}), expected);
 }
 
 TEST_F(Gpu, EndsTinyCloudsAsTheCpuDoes) {
@@ -245,7 +247,7 @@ TEST_F(Gpu, EndsTinyCloudsAsTheCpuDoes) {
       cloud.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
       cloud.normals.push_back({static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])});
     }
-    const Options options{.depth = 1 + static_cast<int>(random.below(9))};
+    const Options options{{.depth = 1 + static_cast<int>(random.below(9))}};
     SCOPED_TRACE("seed " + std::to_string(seed));
     Mesh on_cpu;
     Mesh on_gpu;
@@ -261,17 +263,17 @@ TEST_F(Gpu, LeavesOutTheStraysThatTheCpuLeavesOut) {
   for (const test::NamedPlaces& strays : test::stray_places()) {
     SCOPED_TRACE(strays.name);
     const Cloud cloud = test::with_points_at(clean, strays.places);
-    expect_parity(cloud, {.depth = 7, .density = true});
-    expect_parity(cloud, {.depth = 6, .keep_strays = true});
+    expect_parity(cloud, {{.depth = 7}, {.density = true}});
+    expect_parity(cloud, {{.depth = 6, .keep_strays = true}});
     Reconstructor on_gpu(gpu_);
     Reconstructor on_cpu(Device::cpu());
-    expect_same_bytes(on_gpu.reconstruct(cloud, {.depth = 6}), on_cpu.reconstruct(clean, {.depth = 6}));
-    (void)on_cpu.reconstruct(cloud, {.depth = 6});
+    expect_same_bytes(on_gpu.reconstruct(cloud, {{.depth = 6}}), on_cpu.reconstruct(clean, {{.depth = 6}}));
+    (void)on_cpu.reconstruct(cloud, {{.depth = 6}});
     EXPECT_EQ(on_gpu.report().points, clean.size());
     EXPECT_EQ(on_gpu.report().strays, std::ssize(strays.places));
     EXPECT_EQ(on_gpu.report().farthest_strays, on_cpu.report().farthest_strays);
-    for (const RunTimes& run : on_gpu.repeat(cloud, {.depth = 6}, 2))
-      EXPECT_EQ(run.triangles, std::ssize(on_gpu.reconstruct(clean, {.depth = 6}).triangles));
+    for (const RunTimes& run : on_gpu.repeat(cloud, {{.depth = 6}}, 2))
+      EXPECT_EQ(run.triangles, std::ssize(on_gpu.reconstruct(clean, {{.depth = 6}}).triangles));
   }
 }
 
@@ -279,23 +281,23 @@ TEST_F(Gpu, GivesTheSameBytesRunAfterRun) {
   Reconstructor r(gpu_);
   const Cloud sphere = test::sphere_cloud(50'000, 12);
   const Cloud torus = test::torus_cloud(30'000, 13);
-  const Mesh first = r.reconstruct(sphere, {.depth = 8, .density = true});
-  const Mesh other = r.reconstruct(torus, {.depth = 7});
+  const Mesh first = r.reconstruct(sphere, {{.depth = 8}, {.density = true}});
+  const Mesh other = r.reconstruct(torus, {{.depth = 7}});
   for (int i = 0; i < 5; ++i) {
-    expect_same_bytes(r.reconstruct(sphere, {.depth = 8, .density = true}), first);
-    expect_same_bytes(r.reconstruct(torus, {.depth = 7}), other);
+    expect_same_bytes(r.reconstruct(sphere, {{.depth = 8}, {.density = true}}), first);
+    expect_same_bytes(r.reconstruct(torus, {{.depth = 7}}), other);
   }
-  expect_same_bytes(r.reconstruct(test::shuffled(sphere, 14), {.depth = 8, .density = true}), first);
+  expect_same_bytes(r.reconstruct(test::shuffled(sphere, 14), {{.depth = 8}, {.density = true}}), first);
 }
 
 TEST_F(Gpu, KeepsAFieldAliveAfterItsReconstructor) {
   const Cloud cloud = test::torus_cloud(20'000, 15);
   auto r = std::make_unique<Reconstructor>(gpu_);
-  const Field field = r->solve(cloud, {.depth = 7});
-  const Mesh expected = r->reconstruct(cloud, {.depth = 7});
+  const Field field = r->solve(cloud, {{.depth = 7}});
+  const Mesh expected = r->reconstruct(cloud, {{.depth = 7}});
   r.reset();
   expect_same_bytes(field.extract(), expected);
-  const Field on_cpu = Reconstructor(Device::cpu()).solve(cloud, {.depth = 7});
+  const Field on_cpu = Reconstructor(Device::cpu()).solve(cloud, {{.depth = 7}});
   std::vector<Vec3d> at;
   test::Random random(16);
   for (int i = 0; i < 1000; ++i) at.push_back({random.in(-2, 2), random.in(-2, 2), random.in(-1, 1)});
@@ -308,26 +310,26 @@ TEST_F(Gpu, RunsTwoReconstructorsSideBySide) {
   const Cloud torus = test::torus_cloud(20'000, 18);
   Reconstructor a(gpu_);
   Reconstructor b(gpu_);
-  const Field field_a = a.solve(sphere, {.depth = 7});
-  const Field field_b = b.solve(torus, {.depth = 7});
+  const Field field_a = a.solve(sphere, {{.depth = 7}});
+  const Field field_b = b.solve(torus, {{.depth = 7}});
   const Mesh mesh_a = field_a.extract();
   const Mesh mesh_b = field_b.extract();
-  expect_same_bytes(a.reconstruct(torus, {.depth = 7}), mesh_b);
-  expect_same_bytes(b.reconstruct(sphere, {.depth = 7}), mesh_a);
+  expect_same_bytes(a.reconstruct(torus, {{.depth = 7}}), mesh_b);
+  expect_same_bytes(b.reconstruct(sphere, {{.depth = 7}}), mesh_a);
 }
 
 TEST_F(Gpu, RepeatsResidentRunsAndLeavesResultsAsTheyWere) {
   Reconstructor r(gpu_);
   const Cloud cloud = test::sphere_cloud(20'000, 19);
-  const Mesh before = r.reconstruct(cloud, {.depth = 7});
-  EXPECT_EQ(r.repeat(cloud, {.depth = 7}, 4).size(), 4U);
-  expect_same_bytes(r.reconstruct(cloud, {.depth = 7}), before);
+  const Mesh before = r.reconstruct(cloud, {{.depth = 7}});
+  EXPECT_EQ(r.repeat(cloud, {{.depth = 7}}, 4).size(), 4U);
+  expect_same_bytes(r.reconstruct(cloud, {{.depth = 7}}), before);
 }
 
 TEST_F(Gpu, ReportsErrorsAsTheCpuDoes) {
   Reconstructor r(gpu_);
   const auto code = [&](const Cloud& cloud) {
-    return test::error_of([&] { (void)r.reconstruct(cloud, {.depth = 6}); });
+    return test::error_of([&] { (void)r.reconstruct(cloud, {{.depth = 6}}); });
   };
   Cloud same;
   same.positions.assign(1000, {1, 2, 3});
@@ -337,7 +339,7 @@ TEST_F(Gpu, ReportsErrorsAsTheCpuDoes) {
   EXPECT_EQ(code(same), ErrorCode::no_normals);
   same.normals.assign(1000, {0, 0, 1});
   EXPECT_EQ(code(same), ErrorCode::empty_result);
-  EXPECT_TRUE(measure(r.reconstruct(test::sphere_cloud(5'000, 20), {.depth = 6})).watertight());
+  EXPECT_TRUE(measure(r.reconstruct(test::sphere_cloud(5'000, 20), {{.depth = 6}})).watertight());
 }
 
 class GpuOnScan : public Gpu, public testing::WithParamInterface<std::tuple<std::string, int>> {};
@@ -346,14 +348,14 @@ TEST_P(GpuOnScan, GivesTheSameBytesAsTheCpu) {
   const auto [name, depth] = GetParam();
   const auto cloud = test::shared_cloud(name);
   if (!cloud) GTEST_SKIP() << "no " << name << " in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
-  expect_parity(*cloud, {.depth = depth});
+  expect_parity(*cloud, {{.depth = depth}});
 }
 
 TEST_P(GpuOnScan, TrimsToTheSameBytesAsTheCpu) {
   const auto [name, depth] = GetParam();
   const auto cloud = test::shared_cloud(name);
   if (!cloud) GTEST_SKIP() << "no " << name << " in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
-  expect_parity(*cloud, {.depth = depth, .trim = 0.1});
+  expect_parity(*cloud, {{.depth = depth}, {.trim = 0.1}});
 }
 
 INSTANTIATE_TEST_SUITE_P(PublicScans, GpuOnScan,

@@ -67,7 +67,7 @@ double steepest(const Mesh& mesh, const Attribute& attribute, double shortest) {
 
 TEST(KeptAttributes, AreLeftOutUnlessAskedFor) {
   const Cloud plain = test::sphere_cloud(5'000, 1);
-  expect_same_bytes(reconstructed(plain, {.depth = 6}), reconstructed(coloured(plain, 2), {.depth = 6}));
+  expect_same_bytes(reconstructed(plain, {{.depth = 6}}), reconstructed(coloured(plain, 2), {{.depth = 6}}));
 }
 
 TEST(KeptAttributes, ComeByNameAndTypeAndLeaveTheSurfaceAsItIs) {
@@ -77,14 +77,14 @@ TEST(KeptAttributes, ComeByNameAndTypeAndLeaveTheSurfaceAsItIs) {
   std::iota(twice.begin(), twice.begin() + 20'000, 0);
   std::iota(twice.rbegin(), twice.rbegin() + 20'000, 0);
   for (Attribute& a : cloud.attributes) a.values = a.values.gather(twice);
-  Mesh mesh = reconstructed(cloud, {.depth = 7, .attributes = true});
+  Mesh mesh = reconstructed(cloud, {{.depth = 7}, {.attributes = true}});
   ASSERT_EQ(names_of(mesh), (std::vector<std::string>{"red", "green", "blue", "height"}));
   for (std::size_t a = 0; a < 4; ++a) {
     EXPECT_EQ(mesh.attributes[a].type(), cloud.attributes[a].type());
     EXPECT_EQ(mesh.attributes[a].values.size(), mesh.vertices.size());
   }
   mesh.attributes.clear();
-  expect_same_bytes(mesh, reconstructed(cloud, {.depth = 7}));
+  expect_same_bytes(mesh, reconstructed(cloud, {{.depth = 7}}));
 }
 
 TEST(KeptAttributes, ThatAreTheSameEverywhereComeBackExactly) {
@@ -92,7 +92,7 @@ TEST(KeptAttributes, ThatAreTheSameEverywhereComeBackExactly) {
   cloud.attributes = {attribute(
                           cloud, "byte", [](const Vec3f&) { return 77; }, AttributeType::uint8),
                       attribute(cloud, "scalar", [](const Vec3f&) { return 0.1; })};
-  const Mesh mesh = reconstructed(cloud, {.depth = 8, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = 8}, {.attributes = true}});
   for (const std::uint8_t v : mesh.attributes[0].values.as<std::uint8_t>()) ASSERT_EQ(v, 77);
   for (const float v : mesh.attributes[1].values.as<float>()) ASSERT_EQ(v, 0.1F);
 }
@@ -103,7 +103,7 @@ TEST(KeptAttributes, FollowALinearFunctionToAboutACell) {
   Cloud cloud = test::sphere_cloud(200'000, 6);
   cloud.attributes = {attribute(cloud, "f", f)};
   for (int depth = 5; depth <= 7; ++depth) {
-    const Mesh mesh = reconstructed(cloud, {.depth = depth, .attributes = true});
+    const Mesh mesh = reconstructed(cloud, {{.depth = depth}, {.attributes = true}});
     const double cell = 2.2 / (1 << depth);
     double squares = 0;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -121,7 +121,7 @@ TEST(KeptAttributes, StayInTheRangeOfTheInput) {
   cloud.attributes = {attribute(cloud, "noise", [&random](const Vec3f&) { return random.in(-3, 5); })};
   const std::vector<float>& input = cloud.attributes[0].values.as<float>();
   const auto [low, high] = std::minmax_element(input.begin(), input.end());
-  const Mesh mesh = reconstructed(cloud, {.depth = 7, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = 7}, {.attributes = true}});
   for (const float v : mesh.attributes[0].values.as<float>()) ASSERT_TRUE(v >= *low && v <= *high) << v;
 }
 
@@ -131,7 +131,7 @@ TEST(KeptAttributes, HaveTheSameBytesForAnyThreadsAndAnyOrderOfThePoints) {
   cloud = coloured(cloud, 10);
   for (std::size_t i = 0; i < cloud.positions.size(); i += 3) cloud.attributes[3].values.set_missing(i);
   for (const bool confidence : {false, true}) {
-    const Options options{.depth = 7, .confidence = confidence, .attributes = true};
+    const Options options{{.depth = 7, .confidence = confidence}, {.attributes = true}};
     const Mesh one = reconstructed(cloud, options, 1);
     expect_same_bytes(one, reconstructed(cloud, options, 3));
     for (const std::uint64_t seed : {11, 12})
@@ -145,7 +145,7 @@ TEST(KeptAttributes, AreThoseOfThePointsThatHaveThem) {  // missing values chang
   test::Random random(14);
   for (float& v : cloud.attributes[0].values.edit<float>())
     if (random.below(2) == 0) v = random.below(2) == 0 ? kNan : std::numeric_limits<float>::infinity();
-  const Mesh mesh = reconstructed(cloud, {.depth = 6, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = 6}, {.attributes = true}});
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     ASSERT_NEAR(mesh.attributes[0].values.at(i), mesh.vertices[i].x, 2 * 2.2 / 64);
 }
@@ -165,7 +165,7 @@ TEST(KeptAttributes, GoOnSmoothlyIntoHoles) {
                       attribute(cloud, "step", [](const Vec3f& p) { return p.x < 0 ? 0 : 1; })};
   const int depth = 7;
   const double cell = 2.2 / (1 << depth);
-  const Mesh mesh = reconstructed(cloud, {.depth = depth, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = depth}, {.attributes = true}});
   EXPECT_LT(steepest(mesh, mesh.attributes[0], cell / 4), 4);  // the function itself rises by 1 per unit
   const double radius = std::sqrt(1 - hole * hole);
   Mesh cap = mesh;
@@ -191,7 +191,7 @@ TEST(KeptAttributes, OfDoubtfulPointsCountLessWithConfidence) {
   }
   cloud.attributes = {{"value", std::move(value)}};
   const auto mean_with = [&](bool confidence) {
-    const Mesh mesh = reconstructed(cloud, {.depth = 6, .confidence = confidence, .attributes = true});
+    const Mesh mesh = reconstructed(cloud, {{.depth = 6, .confidence = confidence}, {.attributes = true}});
     double sum = 0;
     for (const float v : mesh.attributes[0].values.as<float>()) sum += v;
     return sum / static_cast<double>(mesh.vertices.size());
@@ -205,23 +205,25 @@ TEST(KeptAttributes, WithNamesOfTheMeshGetAnother) {
   const Function f = [](const Vec3f& p) { return p.x; };
   for (const char* name : {"density", "nx", "red", "red", "input_red"})
     cloud.attributes.push_back(attribute(cloud, name, f));
-  EXPECT_EQ(names_of(reconstructed(cloud, {.depth = 5, .attributes = true})),
+  EXPECT_EQ(names_of(reconstructed(cloud, {{.depth = 5}, {.attributes = true}})),
             (std::vector<std::string>{"density", "input_nx", "red", "input_red", "input_input_red"}));
-  EXPECT_EQ(names_of(reconstructed(cloud, {.depth = 5, .density = true, .attributes = true})),
+  EXPECT_EQ(names_of(reconstructed(cloud, {{.depth = 5}, {.density = true, .attributes = true}})),
             (std::vector<std::string>{"input_density", "input_nx", "red", "input_red", "input_input_red", "density"}));
 }
 
 TEST(KeptAttributes, MustHaveTheLengthOfTheCloud) {
   Cloud cloud = test::sphere_cloud(1'000, 19);
   cloud.attributes = {{"short", std::vector<float>(999, 1.0F)}};
-  EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {.depth = 4, .attributes = true}); }),
+  EXPECT_EQ(test::error_of([&] {
+              (void)reconstructed(cloud, {{.depth = 4}, {.attributes = true}});
+            }),
             ErrorCode::invalid_input);
-  EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {.depth = 4}); }), std::nullopt);
+  EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {{.depth = 4}}); }), std::nullopt);
 }
 
 TEST(KeptAttributes, AreThereInEveryExtractionAndInRunsThatRepeat) {
   const Cloud cloud = coloured(test::sphere_cloud(5'000, 20), 21);
-  const Options options{.depth = 6, .density = true, .attributes = true};
+  const Options options{{.depth = 6}, {.density = true, .attributes = true}};
   Reconstructor r(Device::cpu(2));
   const Mesh expected = r.reconstruct(cloud, options);
   const Field field = r.solve(cloud, options);
@@ -241,7 +243,7 @@ TEST(Density, FollowsTheSamplingOfEveryPart) {
     cloud.positions.push_back(full.positions[i]);
     cloud.normals.push_back(full.normals[i]);
   }
-  const Mesh mesh = reconstructed(cloud, {.depth = 7, .density = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = 7}, {.density = true}});
   const double upper = 80'000 / (4 * std::numbers::pi);
   std::array<double, 2> sum{};
   std::array<double, 2> count{};

@@ -60,12 +60,12 @@ TEST(RepeatedPoints, AllTwiceKeepTheSurface) {
   const Cloud once = test::sphere_cloud(20'000, 1);
   Cloud twice = once;
   test::append(twice, once);
-  const Mesh mesh = reconstructed(twice, {.depth = 6});
+  const Mesh mesh = reconstructed(twice, {{.depth = 6}});
   expect_closed(mesh);
   EXPECT_EQ(measure(mesh).euler, 2);
   const auto everywhere = [](const Vec3f&) { return true; };
   EXPECT_LT(rms_off_sphere(mesh, everywhere),
-            1.2 * rms_off_sphere(reconstructed(once, {.depth = 6}), everywhere) + 1e-4);
+            1.2 * rms_off_sphere(reconstructed(once, {{.depth = 6}}), everywhere) + 1e-4);
 }
 
 TEST(RepeatedPoints, ByTheThousandAtOnePlaceKeepTheSurface) {
@@ -76,7 +76,7 @@ TEST(RepeatedPoints, ByTheThousandAtOnePlaceKeepTheSurface) {
     cloud.normals.push_back(once.normals[7]);
   }
   for (const int depth : {6, 8, 10}) {
-    const Mesh mesh = reconstructed(cloud, {.depth = depth});
+    const Mesh mesh = reconstructed(cloud, {{.depth = depth}});
     SCOPED_TRACE("depth " + std::to_string(depth));
     EXPECT_TRUE(measure(mesh).watertight());
     EXPECT_LT(rms_off_sphere(mesh, [](const Vec3f&) { return true; }), 0.01);
@@ -99,24 +99,24 @@ Cloud line(std::int64_t n, Vec3d direction) {
 TEST(NoArea, EndsInAClosedMeshOrIsEmpty) {
   for (const int depth : {1, 4, 7, 9}) {
     SCOPED_TRACE("depth " + std::to_string(depth));
-    expect_defined(line(10'000, {1, 0, 0}), {.depth = depth});
-    expect_defined(line(10'000, {1, 2, -3}), {.depth = depth});
-    expect_defined(line(2, {1, 1, 1}), {.depth = depth});
-    expect_defined(line(3, {0, 0, 1}), {.depth = depth});
-    expect_defined(test::plane_cloud(20'000, 3), {.depth = depth});
+    expect_defined(line(10'000, {1, 0, 0}), {{.depth = depth}});
+    expect_defined(line(10'000, {1, 2, -3}), {{.depth = depth}});
+    expect_defined(line(2, {1, 1, 1}), {{.depth = depth}});
+    expect_defined(line(3, {0, 0, 1}), {{.depth = depth}});
+    expect_defined(test::plane_cloud(20'000, 3), {{.depth = depth}});
   }
   Cloud two_sided = test::plane_cloud(20'000, 4);  // thickness zero
   test::append(two_sided, test::flipped(two_sided));
-  for (const int depth : {4, 8}) expect_defined(two_sided, {.depth = depth});
+  for (const int depth : {4, 8}) expect_defined(two_sided, {{.depth = depth}});
 }
 
 TEST(NoArea, FewPointsAtDepthTwelveTakeLittleMemory) {
   for (const std::int64_t n : {1, 2, 3, 10, 100})
     for (const int depth : {10, 12}) {
       SCOPED_TRACE(std::to_string(n) + " points, depth " + std::to_string(depth));
-      expect_defined(test::sphere_cloud(n, 5), {.depth = depth}, 400'000'000);
+      expect_defined(test::sphere_cloud(n, 5), {{.depth = depth}}, 400'000'000);
     }
-  expect_defined(line(100, {1, 0, 0}), {.depth = 12}, 400'000'000);
+  expect_defined(line(100, {1, 0, 0}), {{.depth = 12}}, 400'000'000);
 }
 
 // ---- Unlike densities
@@ -142,8 +142,8 @@ TEST(UnlikeDensities, FollowBothAndLoseNothingWhereItIsDense) {
   for (const auto [n, ratio] : {Case{200'000, 100}, Case{2'000'000, 1000}}) {  // 1000 points on the sparse half
     SCOPED_TRACE("1 : " + std::to_string(ratio));
     const auto deep_in_dense = [](const Vec3f& v) { return v.z > 0.2F; };
-    const double reference = rms_off_sphere(reconstructed(test::sphere_cloud(n, 6), {.depth = 6}), deep_in_dense);
-    const Mesh mesh = reconstructed(uneven_sphere(n, ratio), {.depth = 6});
+    const double reference = rms_off_sphere(reconstructed(test::sphere_cloud(n, 6), {{.depth = 6}}), deep_in_dense);
+    const Mesh mesh = reconstructed(uneven_sphere(n, ratio), {{.depth = 6}});
     const MeshReport report = measure(mesh);
     EXPECT_TRUE(report.watertight());
     EXPECT_EQ(report.components, 1);
@@ -171,7 +171,7 @@ TEST(FlippedNormals, OfATenthOfThePointsKeepTheSurface) {
   const Cloud cloud = test::sphere_cloud(50'000, 8);
   for (const double share : {0.05, 0.1, 0.2}) {
     SCOPED_TRACE(share);
-    const Mesh mesh = reconstructed(with_flipped_normals(cloud, share, 9), {.depth = 7});
+    const Mesh mesh = reconstructed(with_flipped_normals(cloud, share, 9), {{.depth = 7}});
     EXPECT_TRUE(measure(mesh).watertight());
     EXPECT_LT(rms_off_sphere(mesh, [](const Vec3f&) { return true; }), 0.01);
   }
@@ -181,7 +181,7 @@ TEST(FlippedNormals, OfABuildingKeepItsWalls) {
   const auto cloud = test::shared_cloud("cgal_building");
   if (!cloud) GTEST_SKIP() << "no cgal_building.ply in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
   if (!cloud->has_normals()) GTEST_SKIP() << "cgal_building.ply has no normals";
-  const Options given{.depth = 8, .point_normals = PointNormals::given};
+  const Options given{{.depth = 8, .point_normals = PointNormals::given}};
   const Mesh clean = reconstructed(*cloud, given);
   const double off_clean = compare(*cloud, clean, {.samples = 100'000}).to_reference.rms;
   for (const double share : {0.05, 0.1, 0.2}) {
@@ -195,7 +195,7 @@ TEST(FlippedNormals, OfABuildingKeepItsWalls) {
     EXPECT_LT(rms, 0.01);
 
     // Repaired normals close the building in another way where nothing was scanned; the walls are where the points are.
-    const test::Outcome repaired = test::run(flipped, {.depth = 8});
+    const test::Outcome repaired = test::run(flipped, {{.depth = 8}});
     expect_closed(repaired.mesh);
     EXPECT_EQ(repaired.report.normals_done, NormalsDone::repaired);
     const double off = compare(*cloud, repaired.mesh, {.samples = 100'000}).to_reference.rms;
@@ -208,10 +208,10 @@ TEST(FlippedNormals, OfABuildingKeepItsWalls) {
 
 TEST(Units, ThatArePowersOfTwoGiveTheSameTriangles) {
   const Cloud cloud = test::torus_cloud(10'000, 11);
-  const Mesh expected = reconstructed(cloud, {.depth = 6});
+  const Mesh expected = reconstructed(cloud, {{.depth = 6}});
   for (const int exponent : {-100, -40, -20, -3, 3, 20, 40, 100}) {  // 1e-30 to 1e30
     const auto factor = static_cast<float>(std::ldexp(1.0, exponent));
-    const Mesh mesh = reconstructed(scaled(cloud, factor), {.depth = 6});
+    const Mesh mesh = reconstructed(scaled(cloud, factor), {{.depth = 6}});
     SCOPED_TRACE("2^" + std::to_string(exponent));
     EXPECT_TRUE(test::same_bytes(mesh.triangles, expected.triangles));
     EXPECT_TRUE(test::same_bytes(mesh.normals, expected.normals));
@@ -223,10 +223,10 @@ TEST(Units, ThatArePowersOfTwoGiveTheSameTriangles) {
 
 TEST(Units, FromPicometresToTerametresGiveTheSameShape) {
   const Cloud cloud = test::torus_cloud(10'000, 12);
-  const MeshReport expected = measure(reconstructed(cloud, {.depth = 6}));
+  const MeshReport expected = measure(reconstructed(cloud, {{.depth = 6}}));
   for (const float factor : {1e-12F, 1e-9F, 1e-6F, 1e-3F, 1e3F, 1e6F, 1e9F, 1e12F}) {
     SCOPED_TRACE(factor);
-    const MeshReport report = measure(reconstructed(scaled(cloud, factor), {.depth = 6, .density = true}));
+    const MeshReport report = measure(reconstructed(scaled(cloud, factor), {{.depth = 6}, {.density = true}}));
     EXPECT_TRUE(report.watertight());
     EXPECT_EQ(report.euler, expected.euler);
     EXPECT_NEAR(static_cast<double>(report.triangles), static_cast<double>(expected.triangles),
@@ -242,10 +242,10 @@ TEST(NotFinite, CoordinatesOrNormalsAreRefused) {
   for (const float bad : {kNan, kInfinity, -kInfinity}) {
     Cloud cloud = test::sphere_cloud(1'000, 13);
     cloud.positions[500].y = bad;
-    EXPECT_EQ(error_of([&] { (void)reconstructed(cloud, {.depth = 5}); }), ErrorCode::invalid_input);
+    EXPECT_EQ(error_of([&] { (void)reconstructed(cloud, {{.depth = 5}}); }), ErrorCode::invalid_input);
     cloud = test::sphere_cloud(1'000, 13);
     cloud.normals[999].z = bad;
-    EXPECT_EQ(error_of([&] { (void)reconstructed(cloud, {.depth = 5}); }), ErrorCode::invalid_input);
+    EXPECT_EQ(error_of([&] { (void)reconstructed(cloud, {{.depth = 5}}); }), ErrorCode::invalid_input);
   }
 }
 

@@ -115,7 +115,7 @@ std::pair<double, double> errors_of(const Mesh& mesh, BooleanOp op, double cell)
 
 TEST(Booleans, OfTwoSpheresHaveTheVolumesTheTopologyAndTheCrease) {
   const TwoSpheres spheres(60'000);
-  const Mesh plain = test::reconstructed(spheres.a(), {.depth = 7});
+  const Mesh plain = test::reconstructed(spheres.a(), {{.depth = 7}});
   double plain_squares = 0;
   for (const Vec3f& v : plain.vertices) plain_squares += std::pow(distance({v.x, v.y, v.z}, kFirst) - 1, 2);
   const double plain_rms = std::sqrt(plain_squares / static_cast<double>(plain.vertices.size()));
@@ -189,7 +189,7 @@ TEST(Booleans, OfASolidWithItselfAreItOrNothing) {
   const Cloud noisy = test::jittered(torus, 4, 0.03);
   for (const Cloud* a : {&torus, &noisy}) {
     const Cloud again = test::shuffled(*a, 5);
-    const Mesh plain = test::reconstructed(*a, {.depth = 6});
+    const Mesh plain = test::reconstructed(*a, {{.depth = 6}});
     for (const BooleanOp op : {BooleanOp::unite, BooleanOp::intersect}) {
       const BooleanResult result = combined(*a, again, op, at_depth(6));
       EXPECT_EQ(result.report.a.kept, a->size());

@@ -20,8 +20,8 @@ namespace {
 using test::expect_same_bytes;
 using test::reconstructed;
 
-Options free_faces() { return {.depth = 6}; }
-Options dirichlet() { return {.depth = 6, .boundary = Boundary::dirichlet}; }
+Options free_faces() { return {{.depth = 6}}; }
+Options dirichlet() { return {{.depth = 6, .boundary = Boundary::dirichlet}}; }
 
 /// Share of the cube's side between the mesh and the nearest face of the cube.
 double margin_of(const Cloud& cloud, Options options) {
@@ -53,9 +53,9 @@ Cloud half_sphere(std::int64_t n, std::uint64_t seed) {
 
 TEST(Boundary, IsFreeUnlessAskedOtherwiseAndNeumannIsTheSame) {
   const Cloud cloud = test::torus_cloud(10'000, 1);
-  const Mesh plain = reconstructed(cloud, {.depth = 6});
-  expect_same_bytes(reconstructed(cloud, {.depth = 6, .boundary = Boundary::free}), plain);
-  expect_same_bytes(reconstructed(cloud, {.depth = 6, .boundary = Boundary::neumann}), plain);
+  const Mesh plain = reconstructed(cloud, {{.depth = 6}});
+  expect_same_bytes(reconstructed(cloud, {{.depth = 6, .boundary = Boundary::free}}), plain);
+  expect_same_bytes(reconstructed(cloud, {{.depth = 6, .boundary = Boundary::neumann}}), plain);
 }
 
 TEST(Boundary, DirichletClosesOpenScansInsideOfTheCubeWhereFreeOnesRunIntoItsFaces) {
@@ -101,7 +101,8 @@ TEST(Boundary, DirichletHoldsAtEveryDepthAndWithoutScreening) {
   for (const int depth : {2, 3, 4, 5, 8})
     for (const double screening : {0.0, 2.0}) {
       SCOPED_TRACE(std::to_string(depth) + ", screening " + std::to_string(screening));
-      const Mesh mesh = reconstructed(cloud, {.depth = depth, .screening = screening, .boundary = Boundary::dirichlet});
+      const Mesh mesh =
+          reconstructed(cloud, {{.depth = depth, .screening = screening, .boundary = Boundary::dirichlet}});
       EXPECT_TRUE(measure(mesh).watertight());
       EXPECT_EQ(measure(mesh).components, 1);
     }

@@ -75,7 +75,7 @@ TEST(SuggestDepth, KeepsWithinTheMemory) {
   const Cloud cloud = test::sphere_cloud(300'000, 7);
   const DepthSuggestion free = suggest_depth(cloud);
   Options options;
-  options.max_memory_bytes = estimate_device_bytes(cloud, {.depth = free.depth - 2});
+  options.max_memory_bytes = estimate_device_bytes(cloud, {{.depth = free.depth - 2}});
   const DepthSuggestion kept = suggest_depth(cloud, options);
   EXPECT_EQ(kept.depth, free.depth - 2);
   EXPECT_EQ(kept.supported, free.supported);
@@ -83,9 +83,9 @@ TEST(SuggestDepth, KeepsWithinTheMemory) {
 
 TEST(SuggestDepth, IsWhatAnAutomaticDepthTakes) {
   const Cloud cloud = test::torus_cloud(20'000, 8);
-  const test::Outcome chosen = test::run(cloud, {.depth = Options::kAutomaticDepth});
+  const test::Outcome chosen = test::run(cloud, {{.depth = Options::kAutomaticDepth}});
   EXPECT_EQ(chosen.report.depth, suggest_depth(cloud).depth);
-  test::expect_same_bytes(chosen.mesh, test::run(cloud, {.depth = chosen.report.depth}).mesh);
+  test::expect_same_bytes(chosen.mesh, test::run(cloud, {{.depth = chosen.report.depth}}).mesh);
 }
 
 TEST(SuggestDepth, DoesNotDependOnTheOrderOrOnStrays) {

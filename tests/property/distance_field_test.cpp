@@ -24,7 +24,7 @@ using test::Outcome;
 using test::reconstructed;
 
 Options distance_options(int depth) {
-  Options options{.depth = depth};
+  Options options{{.depth = depth}};
   options.field = FieldKind::distance;
   return options;
 }

@@ -51,20 +51,20 @@ TEST(Embedding, HoldsAcrossManyLevels) {
   for (const int depth : {3, 8, 10})
     for (const double samples_per_node : {0.0, 1.5})
       expect_embedded(test::reconstructed(test::linked_tori_cloud(6'000, 8),
-                                          {.depth = depth, .samples_per_node = samples_per_node}));
+                                          {{.depth = depth, .samples_per_node = samples_per_node}}));
 }
 
 TEST(Embedding, HoldsInSurveyCoordinates) {
   Cloud cloud = test::torus_cloud(10'000, 9);
   cloud.origin = {1e6, 4e6, 250};
-  expect_embedded(test::reconstructed(cloud, {.depth = 7}));
+  expect_embedded(test::reconstructed(cloud, {{.depth = 7}}));
   // Without an origin of their own: floats near 100 still tell a thousandth of a cell apart.
-  expect_embedded(test::reconstructed(test::translated(test::torus_cloud(10'000, 9), {100, -100, 50}), {.depth = 7}));
+  expect_embedded(test::reconstructed(test::translated(test::torus_cloud(10'000, 9), {100, -100, 50}), {{.depth = 7}}));
 }
 
 TEST(Embedding, FarFromTheOriginOfTheFloatsVerticesTouchAndNothingCrosses) {
   const Mesh mesh =
-      test::reconstructed(test::translated(test::torus_cloud(10'000, 9), {1000, -1000, 500}), {.depth = 7});
+      test::reconstructed(test::translated(test::torus_cloud(10'000, 9), {1000, -1000, 500}), {{.depth = 7}});
   const SelfIntersections found = find_self_intersections(mesh);
   EXPECT_GT(found.pairs, 0);
   EXPECT_EQ(found.touching, found.pairs);
@@ -77,7 +77,7 @@ TEST(Embedding, HoldsForBooleansDeformationsAndFluids) {
   for (const BooleanOp op : {BooleanOp::unite, BooleanOp::intersect, BooleanOp::subtract})
     expect_embedded(Booleans(Device::cpu(2)).combine(first, second, op, options).mesh);
 
-  Deformer deformer(test::torus_cloud(10'000, 12), {.depth = 6}, Device::cpu(2));
+  Deformer deformer(test::torus_cloud(10'000, 12), {{.depth = 6}}, Device::cpu(2));
   deformer.deform(test::bend_along_x(1));
   expect_embedded(deformer.reconstruct());
 
@@ -95,8 +95,8 @@ TEST_P(EmbeddedScan, HasNoSelfIntersections) {
   Reconstructor r(Device::cpu(2));
   for (const int depth : {6, 8}) {
     SCOPED_TRACE(depth);
-    expect_embedded(r.reconstruct(*cloud, {.depth = depth}));
-    expect_embedded(r.reconstruct(*cloud, {.depth = depth, .trim = 0.05}));
+    expect_embedded(r.reconstruct(*cloud, {{.depth = depth}}));
+    expect_embedded(r.reconstruct(*cloud, {{.depth = depth}, {.trim = 0.05}}));
   }
 }
 

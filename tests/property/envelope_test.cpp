@@ -90,7 +90,7 @@ TEST(Envelope, KeepsTheSurfaceInside) {
     for (const int depth : {5, 7})
       for (const double scale : {1.1, 2.0}) {
         SCOPED_TRACE(c.name + ", depth " + std::to_string(depth) + ", scale " + std::to_string(scale));
-        Options options{.depth = depth, .scale = scale};
+        Options options{{.depth = depth, .scale = scale}};
         const Protrusion without = protrusion_of(run(c.cloud, options).mesh, c.envelope);
         options.envelope = shared(c.envelope);
         const Outcome within = run(c.cloud, options);
@@ -112,7 +112,7 @@ TEST(Envelope, KeepsTheSurfaceInside) {
 TEST(Envelope, NoTwoVerticesMeet) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    const Mesh mesh = run(c.cloud, {.depth = 6, .envelope = shared(c.envelope)}).mesh;
+    const Mesh mesh = run(c.cloud, {{.depth = 6, .envelope = shared(c.envelope)}}).mesh;
     std::set<std::tuple<float, float, float>> places;
     for (const Vec3f& v : mesh.vertices) places.insert({v.x, v.y, v.z});
     EXPECT_EQ(places.size(), mesh.vertices.size());
@@ -122,7 +122,7 @@ TEST(Envelope, NoTwoVerticesMeet) {
 TEST(Envelope, HoldsNoisyPointsBackThatLieOutside) {
   const Cloud noisy = test::jittered(test::sphere_cloud(30'000, 5), 6, 0.05);
   const Mesh tight = test::icosphere_mesh(5, 1.0);
-  const Outcome r = run(noisy, {.depth = 7, .envelope = shared(tight)});
+  const Outcome r = run(noisy, {{.depth = 7, .envelope = shared(tight)}});
   EXPECT_TRUE(measure(r.mesh).watertight());
   EXPECT_LT(protrusion_of(r.mesh, tight).vertices, 1e-6);
   EXPECT_GT(r.report.envelope.samples_outside, 10'000);
@@ -134,14 +134,14 @@ TEST(Envelope, FarFromAClosedScanChangesNothingButRounding) {
   for (const auto& [name, cloud] : std::vector<std::pair<std::string, Cloud>>{
            {"sphere", test::sphere_cloud(20'000, 7)}, {"torus", test::torus_cloud(20'000, 8)}}) {
     SCOPED_TRACE(name);
-    const Outcome without = run(cloud, {.depth = 7});
-    const Outcome within = run(cloud, {.depth = 7, .envelope = shared(test::box_mesh({-3, -3, -3}, {3, 3, 3}))});
+    const Outcome without = run(cloud, {{.depth = 7}});
+    const Outcome within = run(cloud, {{.depth = 7, .envelope = shared(test::box_mesh({-3, -3, -3}, {3, 3, 3}))}});
     expect_same_bytes(within.mesh, without.mesh);  // it lies outside of the cube
     EXPECT_EQ(within.report.envelope.vertices_moved, 0);
     EXPECT_EQ(within.report.envelope.samples_outside, 0);
 
     const Outcome near =
-        run(cloud, {.depth = 7, .envelope = shared(test::box_mesh({-1.42, -1.42, -1.42}, {1.42, 1.42, 1.42}))});
+        run(cloud, {{.depth = 7, .envelope = shared(test::box_mesh({-1.42, -1.42, -1.42}, {1.42, 1.42, 1.42}))}});
     EXPECT_EQ(measure(near.mesh).euler, measure(without.mesh).euler);
     EXPECT_EQ(near.report.envelope.vertices_moved, 0);
     EXPECT_LT(compare(near.mesh, without.mesh).two_sided.max, 0.2 * 2.2 / 128);  // of a cell
@@ -150,7 +150,7 @@ TEST(Envelope, FarFromAClosedScanChangesNothingButRounding) {
 
 TEST(Envelope, ClosesAScanThatGoesOnOutside) {
   const Mesh box = test::box_mesh({-2, -2, 0.3}, {2, 2, 2});
-  const Outcome r = run(test::sphere_cloud(40'000, 9), {.depth = 7, .envelope = shared(box)});
+  const Outcome r = run(test::sphere_cloud(40'000, 9), {{.depth = 7, .envelope = shared(box)}});
   EXPECT_TRUE(measure(r.mesh).watertight());
   EXPECT_NEAR(static_cast<double>(r.report.envelope.samples_outside), 0.65 * 40'000, 1000);
   EXPECT_NEAR(r.report.isovalue, 0.5, 0.05) << "samples outside, where the field is 0, must not count";
@@ -162,7 +162,7 @@ TEST(Envelope, ClosesAScanThatGoesOnOutside) {
 
 TEST(Envelope, GivesTheSameBytesForAnyThreadsAndOrder) {
   const Case c = cases()[1];
-  const Options options{.depth = 6, .envelope = shared(c.envelope)};
+  const Options options{{.depth = 6, .envelope = shared(c.envelope)}};
   const Mesh mesh = run(c.cloud, options, 1).mesh;
   expect_same_bytes(run(c.cloud, options, 3).mesh, mesh);
   expect_same_bytes(run(test::shuffled(c.cloud, 10), options, 2).mesh, mesh);
@@ -173,11 +173,11 @@ TEST(Envelope, GivesTheSameBytesForAnyThreadsAndOrder) {
 
 TEST(Envelope, LiesInWorldCoordinatesWhateverTheOrigins) {
   Case c = cases()[0];
-  const Mesh mesh = run(c.cloud, {.depth = 6, .envelope = shared(c.envelope)}).mesh;
+  const Mesh mesh = run(c.cloud, {{.depth = 6, .envelope = shared(c.envelope)}}).mesh;
   c.cloud.origin = {4e6, -5e5, 100};
   c.envelope.origin = {4e6 - 8, -5e5 + 16, 100 - 4};  // exact in float
   c.envelope = test::translated(c.envelope, {8, -16, 4});
-  const Mesh moved = run(c.cloud, {.depth = 6, .envelope = shared(c.envelope)}).mesh;
+  const Mesh moved = run(c.cloud, {{.depth = 6, .envelope = shared(c.envelope)}}).mesh;
   ASSERT_EQ(moved.vertices.size(), mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {  // the envelope's floats are coarser there
     ASSERT_NEAR(moved.vertices[i].x, mesh.vertices[i].x, 1e-4);
@@ -188,13 +188,13 @@ TEST(Envelope, LiesInWorldCoordinatesWhateverTheOrigins) {
 
 TEST(Envelope, GoesWithOtherOptions) {
   const Case c = cases()[1];
-  for (const Options& options : std::vector<Options>{{.depth = 6, .screening = 0},
-                                                     {.depth = 6, .linear_fit = true},
-                                                     {.depth = 6, .normals = false},
-                                                     {.depth = 6, .boundary = Boundary::dirichlet},
-                                                     {.depth = 1},
-                                                     {.depth = 3},
-                                                     {.depth = 6, .domain_faces = DomainFaces::open}}) {
+  for (const Options& options : std::vector<Options>{{{.depth = 6, .screening = 0}},
+                                                     {{.depth = 6}, {.linear_fit = true}},
+                                                     {{.depth = 6}, {.normals = false}},
+                                                     {{.depth = 6, .boundary = Boundary::dirichlet}},
+                                                     {{.depth = 1}},
+                                                     {{.depth = 3}},
+                                                     {{.depth = 6}, {.domain_faces = DomainFaces::open}}}) {
     Options with = options;
     with.envelope = shared(c.envelope);
     const std::optional<ErrorCode> error = error_of([&] {
@@ -208,7 +208,7 @@ TEST(Envelope, GoesWithOtherOptions) {
 
 TEST(Envelope, HoldsForTheBorderOfATrimmedSurfaceToo) {
   const Case c = cases()[4];  // a plane in a torus
-  const Outcome r = run(c.cloud, {.depth = 6, .envelope = shared(c.envelope), .trim = 0.3});
+  const Outcome r = run(c.cloud, {{.depth = 6, .envelope = shared(c.envelope)}, {.trim = 0.3}});
   EXPECT_TRUE(measure(r.mesh).manifold());
   EXPECT_GT(r.report.trim.triangles_split, 0);
   EXPECT_LT(protrusion_of(r.mesh, c.envelope).vertices, 1e-6);
@@ -230,20 +230,21 @@ TEST(Envelope, RefusesMeshesThatEncloseNothing) {
   astray.triangles[5][1] = 8;
   for (const Mesh& bad : {Mesh{}, open, twisted, twice, infinite, astray, test::flipped(test::box_mesh()),
                           test::patch_mesh(3), test::moebius_mesh(5)})
-    EXPECT_EQ(error_of([&] { run(cloud, {.depth = 4, .envelope = shared(bad)}); }), ErrorCode::invalid_input);
+    EXPECT_EQ(error_of([&] { run(cloud, {{.depth = 4, .envelope = shared(bad)}}); }), ErrorCode::invalid_input);
 }
 
 TEST(Envelope, FailsWhereAllPointsLieOutside) {
-  EXPECT_EQ(error_of([] {
-              run(test::sphere_cloud(1000, 12), {.depth = 5, .envelope = shared(test::box_mesh({5, 5, 5}, {6, 6, 6}))});
-            }),
-            ErrorCode::empty_result);
+  EXPECT_EQ(
+      error_of([] {
+        run(test::sphere_cloud(1000, 12), {{.depth = 5, .envelope = shared(test::box_mesh({5, 5, 5}, {6, 6, 6}))}});
+      }),
+      ErrorCode::empty_result);
 }
 
 TEST(Envelope, RunsRepeatedly) {
   const Case c = cases()[1];
   Reconstructor r(Device::cpu(2));
-  const Options options{.depth = 6, .envelope = shared(c.envelope)};
+  const Options options{{.depth = 6, .envelope = shared(c.envelope)}};
   const Mesh mesh = r.reconstruct(c.cloud, options);
   for (const RunTimes& times : r.repeat(c.cloud, options, 2))
     EXPECT_EQ(times.vertices, static_cast<std::int64_t>(mesh.vertices.size()));

@@ -56,9 +56,9 @@ void expect_nearest(const Mesh& mesh, const Cloud& cloud, std::size_t attribute)
 
 TEST(KeptLabels, AreThoseOfTheNearestPoint) {
   const Cloud cloud = numbered(test::torus_cloud(3'000, 1));
-  expect_nearest(reconstructed(cloud, {.depth = 6, .attributes = true}), cloud, 0);
-  expect_nearest(reconstructed(cloud, {.depth = 3, .attributes = true}), cloud, 0);
-  expect_nearest(reconstructed(cloud, {.depth = 5, .field = FieldKind::distance, .attributes = true}), cloud, 0);
+  expect_nearest(reconstructed(cloud, {{.depth = 6}, {.attributes = true}}), cloud, 0);
+  expect_nearest(reconstructed(cloud, {{.depth = 3}, {.attributes = true}}), cloud, 0);
+  expect_nearest(reconstructed(cloud, {{.depth = 5, .field = FieldKind::distance}, {.attributes = true}}), cloud, 0);
 }
 
 TEST(KeptLabels, AreThoseOfTheNearestPointThatHasOne) {
@@ -67,7 +67,7 @@ TEST(KeptLabels, AreThoseOfTheNearestPointThatHasOne) {
     if (cloud.positions[i].z > 0) cloud.attributes[1].values.set_missing(i);  // half of the sphere is far from any
     if (i % 5 != 0) cloud.attributes[2].values.set_missing(i);
   }
-  const Mesh mesh = reconstructed(cloud, {.depth = 6, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = 6}, {.attributes = true}});
   for (std::size_t a = 0; a < 3; ++a) expect_nearest(mesh, cloud, a);
 }
 
@@ -82,7 +82,7 @@ TEST(KeptLabels, GoOnIntoHoles) {
     open.normals.push_back(cloud.normals[i]);
   }
   open = numbered(std::move(open));
-  expect_nearest(reconstructed(open, {.depth = 6, .attributes = true}), open, 0);
+  expect_nearest(reconstructed(open, {{.depth = 6}, {.attributes = true}}), open, 0);
 }
 
 TEST(KeptLabels, AreNeverBetweenTwo) {
@@ -92,7 +92,7 @@ TEST(KeptLabels, AreNeverBetweenTwo) {
                       test::attribute_of<std::uint8_t>("quality", cloud.positions, half),
                       test::attribute_of<std::uint16_t>("intensity", cloud.positions, half),
                       test::attribute_of<std::int16_t>("anything", cloud.positions, half)};
-  const Mesh mesh = reconstructed(cloud, {.depth = 6, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = 6}, {.attributes = true}});
   const auto between = [&](std::size_t a) {
     std::int64_t count = 0;
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -116,14 +116,14 @@ TEST(KeptLabels, HaveTheSameBytesForAnyThreadsAndAnyOrderOfThePoints) {
   for (std::size_t i = 0; i < times.size(); ++i) times[i] = 4e8 + 1e-6 * static_cast<double>(i);
   cloud.attributes.push_back({"gps_time", std::move(times)});
   for (std::size_t i = 0; i < cloud.positions.size(); i += 3) cloud.attributes[1].values.set_missing(i);
-  const Options options{.depth = 7, .attributes = true};
+  const Options options{{.depth = 7}, {.attributes = true}};
   const Mesh one = reconstructed(cloud, options, 1);
   expect_same_bytes(one, reconstructed(cloud, options, 3));
   for (const std::uint64_t seed : {6, 7})
     expect_same_bytes(one, reconstructed(test::shuffled(cloud, seed), options, 2));
   Mesh bare = one;
   bare.attributes.clear();
-  expect_same_bytes(bare, reconstructed(cloud, {.depth = 7}));
+  expect_same_bytes(bare, reconstructed(cloud, {{.depth = 7}}));
 }
 
 TEST(KeptLabels, StayInTheirPlaceAmongTheOthers) {
@@ -133,7 +133,7 @@ TEST(KeptLabels, StayInTheirPlaceAmongTheOthers) {
       test::attribute_of<float>("a", cloud.positions, z), test::attribute_of<std::int32_t>("b", cloud.positions, z),
       test::attribute_of<std::uint8_t>("c", cloud.positions, z),
       test::attribute_of<std::uint32_t>("d", cloud.positions, z), test::attribute_of<double>("e", cloud.positions, z)};
-  const Mesh mesh = reconstructed(cloud, {.depth = 6, .density = true, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = 6}, {.density = true, .attributes = true}});
   ASSERT_EQ(mesh.attributes.size(), 6U);
   for (std::size_t a = 0; a < 5; ++a) {
     EXPECT_EQ(mesh.attributes[a].name, cloud.attributes[a].name);
@@ -149,7 +149,7 @@ TEST(KeptDoubles, KeepMicrosecondsOfGpsTimes) {
   Cloud cloud = test::sphere_cloud(50'000, 9);
   cloud.attributes = {test::attribute_of<double>("gps_time", cloud.positions, time)};
   const int depth = 6;
-  const Mesh mesh = reconstructed(cloud, {.depth = depth, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = depth}, {.attributes = true}});
   const std::vector<double>& times = mesh.attributes[0].values.as<double>();
   const double cell = 2.2 / (1 << depth);
   double squares = 0;
@@ -165,7 +165,7 @@ TEST(KeptDoubles, KeepMicrosecondsOfGpsTimes) {
 TEST(KeptDoubles, ThatAreTheSameEverywhereComeBackExactly) {
   Cloud cloud = test::torus_cloud(3'000, 10);
   cloud.attributes = {{"gps_time", std::vector<double>(3'000, 400000000.000001)}};
-  const Mesh mesh = reconstructed(cloud, {.depth = 7, .attributes = true});
+  const Mesh mesh = reconstructed(cloud, {{.depth = 7}, {.attributes = true}});
   for (const double v : mesh.attributes[0].values.as<double>()) ASSERT_EQ(v, 400000000.000001);
 }
 

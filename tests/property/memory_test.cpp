@@ -79,54 +79,54 @@ Cloud with_outliers(Cloud cloud, int count, float distance) {
 TEST(MemoryEstimate, IsWithin15PercentOfThePeakForSurfaces) {
   for (const std::int64_t n : {2'000, 60'000})
     for (const int depth : {3, 5, 6, 7, 8}) {
-      expect_good_estimate(test::sphere_cloud(n, 1), {.depth = depth}, "sphere");
-      expect_good_estimate(test::torus_cloud(n, 2), {.depth = depth}, "torus");
-      expect_good_estimate(test::box_cloud(n, 3), {.depth = depth}, "box");
+      expect_good_estimate(test::sphere_cloud(n, 1), {{.depth = depth}}, "sphere");
+      expect_good_estimate(test::torus_cloud(n, 2), {{.depth = depth}}, "torus");
+      expect_good_estimate(test::box_cloud(n, 3), {{.depth = depth}}, "box");
       // Judged, so thin a plate is looked at twice, which takes more than its surface.
-      expect_good_estimate(test::thin_plate_cloud(n, 4, 0.05), {.depth = depth, .point_normals = PointNormals::given},
+      expect_good_estimate(test::thin_plate_cloud(n, 4, 0.05), {{.depth = depth, .point_normals = PointNormals::given}},
                            "plate");
-      expect_good_estimate(test::linked_tori_cloud(n, 5), {.depth = depth}, "tori");
-      expect_good_estimate(test::plane_cloud(n, 6), {.depth = depth}, "plane");
+      expect_good_estimate(test::linked_tori_cloud(n, 5), {{.depth = depth}}, "tori");
+      expect_good_estimate(test::plane_cloud(n, 6), {{.depth = depth}}, "plane");
     }
 }
 
 TEST(MemoryEstimate, IsWithin15PercentOfThePeakForDenseAndForDeepClouds) {
-  expect_good_estimate(test::sphere_cloud(500'000, 7), {.depth = 5}, "sphere");
-  expect_good_estimate(test::sphere_cloud(500'000, 8), {.depth = 8}, "sphere");
-  expect_good_estimate(test::torus_cloud(100'000, 9), {.depth = 9}, "torus");
-  expect_good_estimate(test::sphere_cloud(300, 10), {.depth = 13}, "sphere");
+  expect_good_estimate(test::sphere_cloud(500'000, 7), {{.depth = 5}}, "sphere");
+  expect_good_estimate(test::sphere_cloud(500'000, 8), {{.depth = 8}}, "sphere");
+  expect_good_estimate(test::torus_cloud(100'000, 9), {{.depth = 9}}, "torus");
+  expect_good_estimate(test::sphere_cloud(300, 10), {{.depth = 13}}, "sphere");
 }
 
 TEST(MemoryEstimate, IsWithin15PercentOfThePeakForUnusualClouds) {
   for (const int depth : {4, 7, 9}) {
-    expect_good_estimate(two_clusters(20'000, 11), {.depth = depth}, "two clusters");
-    expect_good_estimate(with_outliers(test::sphere_cloud(20'000, 12), 5, 300), {.depth = depth}, "outliers");
-    expect_good_estimate(test::sphere_cloud(9, 13), {.depth = depth}, "nine points");
+    expect_good_estimate(two_clusters(20'000, 11), {{.depth = depth}}, "two clusters");
+    expect_good_estimate(with_outliers(test::sphere_cloud(20'000, 12), 5, 300), {{.depth = depth}}, "outliers");
+    expect_good_estimate(test::sphere_cloud(9, 13), {{.depth = depth}}, "nine points");
   }
-  for (const int depth : {4, 6, 7}) expect_good_estimate(ball_cloud(50'000, 14), {.depth = depth}, "ball");
+  for (const int depth : {4, 6, 7}) expect_good_estimate(ball_cloud(50'000, 14), {{.depth = depth}}, "ball");
 }
 
 TEST(MemoryEstimate, FollowsTheOptions) {
   const Cloud cloud = test::torus_cloud(40'000, 15);
-  expect_good_estimate(cloud, {.depth = 8, .screening = 0}, "no screening");
-  expect_good_estimate(cloud, {.depth = 8, .scale = 3}, "scale");
-  expect_good_estimate(cloud, {.depth = 8, .density = true, .normals = false}, "density, no normals");
+  expect_good_estimate(cloud, {{.depth = 8, .screening = 0}}, "no screening");
+  expect_good_estimate(cloud, {{.depth = 8, .scale = 3}}, "scale");
+  expect_good_estimate(cloud, {{.depth = 8}, {.normals = false, .density = true}}, "density, no normals");
 }
 
 TEST(MemoryEstimate, CountsHeldCorners) {
   const Cloud cloud = test::torus_cloud(40'000, 16);
   const auto envelope = std::make_shared<const Mesh>(test::icosphere_mesh(4, 1.5));
   for (const int depth : {6, 8}) {
-    expect_good_estimate(cloud, {.depth = depth, .boundary = Boundary::dirichlet}, "Dirichlet");
-    expect_good_estimate(cloud, {.depth = depth, .envelope = envelope}, "envelope");
+    expect_good_estimate(cloud, {{.depth = depth, .boundary = Boundary::dirichlet}}, "Dirichlet");
+    expect_good_estimate(cloud, {{.depth = depth, .envelope = envelope}}, "envelope");
   }
 }
 
 TEST(MemoryEstimate, IsWithin15PercentWhenTrimming) {
   for (const int depth : {5, 7, 8}) {
-    expect_good_estimate(test::plane_cloud(60'000, 20), {.depth = depth, .trim = 0.05}, "plane");
-    expect_good_estimate(test::torus_cloud(60'000, 21), {.depth = depth, .trim = 0.01}, "torus");
-    expect_good_estimate(test::plane_cloud(500'000, 22), {.depth = depth, .normals = false, .trim = 0.05}, "plane");
+    expect_good_estimate(test::plane_cloud(60'000, 20), {{.depth = depth}, {.trim = 0.05}}, "plane");
+    expect_good_estimate(test::torus_cloud(60'000, 21), {{.depth = depth}, {.trim = 0.01}}, "torus");
+    expect_good_estimate(test::plane_cloud(500'000, 22), {{.depth = depth}, {.normals = false, .trim = 0.05}}, "plane");
   }
 }
 
@@ -141,13 +141,13 @@ TEST(MemoryEstimate, CountsTheAttributesThatAreKept) {
   for (const int count : {1, 3, 20})
     for (const int depth : {5, 8}) {
       const Cloud cloud = with_attributes(test::torus_cloud(60'000, 20), count);
-      expect_good_estimate(cloud, {.depth = depth, .confidence = true, .attributes = true}, "attributes");
-      expect_good_estimate(cloud, {.depth = depth}, "attributes that are not kept");
+      expect_good_estimate(cloud, {{.depth = depth, .confidence = true}, {.attributes = true}}, "attributes");
+      expect_good_estimate(cloud, {{.depth = depth}}, "attributes that are not kept");
     }
   const Cloud sparse = with_attributes(test::sphere_cloud(300, 21), 3);
-  expect_good_estimate(sparse, {.depth = 11, .attributes = true}, "attributes of few points");
+  expect_good_estimate(sparse, {{.depth = 11}, {.attributes = true}}, "attributes of few points");
   const Cloud dense = with_attributes(test::sphere_cloud(300'000, 22), 3);
-  expect_good_estimate(dense, {.depth = 5, .attributes = true}, "attributes of many points");
+  expect_good_estimate(dense, {{.depth = 5}, {.attributes = true}}, "attributes of many points");
 }
 
 /// `count` attributes of a type and name, the first two thirds of whose values are there.
@@ -166,9 +166,9 @@ TEST(MemoryEstimate, CountsAttributesInTheirTypes) {
     for (const int count : {1, 3, 12}) {
       const auto check = [&](const std::string& name, AttributeType type) {
         const std::string what = name + (gaps ? " with gaps, " : ", ") + std::to_string(count);
-        expect_good_estimate(with_types(torus, name, type, count, gaps), {.depth = 7, .attributes = true}, what);
-        expect_good_estimate(with_types(dense, name, type, count, gaps), {.depth = 5, .attributes = true}, what);
-        expect_good_estimate(with_types(sparse, name, type, count, gaps), {.depth = 10, .attributes = true}, what);
+        expect_good_estimate(with_types(torus, name, type, count, gaps), {{.depth = 7}, {.attributes = true}}, what);
+        expect_good_estimate(with_types(dense, name, type, count, gaps), {{.depth = 5}, {.attributes = true}}, what);
+        expect_good_estimate(with_types(sparse, name, type, count, gaps), {{.depth = 10}, {.attributes = true}}, what);
       };
       check("byte", AttributeType::uint8);
       check("time", AttributeType::float64);
@@ -180,7 +180,7 @@ TEST(MemoryEstimate, CountsAttributesInTheirTypes) {
 
 TEST(MemoryEstimate, OfColoursIsLessThanOfFloats) {
   const Cloud cloud = test::sphere_cloud(300'000, 26);
-  const Options options{.depth = 5, .attributes = true};
+  const Options options{{.depth = 5}, {.attributes = true}};
   const std::int64_t floats = peak_of(with_types(cloud, "red", AttributeType::float32, 3, false), options);
   const std::int64_t bytes = peak_of(with_types(cloud, "red", AttributeType::uint8, 3, false), options);
   EXPECT_LE(bytes, floats - 9 * cloud.size()) << "three bytes a colour instead of twelve";
@@ -190,21 +190,21 @@ TEST(MemoryEstimate, IsWithin15PercentWherePointsShareTheirPlaces) {
   const Cloud once = test::sphere_cloud(100'000, 16);
   Cloud cloud = once;
   test::append(cloud, once);
-  expect_good_estimate(cloud, {.depth = 5}, "sphere, twice");
+  expect_good_estimate(cloud, {{.depth = 5}}, "sphere, twice");
 }
 
 TEST(MemoryEstimate, DoesNotDependOnTheThreads) {
   const Cloud cloud = test::box_cloud(30'000, 17);
-  EXPECT_EQ(estimate_device_bytes(cloud, {.depth = 8}, 1), estimate_device_bytes(cloud, {.depth = 8}, 3));
+  EXPECT_EQ(estimate_device_bytes(cloud, {{.depth = 8}}, 1), estimate_device_bytes(cloud, {{.depth = 8}}, 3));
 }
 
 TEST(MemoryEstimate, OfCloudsWithoutASurfaceIsSmall) {
   constexpr std::int64_t kMegabyte = 1'000'000;
   EXPECT_EQ(estimate_device_bytes(Cloud(), {}), 0);
-  EXPECT_LT(estimate_device_bytes(one_place(1), {.depth = 20}), kMegabyte);
-  EXPECT_LT(estimate_device_bytes(one_place(10'000), {.depth = 20}), kMegabyte);
-  EXPECT_LT(estimate_device_bytes(line_cloud(1'000, 18), {.depth = 6}), 50 * kMegabyte);
-  EXPECT_EQ(error_of([] { (void)estimate_device_bytes(one_place(2), {.depth = 21}); }), ErrorCode::usage);
+  EXPECT_LT(estimate_device_bytes(one_place(1), {{.depth = 20}}), kMegabyte);
+  EXPECT_LT(estimate_device_bytes(one_place(10'000), {{.depth = 20}}), kMegabyte);
+  EXPECT_LT(estimate_device_bytes(line_cloud(1'000, 18), {{.depth = 6}}), 50 * kMegabyte);
+  EXPECT_EQ(error_of([] { (void)estimate_device_bytes(one_place(2), {{.depth = 21}}); }), ErrorCode::usage);
 }
 
 TEST(MaxMemory, OfTheEstimateIsEnough) {
@@ -212,7 +212,7 @@ TEST(MaxMemory, OfTheEstimateIsEnough) {
                                      test::box_cloud(10'000, 22), test::linked_tori_cloud(5'000, 23)};
   for (const Cloud& cloud : clouds)
     for (const int depth : {3, 5, 7, 8}) {
-      Options options{.depth = depth};
+      Options options{{.depth = depth}};
       options.max_memory_bytes = estimate_device_bytes(cloud, options);
       EXPECT_EQ(error_of([&] { (void)test::reconstructed(cloud, options); }), std::nullopt)
           << cloud.size() << " points, depth " << depth;
@@ -221,7 +221,7 @@ TEST(MaxMemory, OfTheEstimateIsEnough) {
 
 TEST(MaxMemory, RefusesOneByteBelowTheEstimateAndRunsAtIt) {
   const Cloud cloud = test::sphere_cloud(5'000, 19);
-  Options options{.depth = 6};
+  Options options{{.depth = 6}};
   options.max_memory_bytes = estimate_device_bytes(cloud, options);
   EXPECT_EQ(error_of([&] { (void)test::reconstructed(cloud, options); }), std::nullopt);
   --options.max_memory_bytes;

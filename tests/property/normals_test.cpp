@@ -312,7 +312,9 @@ TEST(Normals, RefuseWhatCannotBe) {
   EXPECT_EQ(error_of([&] { orient(sphere, {.method = NormalMethod::repair}); }), ErrorCode::no_normals);
   EXPECT_EQ(error_of([&] { orient(sphere, {.max_rounds = 0}); }), ErrorCode::usage);
   EXPECT_EQ(error_of([&] { orient(sphere, {.keep_within_degrees = 91}); }), ErrorCode::usage);
-  EXPECT_EQ(error_of([&] { orient(sphere, {.progress = [](const Progress&) { return false; }}); }),
+  EXPECT_EQ(error_of([&] {
+              orient(sphere, {{}, {}, {.progress = [](const Progress&) { return false; }}});
+            }),
             ErrorCode::interrupted);
   EXPECT_TRUE(sphere.normals.empty());
 }
@@ -362,7 +364,7 @@ TEST(Normals, OfTheArmadilloGiveTheSameMesh) {
   if (!truth) GTEST_SKIP() << "the scans of ../shared/data are not here";
   Cloud cloud = without_normals(*truth);
   orient(cloud);
-  const MeshReport report = measure(test::reconstructed(cloud, {.depth = 8}));
+  const MeshReport report = measure(test::reconstructed(cloud, {{.depth = 8}}));
   EXPECT_TRUE(report.watertight());
   EXPECT_EQ(report.components, 1);
   EXPECT_EQ(report.euler, 2);

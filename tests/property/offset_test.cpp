@@ -29,7 +29,7 @@ using test::Outcome;
 using test::reconstructed;
 
 Options offset_options(int depth, double offset, FieldKind field = FieldKind::poisson) {
-  Options options{.depth = depth};
+  Options options{{.depth = depth}};
   options.field = field;
   options.offset = offset;
   return options;

@@ -27,9 +27,9 @@ Cloud three_spheres() {
 }
 
 TEST(Pieces, OnlyTheLargestStays) {
-  const Outcome all = run(three_spheres(), {.depth = 7});
+  const Outcome all = run(three_spheres(), {{.depth = 7}});
   ASSERT_EQ(measure(all.mesh).components, 3);
-  const Outcome largest = run(three_spheres(), {.depth = 7, .largest = true});
+  const Outcome largest = run(three_spheres(), {{.depth = 7}, {.largest = true}});
   const MeshReport mesh = measure(largest.mesh);
   EXPECT_EQ(mesh.components, 1);
   EXPECT_TRUE(mesh.watertight());
@@ -43,22 +43,22 @@ TEST(Pieces, OnlyTheLargestStays) {
 TEST(Pieces, SmallOnesGoByTrianglesOrByArea) {
   // Areas 1, 0.16 and 0.01 of the largest: 0.855, 0.137 and 0.0085 of all.
   const auto pieces = [](double least) {
-    return measure(run(three_spheres(), {.depth = 7, .min_component = least}).mesh).components;
+    return measure(run(three_spheres(), {{.depth = 7}, {.min_component = least}}).mesh).components;
   };
   EXPECT_EQ(pieces(0.001), 3);
   EXPECT_EQ(pieces(0.02), 2);
   EXPECT_EQ(pieces(0.3), 1);
   EXPECT_EQ(pieces(2), 3);
-  const std::int64_t triangles = measure(run(three_spheres(), {.depth = 7}).mesh).triangles;
+  const std::int64_t triangles = measure(run(three_spheres(), {{.depth = 7}}).mesh).triangles;
   EXPECT_EQ(pieces(static_cast<double>(triangles / 50)), 2);
   EXPECT_EQ(pieces(static_cast<double>(triangles / 2)), 1);
 }
 
 TEST(Pieces, WhatStaysKeepsItsBytes) {
   const Cloud cloud = three_spheres();
-  const Mesh all = run(cloud, {.depth = 7, .density = true}).mesh;
-  expect_same_bytes(run(cloud, {.depth = 7, .density = true, .min_component = 1}).mesh, all);
-  const Outcome some = run(cloud, {.depth = 7, .density = true, .min_component = 0.02});
+  const Mesh all = run(cloud, {{.depth = 7}, {.density = true}}).mesh;
+  expect_same_bytes(run(cloud, {{.depth = 7}, {.min_component = 1, .density = true}}).mesh, all);
+  const Outcome some = run(cloud, {{.depth = 7}, {.min_component = 0.02, .density = true}});
   // In the order of the whole, as a subsequence.
   std::size_t at = 0;
   for (const Vec3f& v : some.mesh.vertices) {
@@ -72,23 +72,26 @@ TEST(Pieces, WhatStaysKeepsItsBytes) {
 TEST(Pieces, GoAfterTrimmingAndWithAnOffset) {
   Cloud cloud = test::plane_cloud(20'000, 4);
   test::append(cloud, test::sphere_cloud(2'000, 5, 0.2, {0, 0, 0.8}));
-  const Outcome trimmed = run(cloud, {.depth = 7, .trim = 0.02, .largest = true});
+  const Outcome trimmed = run(cloud, {{.depth = 7}, {.trim = 0.02, .largest = true}});
   EXPECT_EQ(measure(trimmed.mesh).components, 1);
   EXPECT_NEAR(measure(trimmed.mesh).area, 4.4, 0.4);
-  const Outcome offset = run(three_spheres(), {.depth = 7, .largest = true, .offset = 0.05});
+  const Outcome offset = run(three_spheres(), {{.depth = 7, .offset = 0.05}, {.largest = true}});
   EXPECT_EQ(measure(offset.mesh).components, 1);
   EXPECT_NEAR(measure(offset.mesh).volume, 4.18879 * 1.05 * 1.05 * 1.05, 0.05);
 }
 
 TEST(Pieces, AreTheSameInAnyOrder) {
-  const Options options{.depth = 7, .min_component = 0.02};
+  const Options options{{.depth = 7}, {.min_component = 0.02}};
   expect_same_bytes(run(three_spheres(), options, 1).mesh, run(test::shuffled(three_spheres(), 6), options, 5).mesh);
 }
 
 TEST(Pieces, NothingLeftIsAnError) {
-  EXPECT_EQ(error_of([] { (void)run(three_spheres(), {.depth = 5, .min_component = 1e6}); }), ErrorCode::empty_result);
+  EXPECT_EQ(error_of([] {
+              (void)run(three_spheres(), {{.depth = 5}, {.min_component = 1e6}});
+            }),
+            ErrorCode::empty_result);
   for (const double bad : {-1.0, 1.5, 1e300 * 1e300})
-    EXPECT_EQ(error_of([&] { validate({.min_component = bad}); }), ErrorCode::usage) << bad;
+    EXPECT_EQ(error_of([&] { validate({{}, {.min_component = bad}}); }), ErrorCode::usage) << bad;
 }
 
 }  // namespace

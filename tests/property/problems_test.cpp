@@ -23,7 +23,7 @@ using test::expect_same_bytes;
 using test::reconstructed;
 
 Options weakness_options(int depth) {
-  Options options{.depth = depth};
+  Options options{{.depth = depth}};
   options.weakness = true;
   return options;
 }

@@ -18,7 +18,7 @@ TEST_P(SharedCloud, IsWatertightAtDepthsSixToNine) {
   if (!cloud) GTEST_SKIP() << "no " << GetParam() << ".ply in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
   Reconstructor r(Device::cpu(2));
   for (int depth = 6; depth <= 9; ++depth) {
-    const MeshReport report = measure(r.reconstruct(*cloud, {.depth = depth}));
+    const MeshReport report = measure(r.reconstruct(*cloud, {{.depth = depth}}));
     SCOPED_TRACE("depth " + std::to_string(depth) + ", " + std::to_string(report.triangles) + " triangles");
     EXPECT_TRUE(report.closed());
     EXPECT_TRUE(report.manifold());

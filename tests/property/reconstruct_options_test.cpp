@@ -30,7 +30,7 @@ using test::reconstructed;
 
 TEST(Options, DensityIsTheNumberOfSamplesPerArea) {
   const std::int64_t n = 60'000;
-  const Mesh mesh = reconstructed(test::sphere_cloud(n, 1, 3), {.depth = 7, .density = true});
+  const Mesh mesh = reconstructed(test::sphere_cloud(n, 1, 3), {{.depth = 7}, {.density = true}});
   ASSERT_EQ(mesh.attributes.size(), 1U);
   EXPECT_EQ(mesh.attributes[0].name, "density");
   ASSERT_EQ(mesh.attributes[0].values.size(), mesh.vertices.size());
@@ -46,7 +46,7 @@ TEST(Options, DensityIsTheNumberOfSamplesPerArea) {
 }
 
 TEST(Options, DensityIsLeftOutUnlessAskedFor) {
-  EXPECT_TRUE(reconstructed(test::sphere_cloud(1000, 2), {.depth = 5}).attributes.empty());
+  EXPECT_TRUE(reconstructed(test::sphere_cloud(1000, 2), {{.depth = 5}}).attributes.empty());
 }
 
 Cloud with_normals_times(Cloud cloud, float factor) {
@@ -56,12 +56,12 @@ Cloud with_normals_times(Cloud cloud, float factor) {
 
 TEST(Options, LengthsOfNormalsDoNotMatterWithoutConfidence) {
   const Cloud cloud = test::torus_cloud(5'000, 3);
-  expect_same_bytes(reconstructed(cloud, {.depth = 6}), reconstructed(with_normals_times(cloud, 4), {.depth = 6}));
+  expect_same_bytes(reconstructed(cloud, {{.depth = 6}}), reconstructed(with_normals_times(cloud, 4), {{.depth = 6}}));
 }
 
 TEST(Options, ACommonLengthOfAllNormalsKeepsTheSurfaceWithConfidence) {
   const Cloud cloud = test::torus_cloud(5'000, 4);
-  const Options options{.depth = 6, .confidence = true};
+  const Options options{{.depth = 6, .confidence = true}};
   const Mesh once = reconstructed(cloud, options);
   const Mesh twice = reconstructed(with_normals_times(cloud, 2), options);  // a power of two: exact
   EXPECT_EQ(once.triangles, twice.triangles);
@@ -71,8 +71,8 @@ TEST(Options, ACommonLengthOfAllNormalsKeepsTheSurfaceWithConfidence) {
 TEST(Options, ConfidenceLetsShortNormalsCountLess) {
   Cloud cloud = test::sphere_cloud(10'000, 5);
   test::append(cloud, with_normals_times(test::sphere_cloud(10'000, 6, 1.2), 0.01F));  // a doubtful shell around it
-  const double without = measure(reconstructed(cloud, {.depth = 5})).volume;
-  const double with = measure(reconstructed(cloud, {.depth = 5, .confidence = true})).volume;
+  const double without = measure(reconstructed(cloud, {{.depth = 5}})).volume;
+  const double with = measure(reconstructed(cloud, {{.depth = 5, .confidence = true}})).volume;
   const double inner = 4 * std::numbers::pi / 3;
   EXPECT_LT(std::abs(with - inner), std::abs(without - inner));
 }
@@ -82,7 +82,7 @@ TEST(Options, MoreScreeningComesCloserToTheSamples) {
   double last = 1e9;
   for (const double screening : {0.0, 2.0, 20.0}) {
     Reconstructor r(Device::cpu(2));
-    const Field field = r.solve(cloud, {.depth = 6, .screening = screening, .iterations = 30});
+    const Field field = r.solve(cloud, {{.depth = 6, .screening = screening, .iterations = 30}});
     std::vector<Vec3d> at;
     for (const Vec3f& p : cloud.positions) at.push_back({p.x, p.y, p.z});
     double sum = 0;
@@ -106,9 +106,9 @@ std::vector<std::array<std::int32_t, 2>> boundary_edges(const Mesh& mesh) {
 TEST(Options, APlaneIsCappedByAClosedCubeAndEndsAtTheFacesOfAnOpenOne) {
   const Cloud cloud = test::plane_cloud(20'000, 8);
   for (const int depth : {4, 6, 7}) {
-    const MeshReport closed = measure(reconstructed(cloud, {.depth = depth}));
+    const MeshReport closed = measure(reconstructed(cloud, {{.depth = depth}}));
     EXPECT_TRUE(closed.watertight()) << "depth " << depth;
-    const Options open_options{.depth = depth, .domain_faces = DomainFaces::open};
+    const Options open_options{{.depth = depth}, {.domain_faces = DomainFaces::open}};
     const Mesh open = reconstructed(cloud, open_options);
     const MeshReport report = measure(open);
     EXPECT_TRUE(report.manifold() && report.oriented()) << "depth " << depth;
@@ -131,8 +131,8 @@ TEST(Options, APlaneIsCappedByAClosedCubeAndEndsAtTheFacesOfAnOpenOne) {
 
 TEST(Options, LinearFitChangesPositionsButNotTopology) {
   const Cloud cloud = test::torus_cloud(10'000, 9);
-  const Mesh quadratic = reconstructed(cloud, {.depth = 6});
-  const Mesh linear = reconstructed(cloud, {.depth = 6, .linear_fit = true});
+  const Mesh quadratic = reconstructed(cloud, {{.depth = 6}});
+  const Mesh linear = reconstructed(cloud, {{.depth = 6}, {.linear_fit = true}});
   EXPECT_EQ(quadratic.triangles.size(), linear.triangles.size());
   EXPECT_EQ(quadratic.vertices.size(), linear.vertices.size());
   EXPECT_EQ(measure(quadratic).euler, measure(linear).euler);
@@ -159,8 +159,8 @@ TEST(Options, ScreeningThatFollowsTheNoiseIsNearerToCleanAndToNoisySpheres) {
     p = {p.x * out, p.y * out, p.z * out};
   }
   for (const Cloud* cloud : {&clean, const_cast<const Cloud*>(&noisy)}) {
-    const double fixed = rms_off_unit_sphere(reconstructed(*cloud, {.depth = 7, .fixed_screening = true}));
-    const double adaptive = rms_off_unit_sphere(reconstructed(*cloud, {.depth = 7}));
+    const double fixed = rms_off_unit_sphere(reconstructed(*cloud, {{.depth = 7, .fixed_screening = true}}));
+    const double adaptive = rms_off_unit_sphere(reconstructed(*cloud, {{.depth = 7}}));
     EXPECT_LT(adaptive, 0.95 * fixed) << (cloud == &clean ? "clean" : "noisy");
   }
 }
@@ -173,7 +173,7 @@ TEST(Options, ScaleIsTheRatioOfTheCubeToTheBoundingCube) {
   cloud.normals.push_back({1, 0, 0});
   cloud.origin = {100, 200, -300};
   for (const double scale : {1.0, 1.1, 3.0}) {
-    const Field field = Reconstructor(Device::cpu(1)).solve(cloud, {.depth = 4, .scale = scale});
+    const Field field = Reconstructor(Device::cpu(1)).solve(cloud, {{.depth = 4, .scale = scale}});
     EXPECT_NEAR(field.cube_size_world(), 2 * scale, 1e-6);
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(field.cube_lower_world()[a], cloud.origin[a] - scale, 1e-5);
   }
@@ -183,7 +183,7 @@ TEST(Options, ProgressRisesThroughAllPhasesAndMayCancelAtEachOfThem) {
   const Cloud cloud = test::sphere_cloud(2'000, 11);
   std::vector<std::string> phases;
   double last = 0;
-  Options options{.depth = 6};
+  Options options{{.depth = 6}};
   options.progress = [&](const Progress& p) {
     EXPECT_GE(p.fraction, last);
     EXPECT_LE(p.fraction, 1);
@@ -204,7 +204,7 @@ TEST(Options, ProgressRisesThroughAllPhasesAndMayCancelAtEachOfThem) {
 
 TEST(Options, LevelsThatTheSamplesDoNotResolveHaveNoUnknowns) {
   Reconstructor r(Device::cpu(2));
-  const Mesh mesh = r.reconstruct(test::sphere_cloud(5'000, 12), {.depth = 9, .residuals = true});
+  const Mesh mesh = r.reconstruct(test::sphere_cloud(5'000, 12), {{.depth = 9}, {}, {.residuals = true}});
   EXPECT_GT(r.report().levels[5].unknowns, 0);
   EXPECT_EQ(r.report().levels[8].unknowns, 0);
   EXPECT_EQ(r.report().levels[9].unknowns, 0);
@@ -215,7 +215,7 @@ TEST(Options, LevelsThatTheSamplesDoNotResolveHaveNoUnknowns) {
 
 TEST(Options, ResidualsAreMeasuredWhenAskedFor) {
   Reconstructor r(Device::cpu(2));
-  (void)r.reconstruct(test::sphere_cloud(40'000, 12), {.depth = 7, .residuals = true});
+  (void)r.reconstruct(test::sphere_cloud(40'000, 12), {{.depth = 7}, {}, {.residuals = true}});
   ASSERT_EQ(r.report().levels.size(), 8U);
   for (const LevelReport& level : r.report().levels) {
     EXPECT_GT(level.unknowns, 0);
@@ -232,7 +232,7 @@ TEST(Options, MemoryEstimatesFromCountsHold) {
   for (const int depth : {5, 7, 9})
     for (const std::int64_t n : {2'000, 100'000}) {
       Reconstructor r(Device::cpu(2));
-      const Options options{.depth = depth};
+      const Options options{{.depth = depth}};
       (void)r.reconstruct(test::sphere_cloud(n, 13), options);
       EXPECT_LE(r.report().device_peak_bytes, estimate_device_bytes(n, options)) << "depth " << depth << ", " << n;
     }
@@ -241,20 +241,20 @@ TEST(Options, MemoryEstimatesFromCountsHold) {
 TEST(Repeat, ReturnsAsManyTimesAsAskedFor) {
   Reconstructor r(Device::cpu(2));
   const Cloud cloud = test::sphere_cloud(2'000, 14);
-  const std::vector<RunTimes> runs = r.repeat(cloud, {.depth = 5}, 3);
+  const std::vector<RunTimes> runs = r.repeat(cloud, {{.depth = 5}}, 3);
   EXPECT_EQ(runs.size(), 3U);
-  const std::size_t triangles = r.reconstruct(cloud, {.depth = 5}).triangles.size();
+  const std::size_t triangles = r.reconstruct(cloud, {{.depth = 5}}).triangles.size();
   for (const RunTimes& run : runs) {
     EXPECT_GT(run.total_ms, 0);
     EXPECT_GE(run.total_ms, run.octree_ms + run.splat_ms + run.solve_ms);
     EXPECT_EQ(run.triangles, static_cast<std::int64_t>(triangles));
   }
-  EXPECT_EQ(error_of([&] { (void)r.repeat(cloud, {.depth = 5}, 0); }), ErrorCode::usage);
+  EXPECT_EQ(error_of([&] { (void)r.repeat(cloud, {{.depth = 5}}, 0); }), ErrorCode::usage);
 }
 
 TEST(FieldValues, AreAboveTheIsovalueInsideAndBelowItOutside) {
   const Cloud cloud = test::torus_cloud(30'000, 15);
-  const Field field = Reconstructor(Device::cpu(2)).solve(cloud, {.depth = 7});
+  const Field field = Reconstructor(Device::cpu(2)).solve(cloud, {{.depth = 7}});
   std::vector<Vec3d> inside;
   std::vector<Vec3d> outside{{0, 0, 0}, {1.45, 0, 0}, {0, 0, 0.4}, {50, 0, 0}, {-1e9, 1e9, 3}};
   for (int i = 0; i < 100; ++i) {
@@ -269,7 +269,7 @@ TEST(FieldValues, AreAboveTheIsovalueInsideAndBelowItOutside) {
 
 TEST(FieldValues, AreTheIsovalueAtTheVerticesUpToTheFit) {
   Reconstructor r(Device::cpu(2));
-  const Field field = r.solve(test::sphere_cloud(30'000, 16), {.depth = 6, .linear_fit = true});
+  const Field field = r.solve(test::sphere_cloud(30'000, 16), {{.depth = 6}, {.linear_fit = true}});
   const Mesh mesh = field.extract();
   std::vector<Vec3d> at;
   for (const Vec3f& v : mesh.vertices) at.push_back({v.x, v.y, v.z});
@@ -278,7 +278,7 @@ TEST(FieldValues, AreTheIsovalueAtTheVerticesUpToTheFit) {
 
 // ---- Errors
 
-ErrorCode reconstruct_error(const Cloud& cloud, const Options& options = {.depth = 6}) {
+ErrorCode reconstruct_error(const Cloud& cloud, const Options& options = {{.depth = 6}}) {
   return error_of([&] { (void)reconstructed(cloud, options); }).value_or(ErrorCode{0});
 }
 
@@ -303,34 +303,34 @@ TEST(Errors, NameOptionsThatAreOutOfRange) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<Options> bad;
-  for (const int depth : {-1, 21, 1000}) bad.push_back({.depth = depth});
-  for (const double w : {-1e-9, kNan, kInfinity}) bad.push_back({.screening = w});
-  for (const int iterations : {-3, 0, 1001}) bad.push_back({.iterations = iterations});
-  for (const double scale : {0.999, -1.0, 100.5, kNan, kInfinity}) bad.push_back({.scale = scale});
-  for (const double samples : {-0.5, 101.0, kNan, kInfinity}) bad.push_back({.samples_per_node = samples});
-  for (const double trim : {-0.5, -2.0, 1.0, kNan}) bad.push_back({.trim = trim});
-  for (const double least : {-1.0, 1.5, kNan, kInfinity}) bad.push_back({.min_component = least});
-  bad.push_back({.max_memory_bytes = -1});
+  for (const int depth : {-1, 21, 1000}) bad.push_back({{.depth = depth}});
+  for (const double w : {-1e-9, kNan, kInfinity}) bad.push_back({{.screening = w}});
+  for (const int iterations : {-3, 0, 1001}) bad.push_back({{.iterations = iterations}});
+  for (const double scale : {0.999, -1.0, 100.5, kNan, kInfinity}) bad.push_back({{.scale = scale}});
+  for (const double samples : {-0.5, 101.0, kNan, kInfinity}) bad.push_back({{.samples_per_node = samples}});
+  for (const double trim : {-0.5, -2.0, 1.0, kNan}) bad.push_back({{}, {.trim = trim}});
+  for (const double least : {-1.0, 1.5, kNan, kInfinity}) bad.push_back({{}, {.min_component = least}});
+  bad.push_back({{}, {}, {.max_memory_bytes = -1}});
   const Cloud cloud = test::sphere_cloud(100, 17);
   for (std::size_t i = 0; i < bad.size(); ++i) {
     EXPECT_EQ(error_of([&] { validate(bad[i]); }), ErrorCode::usage) << i;
     EXPECT_EQ(reconstruct_error(cloud, bad[i]), ErrorCode::usage) << i;
   }
-  EXPECT_NO_THROW(validate({.depth = 20, .screening = 0, .iterations = 1000, .scale = 100, .samples_per_node = 100}));
-  EXPECT_NO_THROW(validate({.depth = Options::kAutomaticDepth}));
-  EXPECT_NO_THROW(validate({.depth = 1, .screening = 1e6, .iterations = 1, .scale = 1, .samples_per_node = 0}));
+  EXPECT_NO_THROW(validate({{.depth = 20, .screening = 0, .iterations = 1000, .scale = 100, .samples_per_node = 100}}));
+  EXPECT_NO_THROW(validate({{.depth = Options::kAutomaticDepth}}));
+  EXPECT_NO_THROW(validate({{.depth = 1, .screening = 1e6, .iterations = 1, .scale = 1, .samples_per_node = 0}}));
 }
 
 TEST(Errors, RefuseARunThatNeedsMoreMemoryThanAllowed) {
   const Cloud cloud = test::sphere_cloud(10'000, 18);
-  EXPECT_EQ(reconstruct_error(cloud, {.depth = 9, .max_memory_bytes = 1000}), ErrorCode::over_limit);
-  EXPECT_NO_THROW((void)reconstructed(cloud, {.depth = 6, .max_memory_bytes = std::int64_t{1} << 40}));
+  EXPECT_EQ(reconstruct_error(cloud, {{.depth = 9}, {}, {.max_memory_bytes = 1000}}), ErrorCode::over_limit);
+  EXPECT_NO_THROW((void)reconstructed(cloud, {{.depth = 6}, {}, {.max_memory_bytes = std::int64_t{1} << 40}}));
 }
 
 TEST(Errors, ToleratePointsWithoutANormalAmongOthers) {
   Cloud cloud = test::sphere_cloud(5'000, 19);
   for (std::size_t i = 0; i < cloud.normals.size(); i += 5) cloud.normals[i] = {};
-  const MeshReport report = measure(reconstructed(cloud, {.depth = 6}));
+  const MeshReport report = measure(reconstructed(cloud, {{.depth = 6}}));
   EXPECT_TRUE(report.watertight());
   EXPECT_EQ(report.euler, 2);
 }
@@ -351,10 +351,10 @@ TEST(TinyClouds, EndInAWatertightMeshOrADefinedError) {
       const Vec3d d = random.direction();
       cloud.normals.push_back({static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])});
     }
-    const Options options{.depth = 1 + static_cast<int>(random.below(9)),
-                          .screening = seed % 3 == 0 ? 0.0 : 2.0,
-                          .scale = seed % 5 == 0 ? 1.0 : 1.1,
-                          .samples_per_node = seed % 2 == 0 ? 0.0 : 1.5};
+    const Options options{{.depth = 1 + static_cast<int>(random.below(9)),
+                           .screening = seed % 3 == 0 ? 0.0 : 2.0,
+                           .scale = seed % 5 == 0 ? 1.0 : 1.1,
+                           .samples_per_node = seed % 2 == 0 ? 0.0 : 1.5}};
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(n) + " points, depth " +
                  std::to_string(options.depth));
     const auto code = error_of([&] {

@@ -41,8 +41,8 @@ TEST(Strays, LeaveNoTraceInTheMesh) {
   const Cloud knot = test::linked_tori_cloud(30'000, 2, 0.5, 0.12);
   for (const NamedPlaces& strays : test::stray_places()) {
     SCOPED_TRACE(strays.name);
-    expect_no_trace(sphere, strays.places, {.depth = 7, .density = true});
-    expect_no_trace(knot, strays.places, {.depth = 6});
+    expect_no_trace(sphere, strays.places, {{.depth = 7}, {.density = true}});
+    expect_no_trace(knot, strays.places, {{.depth = 6}});
   }
 }
 
@@ -51,7 +51,7 @@ TEST(Strays, AreReportedInWorldCoordinatesTheFarthestFirst) {
   cloud.origin = {5e6, 4e5, 100};
   cloud = with_points_at(cloud, {{0, 0, 64}, {-4096, 0, 0}, {0, 512, 0}});
   Reconstructor r(Device::cpu(2));
-  (void)r.reconstruct(cloud, {.depth = 5});
+  (void)r.reconstruct(cloud, {{.depth = 5}});
   EXPECT_EQ(r.report().farthest_strays,
             (std::vector<Vec3d>{{5e6 - 4096, 4e5, 100}, {5e6, 4e5 + 512, 100}, {5e6, 4e5, 164}}));
 }
@@ -59,7 +59,7 @@ TEST(Strays, AreReportedInWorldCoordinatesTheFarthestFirst) {
 TEST(Strays, CountWhenTheyAreKept) {
   const Cloud cloud = with_points_at(test::sphere_cloud(10'000, 4), {{1000, 0, 0}});
   Reconstructor r(Device::cpu(2));
-  const Field field = r.solve(cloud, {.depth = 5, .keep_strays = true});
+  const Field field = r.solve(cloud, {{.depth = 5, .keep_strays = true}});
   EXPECT_EQ(r.report().strays, 0);
   EXPECT_EQ(r.report().points, cloud.size());
   EXPECT_NEAR(field.cube_size_world(), 1.1 * 1001, 1);
@@ -67,28 +67,28 @@ TEST(Strays, CountWhenTheyAreKept) {
 
 TEST(Strays, DoNotDependOnOrderOrThreads) {
   const Cloud cloud = with_points_at(test::torus_cloud(20'000, 5), test::places_around(20, 6, 9, 300));
-  const Mesh expected = reconstructed(cloud, {.depth = 6}, 1);
-  expect_same_bytes(reconstructed(cloud, {.depth = 6}, 4), expected);
-  expect_same_bytes(reconstructed(test::shuffled(cloud, 7), {.depth = 6}), expected);
+  const Mesh expected = reconstructed(cloud, {{.depth = 6}}, 1);
+  expect_same_bytes(reconstructed(cloud, {{.depth = 6}}, 4), expected);
+  expect_same_bytes(reconstructed(test::shuffled(cloud, 7), {{.depth = 6}}), expected);
 }
 
 TEST(Strays, AreLeftOutOfRepeatedRunsToo) {
   const Cloud clean = test::sphere_cloud(10'000, 8);
   const Cloud cloud = with_points_at(clean, {{0, 1e6F, 0}, {-300, 2, 2}});
   Reconstructor r(Device::cpu(2));
-  const auto triangles = std::ssize(r.reconstruct(clean, {.depth = 6}).triangles);
-  for (const RunTimes& run : r.repeat(cloud, {.depth = 6}, 3)) EXPECT_EQ(run.triangles, triangles);
+  const auto triangles = std::ssize(r.reconstruct(clean, {{.depth = 6}}).triangles);
+  for (const RunTimes& run : r.repeat(cloud, {{.depth = 6}}, 3)) EXPECT_EQ(run.triangles, triangles);
 }
 
 TEST(Strays, AreKnownToTheEstimate) {
   const Cloud clean = test::sphere_cloud(60'000, 9);
   const Cloud cloud = with_points_at(clean, test::places_around(20, 10, 6, 200));
   for (const int depth : {4, 8}) {
-    const auto expected = static_cast<double>(estimate_device_bytes(clean, {.depth = depth}));
-    EXPECT_NEAR(static_cast<double>(estimate_device_bytes(cloud, {.depth = depth})), expected, 0.06 * expected);
+    const auto expected = static_cast<double>(estimate_device_bytes(clean, {{.depth = depth}}));
+    EXPECT_NEAR(static_cast<double>(estimate_device_bytes(cloud, {{.depth = depth}})), expected, 0.06 * expected);
     Reconstructor r(Device::cpu(2));
-    (void)r.reconstruct(cloud, {.depth = depth});
-    EXPECT_NEAR(static_cast<double>(estimate_device_bytes(cloud, {.depth = depth})),
+    (void)r.reconstruct(cloud, {{.depth = depth}});
+    EXPECT_NEAR(static_cast<double>(estimate_device_bytes(cloud, {{.depth = depth}})),
                 static_cast<double>(r.report().device_peak_bytes), 0.15 * expected);
   }
 }
@@ -97,7 +97,7 @@ TEST(Strays, AloneWithNormalsEndInAnError) {
   Cloud cloud = test::sphere_cloud(1'000, 11);
   for (Vec3f& n : cloud.normals) n = {};
   cloud = with_points_at(cloud, {{500, 0, 0}});
-  EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {.depth = 5}); }), ErrorCode::no_normals);
+  EXPECT_EQ(test::error_of([&] { (void)reconstructed(cloud, {{.depth = 5}}); }), ErrorCode::no_normals);
 }
 
 TEST(Strays, ArePubliclyFound) {
@@ -127,9 +127,9 @@ TEST(Strays, LeaveNoTraceInAPublicScan) {
   const Bounds box = bounds_of(cloud->positions);
   const double diameter = std::max({box.upper.x - box.lower.x, box.upper.y - box.lower.y, box.upper.z - box.lower.z});
   const Vec3d centre{(box.lower.x + box.upper.x) / 2, (box.lower.y + box.upper.y) / 2, (box.lower.z + box.upper.z) / 2};
-  expect_no_trace(*cloud, {{1e6F, 0, 0}}, {.depth = 8});
-  expect_no_trace(*cloud, {{0, 0, 1e30F}}, {.depth = 8});
-  expect_no_trace(*cloud, test::places_around(20, 13, 3 * diameter, 100 * diameter, centre), {.depth = 8});
+  expect_no_trace(*cloud, {{1e6F, 0, 0}}, {{.depth = 8}});
+  expect_no_trace(*cloud, {{0, 0, 1e30F}}, {{.depth = 8}});
+  expect_no_trace(*cloud, test::places_around(20, 13, 3 * diameter, 100 * diameter, centre), {{.depth = 8}});
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST(Trim, EndsTheSurfaceWithinAFewSamplesOfTheirBorderAlongASmoothLine) {
   for (const std::int64_t n : {20'000, 60'000, 150'000})
     for (const OpenCloud& open : open_clouds(n)) {
       SCOPED_TRACE(open.name + ", " + std::to_string(n) + " points");
-      const Outcome r = run(open.cloud, {.depth = 8, .trim = 0.05});
+      const Outcome r = run(open.cloud, {{.depth = 8}, {.trim = 0.05}});
       const MeshReport report = measure(r.mesh);
       EXPECT_TRUE(report.manifold());
       EXPECT_TRUE(report.oriented());
@@ -115,8 +115,8 @@ TEST(Trim, EndsTheSurfaceWithinAFewSamplesOfTheirBorderAlongASmoothLine) {
 
 TEST(Trim, ReportsWhatItRemoved) {
   const Cloud cloud = cap_cloud(40'000, 4, 0);
-  const Outcome whole = run(cloud, {.depth = 7});
-  const Outcome trimmed = run(cloud, {.depth = 7, .trim = 0.02});
+  const Outcome whole = run(cloud, {{.depth = 7}});
+  const Outcome trimmed = run(cloud, {{.depth = 7}, {.trim = 0.02}});
   EXPECT_EQ(whole.report.trim.triangles_before, 0);
   const TrimReport& t = trimmed.report.trim;
   EXPECT_EQ(t.triangles_before, static_cast<std::int64_t>(whole.mesh.triangles.size()));
@@ -133,7 +133,7 @@ TEST(Trim, ReportsWhatItRemoved) {
 TEST(Trim, LeavesAClosedEvenCloudAsItIs) {
   for (const Cloud& cloud : {test::sphere_cloud(30'000, 5), test::torus_cloud(100'000, 6), test::box_cloud(50'000, 7)})
     for (const double trim : {0.001, 0.01, 0.05})
-      expect_same_bytes(run(cloud, {.depth = 7, .trim = trim}).mesh, run(cloud, {.depth = 7}).mesh);
+      expect_same_bytes(run(cloud, {{.depth = 7}, {.trim = trim}}).mesh, run(cloud, {{.depth = 7}}).mesh);
 }
 
 TEST(Trim, KeepsTheSparserHalfOfMixedSamplesUnlessAskedToCutIt) {
@@ -146,10 +146,10 @@ TEST(Trim, KeepsTheSparserHalfOfMixedSamplesUnlessAskedToCutIt) {
       cloud.normals.push_back(cap.normals[i]);
     }
   const double area = 2.4 * std::numbers::pi;
-  const MeshReport both = measure(run(cloud, {.depth = 8, .trim = 0.02}).mesh);
+  const MeshReport both = measure(run(cloud, {{.depth = 8}, {.trim = 0.02}}).mesh);
   EXPECT_EQ(both.euler, 1);
   EXPECT_NEAR(both.area, area, 0.12 * area);  // a few of the sparser spacings of 0.03 beyond a border of 6.2
-  const MeshReport dense = measure(run(cloud, {.depth = 8, .trim = 0.3}).mesh);
+  const MeshReport dense = measure(run(cloud, {{.depth = 8}, {.trim = 0.3}}).mesh);
   EXPECT_NEAR(dense.area, area / 2, 0.08 * area);
 }
 
@@ -158,10 +158,10 @@ TEST(Trim, RemovesIslandsUnlessTheRatioIsZero) {
   for (int k = 0; k < 4; ++k)
     test::append(cloud, test::sphere_cloud(150, 11 + static_cast<std::uint64_t>(k), 0.02,
                                            {std::cos(1.5 * k), std::sin(1.5 * k), 0.9}));
-  const Outcome cleared = run(cloud, {.depth = 8, .trim = 0.02, .island_ratio = 0.01});
+  const Outcome cleared = run(cloud, {{.depth = 8}, {.trim = 0.02, .island_ratio = 0.01}});
   EXPECT_EQ(measure(cleared.mesh).components, 1);
   EXPECT_GE(cleared.report.trim.islands_removed, 4);
-  const Outcome all = run(cloud, {.depth = 8, .trim = 0.02, .island_ratio = 0});
+  const Outcome all = run(cloud, {{.depth = 8}, {.trim = 0.02, .island_ratio = 0}});
   EXPECT_GE(measure(all.mesh).components, 5);
   EXPECT_EQ(all.report.trim.islands_removed + all.report.trim.holes_filled, 0);
 }
@@ -181,14 +181,16 @@ Cloud spotted_sphere() {
 
 TEST(Trim, EndsInAnErrorWhereNothingIsLeft) {
   const Cloud cloud = spotted_sphere();
-  EXPECT_EQ(error_of([&] { (void)run(cloud, {.depth = 7, .trim = 0.8, .island_ratio = 0.05}); }),
+  EXPECT_EQ(error_of([&] {
+              (void)run(cloud, {{.depth = 7}, {.trim = 0.8, .island_ratio = 0.05}});
+            }),
             ErrorCode::empty_result);
-  EXPECT_EQ(error_of([&] { (void)run(cloud, {.depth = 7, .trim = 0.8, .island_ratio = 0}); }), std::nullopt);
+  EXPECT_EQ(error_of([&] { (void)run(cloud, {{.depth = 7}, {.trim = 0.8, .island_ratio = 0}}); }), std::nullopt);
 }
 
 TEST(Trim, GivesTheSameBytesForAnyThreadsAndOrderOfThePoints) {
   const Cloud cloud = test::jittered(cap_cloud(30'000, 17, 0.1F), 18, 0.005);
-  const Options options{.depth = 7, .density = true, .trim = 0.1};
+  const Options options{{.depth = 7}, {.trim = 0.1, .density = true}};
   const Mesh expected = run(cloud, options, 1).mesh;
   for (const int threads : {2, 16}) expect_same_bytes(run(cloud, options, threads).mesh, expected);
   for (const std::uint64_t seed : {1, 2}) expect_same_bytes(run(test::shuffled(cloud, seed), options).mesh, expected);
@@ -198,23 +200,23 @@ TEST(Trim, GivesTheSameBytesForAnyThreadsAndOrderOfThePoints) {
 
 TEST(Trim, OfAFieldAndWithoutNormalsIsTheSame) {
   const Cloud cloud = cap_cloud(20'000, 19, 0.1F);
-  const Mesh expected = run(cloud, {.depth = 7, .trim = 0.05}).mesh;
+  const Mesh expected = run(cloud, {{.depth = 7}, {.trim = 0.05}}).mesh;
   EXPECT_EQ(expected.normals.size(), expected.vertices.size());
   Reconstructor r(Device::cpu(2));
-  const Field field = r.solve(cloud, {.depth = 7, .trim = 0.05});
+  const Field field = r.solve(cloud, {{.depth = 7}, {.trim = 0.05}});
   expect_same_bytes(field.extract(), expected);
   expect_same_bytes(field.extract(), expected);
-  const Mesh bare = run(cloud, {.depth = 7, .normals = false, .trim = 0.05}).mesh;
+  const Mesh bare = run(cloud, {{.depth = 7}, {.normals = false, .trim = 0.05}}).mesh;
   EXPECT_TRUE(bare.normals.empty());
   EXPECT_EQ(bare.vertices, expected.vertices);
   EXPECT_EQ(bare.triangles, expected.triangles);
-  const std::vector<RunTimes> times = r.repeat(cloud, {.depth = 7, .trim = 0.05}, 1);
+  const std::vector<RunTimes> times = r.repeat(cloud, {{.depth = 7}, {.trim = 0.05}}, 1);
   EXPECT_EQ(times.at(0).triangles, static_cast<std::int64_t>(expected.triangles.size()));
 }
 
 TEST(Trim, WorksWithOpenFacesOfTheDomain) {
-  const MeshReport report =
-      measure(run(test::plane_cloud(30'000, 20), {.depth = 7, .domain_faces = DomainFaces::open, .trim = 0.05}).mesh);
+  const MeshReport report = measure(
+      run(test::plane_cloud(30'000, 20), {{.depth = 7}, {.domain_faces = DomainFaces::open, .trim = 0.05}}).mesh);
   EXPECT_TRUE(report.manifold());
   EXPECT_TRUE(report.oriented());
   EXPECT_NEAR(report.area, 4, 0.3);
@@ -225,7 +227,7 @@ TEST(Trim, OfScansLeavesAManifoldWithABorder) {
     const auto cloud = test::shared_cloud(name);
     if (!cloud) GTEST_SKIP() << "no " << name << " in " << POINTSKIN_SOURCE_DIR << "/../shared/data";
     SCOPED_TRACE(name);
-    const Outcome r = run(*cloud, {.depth = 8, .trim = 0.05});
+    const Outcome r = run(*cloud, {{.depth = 8}, {.trim = 0.05}});
     const MeshReport report = measure(r.mesh);
     EXPECT_TRUE(report.manifold());
     EXPECT_TRUE(report.oriented());
@@ -246,11 +248,10 @@ TEST(Trim, OfTinyCloudsEndsInAManifoldOrAnEmptyResult) {
       cloud.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
       cloud.normals.push_back({static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])});
     }
-    const Options options{.depth = 1 + static_cast<int>(random.below(9)),
-                          .scale = seed % 5 == 0 ? 1.0 : 1.1,
-                          .domain_faces = seed % 3 == 0 ? DomainFaces::open : DomainFaces::closed,
-                          .trim = random.in(0.001, 0.999),
-                          .island_ratio = seed % 2 == 0 ? 0 : random.in(0, 0.5)};
+    const Options options{{.depth = 1 + static_cast<int>(random.below(9)), .scale = seed % 5 == 0 ? 1.0 : 1.1},
+                          {.domain_faces = seed % 3 == 0 ? DomainFaces::open : DomainFaces::closed,
+                           .trim = random.in(0.001, 0.999),
+                           .island_ratio = seed % 2 == 0 ? 0 : random.in(0, 0.5)}};
     SCOPED_TRACE("seed " + std::to_string(seed) + ", depth " + std::to_string(options.depth));
     const auto code = error_of([&] {
       const MeshReport report = measure(run(cloud, options, 1).mesh);
@@ -267,10 +268,10 @@ TEST(Trim, OfTinyCloudsEndsInAManifoldOrAnEmptyResult) {
 
 TEST(Trim, IsCheckedToBeAShareBelowOne) {
   for (const double bad : {-0.1, 1.0, 7.0, std::nan("")}) {
-    EXPECT_EQ(error_of([&] { validate({.trim = bad}); }), ErrorCode::usage) << bad;
-    EXPECT_EQ(error_of([&] { validate({.island_ratio = bad}); }), ErrorCode::usage) << bad;
+    EXPECT_EQ(error_of([&] { validate({{}, {.trim = bad}}); }), ErrorCode::usage) << bad;
+    EXPECT_EQ(error_of([&] { validate({{}, {.island_ratio = bad}}); }), ErrorCode::usage) << bad;
   }
-  EXPECT_NO_THROW(validate({.trim = 0.999, .island_ratio = 0.999}));
+  EXPECT_NO_THROW(validate({{}, {.trim = 0.999, .island_ratio = 0.999}}));
 }
 
 }  // namespace

@@ -66,8 +66,8 @@ TEST(PointNormalsAreJudged, ConsistentCloudsKeepTheirBytesWithoutAWord) {
 TEST(PointNormalsAreJudged, ACloudThatIsInsideOutIsTurned) {
   const Cloud cloud = test::linked_tori_cloud(20'000, 3);
   for (const Options& options :
-       {Options{.depth = 6}, Options{.depth = 6, .boundary = Boundary::dirichlet},
-        Options{.depth = 6, .field = FieldKind::distance}, Options{.depth = 6, .confidence = true}}) {
+       {Options{{.depth = 6}}, Options{{.depth = 6, .boundary = Boundary::dirichlet}},
+        Options{{.depth = 6, .field = FieldKind::distance}}, Options{{.depth = 6, .confidence = true}}}) {
     const Outcome turned = run(test::flipped(cloud), options);
     expect_same_bytes(turned.mesh, run(cloud, options).mesh);
     EXPECT_EQ(turned.report.normals_done, NormalsDone::turned);
@@ -78,13 +78,13 @@ TEST(PointNormalsAreJudged, ACloudThatIsInsideOutIsTurned) {
 
 TEST(PointNormalsAreJudged, GivenNormalsStayWithAWarning) {
   const Cloud inward = test::flipped(test::sphere_cloud(10'000, 4));
-  const Outcome given = run(inward, {.depth = 6, .point_normals = PointNormals::given});
+  const Outcome given = run(inward, {{.depth = 6, .point_normals = PointNormals::given}});
   EXPECT_EQ(given.report.normals_done, NormalsDone::kept);
   EXPECT_EQ(kinds(given), std::vector{WarningKind::normals_inside_out});
   EXPECT_EQ(measure(given.mesh).components, 2);  // the box, and the sphere within
 
   const Cloud flipped = with_flips(test::sphere_cloud(20'000, 5), 0.5, 6);
-  const Outcome half = run(flipped, {.depth = 6, .point_normals = PointNormals::given});
+  const Outcome half = run(flipped, {{.depth = 6, .point_normals = PointNormals::given}});
   const Warning& warning = only(half, WarningKind::normals_disagree);
   EXPECT_NEAR(warning.share, 0.5, 0.1);
   EXPECT_NE(warning.text.find("--normals repair"), std::string::npos);
@@ -93,7 +93,7 @@ TEST(PointNormalsAreJudged, GivenNormalsStayWithAWarning) {
 TEST(PointNormalsAreJudged, FlippedNormalsAreRepaired) {
   const Cloud cloud = test::torus_cloud(20'000, 7);
   for (const double share : {0.1, 0.3, 0.5}) {
-    const Outcome repaired = run(with_flips(cloud, share, 8), {.depth = 6});
+    const Outcome repaired = run(with_flips(cloud, share, 8), {{.depth = 6}});
     EXPECT_EQ(repaired.report.normals_done, NormalsDone::repaired);
     EXPECT_NEAR(only(repaired, WarningKind::normals_disagree).share, share, 0.02);
     const MeshReport mesh = measure(repaired.mesh);
@@ -112,7 +112,7 @@ TEST(PointNormalsAreJudged, PartsThatAreTurnedAreFound) {
   test::append(apart, test::flipped(test::sphere_cloud(10'000, 11, 1, {3, 0, 0})));
   for (const Cloud& parts : {cloud, apart}) {
     for (const PointNormals policy : {PointNormals::automatic, PointNormals::repair}) {
-      const Outcome repaired = run(parts, {.depth = 6, .point_normals = policy});
+      const Outcome repaired = run(parts, {{.depth = 6, .point_normals = policy}});
       EXPECT_EQ(repaired.report.normals_done, NormalsDone::repaired);
       const MeshReport mesh = measure(repaired.mesh);
       EXPECT_TRUE(mesh.watertight());
@@ -124,27 +124,27 @@ TEST(PointNormalsAreJudged, PartsThatAreTurnedAreFound) {
 
 TEST(PointNormalsAreJudged, ARepairedCloudHasTheSameBytesInAnyOrder) {
   const Cloud cloud = with_flips(test::torus_cloud(15'000, 12), 0.4, 13);
-  const Mesh mesh = run(cloud, {.depth = 6}, 1).mesh;
-  expect_same_bytes(mesh, run(test::shuffled(cloud, 14), {.depth = 6}, 3).mesh);
+  const Mesh mesh = run(cloud, {{.depth = 6}}, 1).mesh;
+  expect_same_bytes(mesh, run(test::shuffled(cloud, 14), {{.depth = 6}}, 3).mesh);
 }
 
 TEST(PointNormalsAreJudged, NormalsAreMadeWhereTheyAreAskedFor) {
   Cloud bare = test::sphere_cloud(10'000, 15);
   bare.normals.clear();
-  const Outcome made = run(bare, {.depth = 6, .point_normals = PointNormals::estimate});
+  const Outcome made = run(bare, {{.depth = 6, .point_normals = PointNormals::estimate}});
   EXPECT_EQ(made.report.normals_done, NormalsDone::estimated);
   EXPECT_NEAR(measure(made.mesh).volume, 4.18879, 0.05);
   for (const PointNormals policy : {PointNormals::automatic, PointNormals::given, PointNormals::repair})
-    EXPECT_EQ(error_of([&] { (void)run(bare, {.depth = 6, .point_normals = policy}); }), ErrorCode::no_normals);
+    EXPECT_EQ(error_of([&] { (void)run(bare, {{.depth = 6, .point_normals = policy}}); }), ErrorCode::no_normals);
   // Given ones that point inwards are turned, too.
   const Cloud inward = test::flipped(test::sphere_cloud(10'000, 16));
-  EXPECT_NEAR(measure(run(inward, {.depth = 6, .point_normals = PointNormals::estimate}).mesh).volume, 4.18879, 0.05);
+  EXPECT_NEAR(measure(run(inward, {{.depth = 6, .point_normals = PointNormals::estimate}}).mesh).volume, 4.18879, 0.05);
 }
 
 TEST(PointNormalsAreJudged, ARoomSeenFromItsSensorStaysOne) {
   Cloud bare = test::box_cloud(30'000, 17);
   bare.normals.clear();
-  Options options{.depth = 6, .point_normals = PointNormals::estimate};
+  Options options{{.depth = 6, .point_normals = PointNormals::estimate}};
   options.normal_estimation.sensors = {{0.1, 0.2, 0}};
   const Outcome room = run(bare, options);
   EXPECT_EQ(kinds(room), std::vector{WarningKind::normals_inside_out});
@@ -157,7 +157,7 @@ TEST(PointNormalsAreJudged, ARoomSeenFromItsSensorStaysOne) {
 
 TEST(PointNormalsAreJudged, NothingIsRepairedBeyondTheMemoryAllowed) {
   const Cloud cloud = with_flips(test::sphere_cloud(40'000, 18), 0.5, 19);
-  Options options{.depth = 5};
+  Options options{{.depth = 5}};
   options.max_memory_bytes = estimate_device_bytes(cloud, options);
   ASSERT_LT(options.max_memory_bytes, estimate_normals_device_bytes(cloud));
   const Outcome kept = run(cloud, options);
@@ -170,7 +170,7 @@ TEST(PointNormalsAreJudged, ProgressNeverGoesBack) {
   for (const Cloud& cloud : {test::torus_cloud(10'000, 20), test::flipped(test::torus_cloud(10'000, 20)),
                              with_flips(test::torus_cloud(10'000, 20), 0.5, 21)}) {
     double last = 0;
-    Options options{.depth = 6};
+    Options options{{.depth = 6}};
     options.progress = [&last](const Progress& progress) {
       EXPECT_GE(progress.fraction, last);
       EXPECT_LE(progress.fraction, 1);
@@ -184,7 +184,7 @@ TEST(PointNormalsAreJudged, ProgressNeverGoesBack) {
 
 TEST(Warnings, OfOpenScansNameATrimThatCuts) {
   const Cloud cloud = test::plane_cloud(30'000, 22);
-  const Outcome closed = run(cloud, {.depth = 7});
+  const Outcome closed = run(cloud, {{.depth = 7}});
   EXPECT_EQ(kinds(closed), (std::vector{WarningKind::at_domain_faces, WarningKind::far_from_points}));
   // The plane of area 4 in a cube of side 2.2 parts it in two; one half is closed by five of its faces, some in part.
   EXPECT_NEAR(only(closed, WarningKind::at_domain_faces).share, 0.67, 0.1);
@@ -192,13 +192,13 @@ TEST(Warnings, OfOpenScansNameATrimThatCuts) {
   const std::size_t at = far.text.find("--trim ");
   ASSERT_NE(at, std::string::npos);
   const double value = std::stod(far.text.substr(at + 7));
-  const Outcome trimmed = run(cloud, {.depth = 7, .trim = value});
+  const Outcome trimmed = run(cloud, {{.depth = 7}, {.trim = value}});
   EXPECT_TRUE(kinds(trimmed).empty());
   EXPECT_NEAR(measure(trimmed.mesh).area, 4.3, 0.3);  // two or three samples beyond the last, 0.012 apart
 }
 
 TEST(Warnings, AnAutomaticTrimTakesThatValue) {
-  const Outcome trimmed = run(test::plane_cloud(30'000, 23), {.depth = 7, .trim = Options::kAutomaticTrim});
+  const Outcome trimmed = run(test::plane_cloud(30'000, 23), {{.depth = 7}, {.trim = Options::kAutomaticTrim}});
   EXPECT_TRUE(kinds(trimmed).empty());
   EXPECT_GT(trimmed.report.trim.quantile, 0);
   EXPECT_NEAR(measure(trimmed.mesh).area, 4.3, 0.3);
@@ -207,27 +207,27 @@ TEST(Warnings, AnAutomaticTrimTakesThatValue) {
 
 TEST(Warnings, AnAutomaticTrimLeavesClosedSurfacesAlone) {
   for (const Cloud& cloud : {test::sphere_cloud(20'000, 24), test::linked_tori_cloud(30'000, 25)}) {
-    const Outcome kept = run(cloud, {.depth = 7, .trim = Options::kAutomaticTrim});
-    expect_same_bytes(kept.mesh, run(cloud, {.depth = 7}).mesh);
+    const Outcome kept = run(cloud, {{.depth = 7}, {.trim = Options::kAutomaticTrim}});
+    expect_same_bytes(kept.mesh, run(cloud, {{.depth = 7}}).mesh);
     EXPECT_EQ(kept.report.trim.quantile, 0);
   }
 }
 
 TEST(Warnings, SayThatPointsHoldMoreThanTheDepthShows) {
   const Cloud cloud = test::torus_cloud(100'000, 26);
-  const Outcome coarse = run(cloud, {.depth = 5});
+  const Outcome coarse = run(cloud, {{.depth = 5}});
   ASSERT_EQ(kinds(coarse), std::vector{WarningKind::coarse_depth});
   EXPECT_NE(only(coarse, WarningKind::coarse_depth).text.find("--depth 8"), std::string::npos);
-  EXPECT_TRUE(kinds(run(cloud, {.depth = 7})).empty());
+  EXPECT_TRUE(kinds(run(cloud, {{.depth = 7}})).empty());
   // Noise of a cell of depth 5 hides what is finer.
-  EXPECT_TRUE(kinds(run(test::jittered(cloud, 27, 0.08), {.depth = 5})).empty());
+  EXPECT_TRUE(kinds(run(test::jittered(cloud, 27, 0.08), {{.depth = 5}})).empty());
 }
 
 TEST(Warnings, OfStraysComeFirst) {
   Cloud cloud = test::flipped(test::sphere_cloud(10'000, 28));
   cloud.positions.push_back({100, 0, 0});
   cloud.normals.push_back({1, 0, 0});
-  EXPECT_EQ(kinds(run(cloud, {.depth = 6})), (std::vector{WarningKind::normals_inside_out, WarningKind::strays}));
+  EXPECT_EQ(kinds(run(cloud, {{.depth = 6}})), (std::vector{WarningKind::normals_inside_out, WarningKind::strays}));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace pointskin::test {
 inline std::vector<std::pair<std::string, Options>> option_sets(int depth, bool with_offset) {
   std::vector<std::pair<std::string, Options>> sets;
   const auto add = [&](const char* name, const auto& change) {
-    Options options{.depth = depth};
+    Options options{{.depth = depth}};
     change(options);
     sets.emplace_back(name, options);
   };

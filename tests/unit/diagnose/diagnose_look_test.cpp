@@ -18,7 +18,7 @@ using diagnose::Findings;
 using diagnose::NormalsVerdict;
 
 /// Of a whole run.
-Findings findings(const Cloud& cloud, const Options& options = {.depth = 7}) {
+Findings findings(const Cloud& cloud, const Options& options = {{.depth = 7}}) {
   const auto engine = detail::make_cpu_engine(2);
   RunReport report;
   const auto field = engine->solve({cloud}, options, report);
@@ -27,7 +27,7 @@ Findings findings(const Cloud& cloud, const Options& options = {.depth = 7}) {
   return diagnose::findings_of(field->seen());
 }
 
-NormalsVerdict verdict(const Cloud& cloud, const Options& options = {.depth = 7}) {
+NormalsVerdict verdict(const Cloud& cloud, const Options& options = {{.depth = 7}}) {
   return diagnose::judge_normals(findings(cloud, options), options.boundary == Boundary::free);
 }
 
@@ -88,8 +88,8 @@ TEST(Look, TellsTheSidesOfThinWallsFromFlips) {
 
 TEST(Look, SeesThatACloudIsInsideOut) {
   for (const Options& options :
-       {Options{.depth = 6}, Options{.depth = 6, .boundary = Boundary::dirichlet},
-        Options{.depth = 6, .field = FieldKind::distance}, Options{.depth = 6, .screening = 0}}) {
+       {Options{{.depth = 6}}, Options{{.depth = 6, .boundary = Boundary::dirichlet}},
+        Options{{.depth = 6, .field = FieldKind::distance}}, Options{{.depth = 6, .screening = 0}}}) {
     for (const Cloud& cloud : {test::sphere_cloud(10'000, 10), test::linked_tori_cloud(20'000, 11)}) {
       EXPECT_EQ(verdict(cloud, options), NormalsVerdict::consistent);
       EXPECT_EQ(verdict(test::flipped(cloud), options), NormalsVerdict::inside_out);
@@ -131,7 +131,7 @@ TEST(Look, IsTheSameForAnyOrderAndThreads) {
   const auto seen = [](const Cloud& points, int threads) {
     RunReport report;
     const auto engine = detail::make_cpu_engine(threads);
-    return engine->solve({points}, {.depth = 7}, report)->seen();
+    return engine->solve({points}, {{.depth = 7}}, report)->seen();
   };
   const diagnose::Counts one = seen(cloud, 1);
   const diagnose::Counts other = seen(test::shuffled(cloud, 19), 5);

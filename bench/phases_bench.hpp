@@ -41,7 +41,8 @@
 #include "poisson/resolution.hpp"
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
-#include "reconstruct/points_impl.hpp"
+#include "reconstruct/point_hash.hpp"
+#include "reconstruct/points.hpp"
 #include "shapes.hpp"
 #include "surface/extract.hpp"
 
@@ -50,7 +51,7 @@ namespace pointskin::bench {
 /// Everything between the phases, for a knot of so many points at one depth.
 template <exec::Space Exec>
 struct Pipeline {
-  detail::DevicePoints points;
+  detail::PointBuffers points;
   octree::Frame frame;
   exec::Buffer<Vec3f> unit;
   exec::Buffer<std::uint64_t> hashes, keys;
@@ -71,7 +72,7 @@ struct Pipeline {
     unit = exec::make_buffer<Vec3f>(ex, n);
     hashes = exec::make_buffer<std::uint64_t>(ex, n);
     for_each(ex, "unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view()});
-    for_each(ex, "hash", n, detail::points::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
+    for_each(ex, "hash", n, detail::HashPoint{points.positions.cview(), points.normals.cview(), hashes.view()});
     detail::SortedSamples sorted = detail::sort_into_cube(ex, points, frame);
     samples = std::move(sorted.samples);
     keys = std::move(sorted.keys);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <pointskin/device.hpp>
@@ -75,7 +76,7 @@ class Octree {
   /// @throws Error usage (an option out of range), empty_result (no points, or all at one place), over_limit,
   ///         device_unavailable
   /// O(n + nodes log nodes). Integers only after the points are scaled: the same tree on every device.
-  static Octree build(const std::vector<Vec3f>& positions, const OctreeOptions& options = {},
+  static Octree build(std::span<const Vec3f> positions, const OctreeOptions& options = {},
                       const Device& device = Device::automatic());
 
   [[nodiscard]] int depth() const;
@@ -91,16 +92,16 @@ class Octree {
   [[nodiscard]] std::vector<std::int32_t> point_order() const;
 
   /// Leaf around each query; queries outside of the cube are moved to its nearest point. O(depth) each.
-  [[nodiscard]] std::vector<OctreeLeaf> locate(const std::vector<Vec3f>& queries) const;
+  [[nodiscard]] std::vector<OctreeLeaf> locate(std::span<const Vec3f> queries) const;
 
   /// The k nearest points of each query (all if there are fewer), by ascending (distance, id). Distances are
   /// those of the points in the unit cube, rounded to float: neighbours closer together than cube / 2^23 may swap.
   /// About O(log n + k^2) each. @throws Error usage if k < 1
-  [[nodiscard]] OctreeNeighbours nearest(const std::vector<Vec3f>& queries, int k) const;
+  [[nodiscard]] OctreeNeighbours nearest(std::span<const Vec3f> queries, int k) const;
 
   /// All points at most `radius` (world units) away from each query, in Morton order.
   /// @throws Error usage if radius is negative or not finite, over_limit if there are more than 2^31 in all
-  [[nodiscard]] OctreeNeighbours within(const std::vector<Vec3f>& queries, double radius) const;
+  [[nodiscard]] OctreeNeighbours within(std::span<const Vec3f> queries, double radius) const;
 
   class Impl;
 

@@ -120,7 +120,7 @@ class BooleansOn final : public Booleans::Impl {
     clock.lap(report.classify_ms);
     const double steepness = find_samples(first, second, op, options, report);
     clock.lap(report.crease_ms);
-    DevicePoints kept = gather(first, second, op, report);
+    PointBuffers kept = gather(first, second, op, report);
     clock.lap(report.gather_ms);
     clock.read();
     release(first, steepness > 0);
@@ -143,7 +143,7 @@ class BooleansOn final : public Booleans::Impl {
  private:
   /// One of the two, on the device.
   struct Solid {
-    DevicePoints points;
+    PointBuffers points;
     Bounds box;
     octree::StrayPoints strays;
     FieldData field;
@@ -246,11 +246,11 @@ class BooleansOn final : public Booleans::Impl {
   }
 
   /// What is kept of A, what is kept of B, and what was added; takes these over.
-  DevicePoints gather(const Solid& first, const Solid& second, BooleanOp op, const BooleanReport& report) {
+  PointBuffers gather(const Solid& first, const Solid& second, BooleanOp op, const BooleanReport& report) {
     const std::int64_t a = report.a.kept;
     const std::int64_t b = report.b.kept;
     const std::int64_t c = report.added;
-    DevicePoints kept;
+    PointBuffers kept;
     kept.positions = exec::make_buffer<Vec3f>(*ex_, a + b + c);
     kept.normals = exec::make_buffer<Vec3f>(*ex_, a + b + c);
     const ArrayView<Vec3f> positions = kept.positions.view();
@@ -268,12 +268,12 @@ class BooleansOn final : public Booleans::Impl {
   }
   void gather_part(const Solid& solid, BooleanOp op, bool is_first, ArrayView<Vec3f> positions,
                    ArrayView<Vec3f> normals) {
-    const DevicePoints& points = solid.points;
+    const PointBuffers& points = solid.points;
     boolean::gather_kept(*ex_, {points.positions.cview(), points.normals.cview(), points.used.cview()},
                          solid.places.cview(), op, is_first, positions, normals);
   }
 
-  void download_cloud(const DevicePoints& points, Cloud& cloud) {
+  void download_cloud(const PointBuffers& points, Cloud& cloud) {
     cloud.origin = origin_;
     cloud.positions.resize(static_cast<std::size_t>(points.positions.size()));
     cloud.normals.resize(cloud.positions.size());
@@ -300,7 +300,7 @@ class BooleansOn final : public Booleans::Impl {
   [[nodiscard]] Vec3d move_from(const Vec3d& origin) const {
     return {origin[0] - origin_[0], origin[1] - origin_[1], origin[2] - origin_[2]};
   }
-  void rebase(const Vec3d& origin, DevicePoints& points) {
+  void rebase(const Vec3d& origin, PointBuffers& points) {
     if (origin == origin_) return;
     for_each(*ex_, "boolean.rebase", points.positions.size(),
              operands::Rebase{move_from(origin), points.positions.view()});

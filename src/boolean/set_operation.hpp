@@ -81,7 +81,7 @@ FateCounts count_fates(Exec& ex, ArrayView<const Place> places, BooleanOp op, bo
 /// Where the points of one solid are, and what becomes of them.
 struct OrientedPoints {
   ArrayView<const Vec3f> positions, normals;
-  ArrayView<const std::int32_t> used;  ///< as DevicePoints::used
+  ArrayView<const std::int32_t> used;  ///< as PointBuffers::used
 };
 
 /// Appends the kept points of one solid, in their order, with normals flipped where they must be.

@@ -39,7 +39,7 @@ class DeformOn final : public DeformEngine {
     ex_->activate();
     Stopwatch watch;
     envelope_ = make_envelope(*ex_, options, cloud.origin);
-    DevicePoints points = upload(*ex_, cloud);
+    PointBuffers points = upload(*ex_, cloud);
     Options all = options;
     all.attributes = true;
     points.attributes = upload_attributes(*ex_, cloud, all);
@@ -78,7 +78,7 @@ class DeformOn final : public DeformEngine {
     const std::int64_t strays = report.run.strays;
     std::vector<Vec3d> farthest = std::move(report.run.farthest_strays);
     report.run = {};
-    DevicePoints points{std::move(samples_.positions), std::move(samples_.normals)};
+    PointBuffers points{std::move(samples_.positions), std::move(samples_.normals)};
     const auto put_back = [&] {
       samples_.positions = std::move(points.positions);
       samples_.normals = std::move(points.normals);

@@ -24,7 +24,7 @@ struct RestCloud {
   exec::Buffer<Vec3f> positions, normals;   ///< (n)
   exec::Buffer<Vec3f> unit;                 ///< (n) positions in the cube of the field
   exec::Buffer<float> spacings;             ///< (n) as RestSamples
-  std::vector<DeviceAttribute> attributes;  ///< (n) each, under the caller's names
+  std::vector<AttributeBuffer> attributes;  ///< (n) each, under the caller's names
   std::vector<std::string> mesh_names;      ///< the attributes' names on meshes
   FieldData field;
 
@@ -64,14 +64,14 @@ struct SpacingOf {
 
 /// Order of the used points in the cube of the field; the result leads to the caller's points.
 template <exec::Space Exec>
-octree::SortedPoints sort(Exec& ex, const DevicePoints& points, const octree::Frame& frame) {
+octree::SortedPoints sort(Exec& ex, const PointBuffers& points, const octree::Frame& frame) {
   const std::int64_t n = points.used_count();
   const octree::Selection selection{points.used.cview()};
   auto unit = exec::make_buffer<Vec3f>(ex, n);
   auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
   for_each(ex, "deform.rest", n, octree::ToUnit{frame, points.positions.cview(), unit.view(), selection});
   for_each(ex, "deform.rest", n, HashPoint{points.positions.cview(), points.normals.cview(), selection, hashes.view()});
-  for (const DeviceAttribute& attribute : points.attributes)
+  for (const AttributeBuffer& attribute : points.attributes)
     for_each(ex, "deform.rest", n, HashValue{attribute.values.view(), selection, hashes.view()});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   if (!points.used.empty()) exec::gather(ex, points.used.cview(), sorted.order.cview(), sorted.order.view());
@@ -89,10 +89,10 @@ exec::Buffer<T> gathered(Exec& ex, const exec::Buffer<T>& from, const exec::Buff
 
 /// Makes a cloud ready that is on the device. Leaves strays out as `options` say.
 template <exec::Space Exec>
-RestCloud make_rest(Exec& ex, DevicePoints points, const Vec3d& origin, const Options& options, RunReport& report) {
+RestCloud make_rest(Exec& ex, PointBuffers points, const Vec3d& origin, const Options& options, RunReport& report) {
   RestCloud out;
   out.origin = origin;
-  std::vector<DeviceAttribute> attributes = std::move(points.attributes);
+  std::vector<AttributeBuffer> attributes = std::move(points.attributes);
   points.attributes.clear();
   Options fit = options;
   fit.density = true;  // keeps the counts
@@ -107,7 +107,7 @@ RestCloud make_rest(Exec& ex, DevicePoints points, const Vec3d& origin, const Op
   const octree::SortedPoints sorted = rest::sort(ex, points, out.field.frame);
   out.positions = rest::gathered(ex, points.positions, sorted.order);
   out.normals = rest::gathered(ex, points.normals, sorted.order);
-  for (const DeviceAttribute& attribute : points.attributes)
+  for (const AttributeBuffer& attribute : points.attributes)
     out.attributes.push_back({attribute.name, exec::gather_typed(ex, attribute.values.view(), sorted.order.cview())});
   out.caller_positions = std::move(points.positions);
   const std::int64_t n = out.size();

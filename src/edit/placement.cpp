@@ -1,89 +1,127 @@
-#include "edit/placement_impl.hpp"
-#include "exec/cpu_primitives.hpp"
+#include "edit/placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "exec/this_space.hpp"
 
 namespace pointskin::edit {
-namespace snap {
 namespace {
 
-/// Rotation by the length of `turn`, in radians, about its direction (Rodrigues).
-std::array<double, 9> rotation_by(const Vec3d& turn) {
-  const double angle = std::sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
-  const double s = angle > 0 ? std::sin(angle) / angle : 1;
-  const double half = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
-  const double c = 2 * half * half;  // (1 - cos(angle)) / angle^2
-  const double x = turn[0];
-  const double y = turn[1];
-  const double z = turn[2];
-  return {1 - c * (y * y + z * z), c * x * y - s * z,       c * x * z + s * y,
-          c * x * y + s * z,       1 - c * (x * x + z * z), c * y * z - s * x,
-          c * x * z - s * y,       c * y * z + s * x,       1 - c * (x * x + y * y)};
-}
+using namespace snap;
 
-/// Replaces m by r m.
-void multiply(const std::array<double, 9>& r, double* m) {
-  std::array<double, 9> product{};
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      product[3 * i + j] = r[3 * i] * m[j] + r[3 * i + 1] * m[3 + j] + r[3 * i + 2] * m[6 + j];
-  std::copy(product.begin(), product.end(), m);
-}
+struct Place {
+  Placement placement;
+  ArrayView<Vec3f> positions, normals;
+  PSK_HD void operator()(std::int64_t i) const {
+    positions[i] = placement.place(positions[i]);
+    normals[i] = placement.turned(normals[i]);
+  }
+};
 
-/// Solves a symmetric positive definite system by Cholesky's method.
-bool solve(std::array<std::array<double, 6>, 6>& a, std::array<double, 6>& x) {
-  for (std::size_t j = 0; j < 6; ++j) {
-    for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
-    if (!(a[j][j] > 0)) return false;
-    a[j][j] = std::sqrt(a[j][j]);
-    for (std::size_t i = j + 1; i < 6; ++i) {
-      for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
-      a[i][j] /= a[j][j];
+struct ToQuery {
+  Placement motion;
+  octree::Frame cube;
+  ArrayView<const Vec3f> positions;
+  ArrayView<Vec3f> queries;
+  PSK_HD void operator()(std::int64_t i) const { queries[i] = cube.to_unit(motion.place(positions[i])); }
+};
+
+/// The equation of one point.
+struct EquationsOf {
+  SnapTarget target;
+  Placement motion;
+  double centre[3];
+  double farthest;  ///< match, world units
+  ArrayView<const Vec3f> positions, normals;
+  ArrayView<const std::int32_t> matches;
+
+  PSK_HD Equations operator()(std::int64_t i) const {
+    Equations sum;
+    const std::int32_t match = matches[i];
+    if (match < 0) return sum;
+    const Vec3f p = motion.place(positions[i]);
+    const Vec3f q = target.cube.to_world(target.points.positions[match]);
+    const Vec3f n = target.normals[match];
+    const Vec3f own = motion.turned(normals[i]);
+    const double d[3] = {static_cast<double>(q.x) - p.x, static_cast<double>(q.y) - p.y,
+                         static_cast<double>(q.z) - p.z};
+    const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    const double agree =
+        static_cast<double>(own.x) * n.x + static_cast<double>(own.y) * n.y + static_cast<double>(own.z) * n.z;
+    const double length = std::sqrt(static_cast<double>(own.x) * own.x + static_cast<double>(own.y) * own.y +
+                                    static_cast<double>(own.z) * own.z);
+    if (!(squared <= farthest * farthest && agree > 0.5 * length)) return sum;
+    const double r[3] = {p.x - centre[0], p.y - centre[1], p.z - centre[2]};
+    const double row[6] = {r[1] * n.z - r[2] * n.y, r[2] * n.x - r[0] * n.z, r[0] * n.y - r[1] * n.x, n.x, n.y, n.z};
+    const double gap = d[0] * n.x + d[1] * n.y + d[2] * n.z;
+    int at = 0;
+    for (int a = 0; a < 6; ++a) {
+      for (int b = a; b < 6; ++b) sum.matrix[at++] = row[a] * row[b];
+      sum.right[a] = row[a] * gap;
     }
+    sum.squared = squared;
+    sum.count = 1;
+    return sum;
   }
-  for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t k = 0; k < i; ++k) x[i] -= a[i][k] * x[k];
-    x[i] /= a[i][i];
+};
+
+struct AddEquations {
+  PSK_HD Equations operator()(const Equations& a, const Equations& b) const {
+    Equations sum;
+    for (int i = 0; i < 21; ++i) sum.matrix[i] = a.matrix[i] + b.matrix[i];
+    for (int i = 0; i < 6; ++i) sum.right[i] = a.right[i] + b.right[i];
+    sum.squared = a.squared + b.squared;
+    sum.count = a.count + b.count;
+    return sum;
   }
-  for (std::size_t i = 6; i-- > 0;) {
-    for (std::size_t k = i + 1; k < 6; ++k) x[i] -= a[k][i] * x[k];
-    x[i] /= a[i][i];
-  }
-  return true;
-}
+};
 
 }  // namespace
 
-bool step(const Equations& equations, const Vec3d& centre, double radius, Placement& motion, double& change) {
-  // Turns count as the way they take at the radius, so that all six unknowns are lengths; what the planes leave open
-  // (a part that may slide) stays as it is.
-  constexpr double kHold = 1e-9;
-  const std::array<double, 6> unit = {radius, radius, radius, 1, 1, 1};
-  std::array<std::array<double, 6>, 6> a{};
-  std::array<double, 6> x{};
-  int at = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t j = i; j < 6; ++j) a[j][i] = a[i][j] = equations.matrix[at++] / (unit[i] * unit[j]);
-    a[i][i] += kHold * equations.count;
-    x[i] = equations.right[i] / unit[i];
-  }
-  if (!solve(a, x)) return false;
-  const Vec3d turn{x[0] / radius, x[1] / radius, x[2] / radius};
-  const std::array<double, 9> rotation = rotation_by(turn);
-  multiply(rotation, motion.matrix);
-  multiply(rotation, motion.turn);
-  Vec3d shift{};
-  for (std::size_t i = 0; i < 3; ++i) {  // about the centre, then along
-    shift[i] = centre[i] + x[3 + i];
-    for (std::size_t j = 0; j < 3; ++j) shift[i] += rotation[3 * i + j] * (motion.shift[j] - centre[j]);
-  }
-  std::copy(shift.begin(), shift.end(), motion.shift);
-  change = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + std::sqrt(x[3] * x[3] + x[4] * x[4] + x[5] * x[5]);
-  return std::isfinite(change);
+template <exec::Space Exec>
+void place(Exec& ex, const Placement& placement, ArrayView<Vec3f> positions, ArrayView<Vec3f> normals) {
+  for_each(ex, "insert.place", positions.size, Place{placement, positions, normals});
 }
 
-}  // namespace snap
+template <exec::Space Exec>
+std::optional<Placement> find_snap(Exec& ex, const SnapTarget& target, ArrayView<const Vec3f> positions,
+                                   ArrayView<const Vec3f> normals) {
+  constexpr int kRounds = 40;
+  constexpr double kFarthestShare = 0.1;  // of the diagonal, before a round has told how well the points fit
+  constexpr double kFewest = 20;
+  const Bounds box = octree::box_around(ex, positions);
+  const auto middle = [](float low, float high) { return static_cast<float>(0.5 * (double{low} + high)); };
+  const Vec3f centre{middle(box.lower.x, box.upper.x), middle(box.lower.y, box.upper.y),
+                     middle(box.lower.z, box.upper.z)};
+  const double radius = 0.5 * std::hypot(double{box.upper.x} - box.lower.x, double{box.upper.y} - box.lower.y,
+                                         double{box.upper.z} - box.lower.z);
+  const auto n = static_cast<double>(positions.size);
+  const double cell = target.cube.size / static_cast<double>(std::int64_t{1} << target.points.tree.depth);
+  auto queries = exec::make_buffer<Vec3f>(ex, positions.size);
+  auto matches = exec::make_buffer<std::int32_t>(ex, positions.size);
+  auto squared = exec::make_buffer<float>(ex, positions.size);
+  Placement motion;
+  double farthest = 2 * radius * kFarthestShare;
+  for (int round = 0; round < kRounds; ++round) {
+    for_each(ex, "insert.query", positions.size, ToQuery{motion, target.cube, positions, queries.view()});
+    octree::find_nearest(ex, target.points, queries.cview(), 1, matches.view(), squared.view());
+    const Vec3f moved = motion.place(centre);
+    const auto equations = exec::reduce<Equations>(
+        ex, "insert.snap", positions.size,
+        EquationsOf{target, motion, {moved.x, moved.y, moved.z}, farthest, positions, normals, matches.cview()},
+        AddEquations{});
+    if (equations.count < std::max(kFewest, n / 20)) return std::nullopt;
+    double change = 0;
+    if (!step(equations, {moved.x, moved.y, moved.z}, radius, motion, change)) return std::nullopt;
+    farthest = std::min(farthest, std::max(3 * std::sqrt(equations.squared / equations.count), cell));
+    if (change < 1e-4 * cell) break;
+  }
+  return motion;
+}
 
-template void place(exec::Cpu&, const Placement&, ArrayView<Vec3f>, ArrayView<Vec3f>);
-template std::optional<Placement> find_snap(exec::Cpu&, const SnapTarget&, ArrayView<const Vec3f>,
-                                            ArrayView<const Vec3f>);
+PSK_INSTANTIATE(place);
+PSK_INSTANTIATE(find_snap);
 
 }  // namespace pointskin::edit

@@ -13,7 +13,7 @@ namespace pointskin::detail {
 
 /// What an operation starts from.
 struct EditInput {
-  const DevicePoints& points;  ///< relative to `origin`, all used, with DevicePoints::added
+  const PointBuffers& points;  ///< relative to `origin`, all used, with PointBuffers::added
   const FieldData& field;      ///< of these points, with samples
   Vec3d origin;
   Bounds base_box;           ///< of the original points
@@ -23,7 +23,7 @@ struct EditInput {
 
 /// The points after an operation, and what it did.
 struct EditedPoints {
-  DevicePoints points;
+  PointBuffers points;
   std::int64_t added = 0, removed = 0;
   bool snapped = false;
 
@@ -34,9 +34,9 @@ struct EditedPoints {
 template <exec::Space Exec>
 EditedPoints edit_points(Exec& ex, const EditInput& input, const Operation& operation);
 
-/// A copy of the points that are used, without DevicePoints::used.
+/// A copy of the points that are used, without PointBuffers::used.
 template <exec::Space Exec>
-DevicePoints copy_used(Exec& ex, const DevicePoints& points);
+PointBuffers copy_used(Exec& ex, const PointBuffers& points);
 
 /// Mean length of the normals.
 template <exec::Space Exec>

@@ -81,12 +81,12 @@ class SessionOn final : public EditSession::Impl {
 
   [[nodiscard]] Cloud cloud() const override {
     ex_->activate();
-    const DevicePoints& points = states_[done_]->points;
+    const PointBuffers& points = states_[done_]->points;
     Cloud cloud;
     cloud.origin = origin_;
     copy_out(points.positions, cloud.positions);
     copy_out(points.normals, cloud.normals);
-    for (const DeviceAttribute& attribute : points.attributes)
+    for (const AttributeBuffer& attribute : points.attributes)
       cloud.attributes.push_back(
           {attribute.name, exec::download_typed(*ex_, exec::copy_typed(*ex_, attribute.values))});
     std::vector<std::uint8_t> kinds;
@@ -98,7 +98,7 @@ class SessionOn final : public EditSession::Impl {
  private:
   /// A cloud with its field and its surface, all on the device. Steps that change nothing share it.
   struct State {
-    DevicePoints points;
+    PointBuffers points;
     FieldData field;
     surface::Surface surface;
   };
@@ -132,7 +132,7 @@ class SessionOn final : public EditSession::Impl {
   std::shared_ptr<const State> make_base(const Cloud& base) {
     ex_->activate();
     auto state = std::make_shared<State>();
-    DevicePoints points = upload(*ex_, base);
+    PointBuffers points = upload(*ex_, base);
     points.attributes = upload_attributes(*ex_, base, options_.reconstruction);
     RunReport unused;
     state->field = fit_field(*ex_, points, {.keep_points = true, .envelope = envelope_, .keep_samples = true},
@@ -214,7 +214,7 @@ class SessionOn final : public EditSession::Impl {
   }
 
   /// The cube before if all points are well inside of it, else one around them.
-  octree::Frame cube_for(const octree::Frame& before, const DevicePoints& points) const {
+  octree::Frame cube_for(const octree::Frame& before, const PointBuffers& points) const {
     const Bounds box = octree::box_around(*ex_, points.positions.cview());
     const double scale = options_.reconstruction.scale;
     const auto margin = static_cast<float>((1 - 1 / scale) / 4);  // half of what is left around a cube of its own

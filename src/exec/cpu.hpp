@@ -23,8 +23,12 @@ class Cpu {
 
   /// Few threads: neighbouring corners share what one thread has loaded.
   static constexpr bool kManyThreads = false;
+  /// Its memory is the host's, and steps have no kernels of their own for it.
+  static constexpr bool kOnHost = true;
+  static constexpr bool kOwnKernels = false;
 
   [[nodiscard]] int threads() const noexcept { return threads_; }
+  [[nodiscard]] int host_threads() const noexcept { return threads_; }
   [[nodiscard]] const std::shared_ptr<MemoryPool>& pool() const noexcept { return pool_; }
 
   /// Calls block(i) once for every i in [0, count), on any thread, in any order; returns when all are done.

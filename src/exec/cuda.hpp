@@ -21,6 +21,9 @@ class Cuda {
 
   /// Thousands of threads hide each other's waiting: one corner each.
   static constexpr bool kManyThreads = true;
+  /// Its memory is not the host's, and some steps have kernels of their own for it, in <step>_kernel.cuh.
+  static constexpr bool kOnHost = false;
+  static constexpr bool kOwnKernels = true;
 
   [[nodiscard]] int index() const noexcept { return index_; }
   /// The stream as a cudaStream_t.
@@ -43,6 +46,7 @@ class Cuda {
   void activate();
 
   [[nodiscard]] int multiprocessors() const noexcept { return multiprocessors_; }
+  [[nodiscard]] int host_threads() const noexcept { return 0; }
 
   /// Page-locked host memory for small read-backs, `kStagingBytes` long.
   [[nodiscard]] void* staging() const noexcept { return staging_; }

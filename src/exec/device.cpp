@@ -7,11 +7,7 @@
 #include <charconv>
 #include <fstream>
 
-#include "exec/cpu.hpp"
-
-#ifdef POINTSKIN_HAS_CUDA
-#include "exec/cuda.hpp"
-#endif
+#include "exec/any_space.hpp"
 
 namespace pointskin {
 namespace {
@@ -92,4 +88,18 @@ std::int64_t Device::available_bytes() const {
   return available_host_bytes();
 }
 
+namespace exec {
+
+AnySpace::AnySpace(const Device& device) {
+#ifdef POINTSKIN_HAS_CUDA
+  if (device.kind == DeviceKind::cuda) {
+    space_ = std::make_shared<Cuda>(device.index);
+    return;
+  }
+#endif
+  if (device.kind == DeviceKind::cuda) (void)Device::cuda(device.index);  // throws: why there is none
+  space_ = std::make_shared<Cpu>(device.threads);
+}
+
+}  // namespace exec
 }  // namespace pointskin

@@ -32,6 +32,10 @@ template <class T>
 concept Space = requires(T ex) {
   { ex.pool() } -> std::convertible_to<std::shared_ptr<MemoryPool>>;
   { T::kManyThreads } -> std::convertible_to<bool>;  // true: the smallest pieces of work run best
+  { T::kOnHost } -> std::convertible_to<bool>;       // true: what a Buffer holds is the host's memory
+  // true: a step whose generic form asks for !kOwnKernels has one of its own for this space, or does not compile
+  { T::kOwnKernels } -> std::convertible_to<bool>;
+  { ex.host_threads() } -> std::convertible_to<int>;  // for what is done on the host meanwhile; 0: all
   ex.synchronize();
   { ex.milliseconds_between(ex.mark(), ex.mark()) } -> std::convertible_to<double>;
   ex.activate();

@@ -93,7 +93,7 @@ namespace typed {
 template <class T, Space Exec>
 void fetch(Exec& ex, Buffer<std::uint8_t>& from, std::vector<T>& to) {
   const std::size_t size = static_cast<std::size_t>(from.size()) / sizeof(T);
-  if constexpr (std::is_same_v<Exec, Cpu>)
+  if constexpr (Exec::kOnHost)
     exec::resize(ex, to, size);
   else
     to.resize(size);

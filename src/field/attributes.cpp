@@ -1,12 +1,342 @@
-#include "exec/cpu_primitives.hpp"
-#include "field/attributes_impl.hpp"
+#include "field/attributes.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "exec/this_space.hpp"
+#include "octree/access.hpp"
 
 namespace pointskin::field {
+namespace {
 
-template ValueRange find_range(exec::Cpu&, const TypedView&, ArrayView<const std::int32_t>);
-template Channel make_channel(exec::Cpu&, std::size_t, const TypedView&, const ValueRange&,
-                              ArrayView<const std::int32_t>);
-template void interpolate(exec::Cpu&, const octree::OctreeData&, const AttributeSamples&, ArrayView<const Vec3f>,
-                          const TakeValues&);
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Values of a few attributes at a corner, with the weight that they have there; or sums of weighted values.
+template <int kCount>
+struct alignas(kCount == 3   ? 16
+               : kCount == 1 ? 8
+                             : 4) Values {
+  float weight = 0;
+  float value[kCount] = {};
+
+  PSK_HD Values& operator+=(const Values& other) {
+    weight += other.weight;
+    PSK_UNROLL for (int c = 0; c < kCount; ++c) value[c] += other.value[c];
+    return *this;
+  }
+  PSK_HD Values operator*(float factor) const {
+    Values result = *this;
+    result.weight *= factor;
+    PSK_UNROLL for (int c = 0; c < kCount; ++c) result.value[c] *= factor;
+    return result;
+  }
+};
+
+/// A sum of weighted values as their mean; zeros where nothing has weight.
+template <int kCount>
+PSK_HD Values<kCount> mean_of(Values<kCount> sum) {
+  PSK_UNROLL for (int c = 0; c < kCount; ++c) sum.value[c] = sum.weight > 0 ? sum.value[c] / sum.weight : 0.0F;
+  return sum;
+}
+
+/// Means as weighted values, for the level above. A corner counts for one sample at most: what is sampled more densely
+/// does not outweigh the rest of the surface.
+template <int kCount>
+struct Capped {
+  const Values<kCount>* means;
+  PSK_HD Values<kCount> operator[](std::int64_t n) const {
+    Values<kCount> v = means[n];
+    v.weight = v.weight < 1 ? v.weight : 1.0F;
+    PSK_UNROLL for (int c = 0; c < kCount; ++c) v.value[c] *= v.weight;
+    return v;
+  }
+};
+
+/// `below` weighted by the samples, `above` by kSamplesAbove.
+template <int kCount>
+PSK_HD Values<kCount> blended(Values<kCount> below, const Values<kCount>& above) {
+  const float total = below.weight + kSamplesAbove;
+  PSK_UNROLL for (int c = 0; c < kCount; ++c) below.value[c] =
+      (below.weight * below.value[c] + kSamplesAbove * above.value[c]) / total;
+  return below;
+}
+
+/// The attributes of a pass, sample by sample. All of them miss the same samples.
+template <int kCount>
+struct SamplesView {
+  ArrayView<const Vec3f> positions;
+  ArrayView<const float> weights;
+  const float* values[kCount];
+
+  /// Sample i with its weight; zeros if it does not count.
+  PSK_HD Values<kCount> operator[](std::int64_t i) const {
+    Values<kCount> sample;
+    const float first = values[0][i];
+    if (!(first == first)) return sample;
+    sample.weight = weights.empty() ? 1.0F : weights[i];
+    PSK_UNROLL for (int c = 0; c < kCount; ++c) sample.value[c] = values[c][i];
+    return sample;
+  }
+};
+
+/// Adds a sample with `factor` times its weight.
+template <int kCount>
+PSK_HD void add_weighted(const Values<kCount>& sample, float factor, Values<kCount>& sum) {
+  const float weight = factor * sample.weight;
+  sum.weight += weight;
+  PSK_UNROLL for (int c = 0; c < kCount; ++c) sum.value[c] += weight * sample.value[c];
+}
+
+/// Means at the corners of the finest level: every corner gathers the samples of the 8 cells around it, cell by cell
+/// downwards (x first).
+template <int kCount>
+struct SplatToCorner {
+  octree::LevelView level;
+  SamplesView<kCount> samples;
+  ArrayView<Values<kCount>> means;
+
+  PSK_HD void operator()(std::int64_t n) const {
+    Values<kCount> sum;
+    for (int s = 0; s < 8; ++s) {
+      const std::int32_t cell =
+          level.neighbour(static_cast<std::int32_t>(n), -octree::slot_x(s), -octree::slot_y(s), -octree::slot_z(s));
+      if (!level.is_cell(cell)) continue;
+      const std::int32_t first = level.point_begin[cell];
+      const std::int32_t last = level.point_begin[cell + 1];
+      if (first == last) continue;
+      const octree::Coordinates at = octree::decode(level.node_key(cell));
+      PSK_UNROLL_BY_4 for (std::int32_t i = first; i < last; ++i) {
+        const Vec3f local = octree::local_in_cell(samples.positions[i], at, level.depth);
+        add_weighted(samples[i], octree::corner_weight(s, local), sum);
+      }
+    }
+    means[n] = mean_of(sum);
+  }
+};
+
+/// The same for the 8 corners of a brick at once, in the same order for each: fewer look-ups, and a sample is read once
+/// for all its corners there.
+template <int kCount>
+struct SplatToBrick {
+  octree::LevelView level;
+  SamplesView<kCount> samples;
+  ArrayView<Values<kCount>> means;
+
+  PSK_HD void operator()(std::int64_t brick) const {
+    Values<kCount> sums[8];
+    const auto own = static_cast<std::int32_t>(8 * brick);
+    for (int x = 1; x >= -1; --x)
+      for (int y = 1; y >= -1; --y)
+        for (int z = 1; z >= -1; --z) add_cell(level.neighbour(own, x, y, z), x, y, z, sums);
+    for (int s = 0; s < 8; ++s) means[own + s] = mean_of(sums[s]);
+  }
+
+  /// Adds the samples of the cell at (x, y, z) from the brick's first to those of its corners that are in the brick.
+  PSK_HD void add_cell(std::int32_t cell, int x, int y, int z, Values<kCount>* sums) const {
+    if (!level.is_cell(cell)) return;
+    const std::int32_t first = level.point_begin[cell];
+    const std::int32_t last = level.point_begin[cell + 1];
+    if (first == last) return;
+    const octree::Coordinates at = octree::decode(level.node_key(cell));
+    for (std::int32_t i = first; i < last; ++i) {
+      const Vec3f local = octree::local_in_cell(samples.positions[i], at, level.depth);
+      const Values<kCount> sample = samples[i];
+      for (int cx = x < 0 ? 0 : x; cx <= x + 1 && cx < 2; ++cx)
+        for (int cy = y < 0 ? 0 : y; cy <= y + 1 && cy < 2; ++cy)
+          for (int cz = z < 0 ? 0 : z; cz <= z + 1 && cz < 2; ++cz)
+            add_weighted(sample, octree::corner_weight(octree::slot_of(cx - x, cy - y, cz - z), local),
+                         sums[octree::slot_of(cx, cy, cz)]);
+    }
+  }
+};
+
+template <int kCount>
+struct Pull {
+  octree::LevelView level, below;
+  const Values<kCount>* below_means;
+  ArrayView<Values<kCount>> means;
+  PSK_HD void operator()(std::int64_t n) const {
+    means[n] = mean_of(octree::restricted(level, below, Capped<kCount>{below_means}, static_cast<std::int32_t>(n)));
+  }
+};
+
+/// Level 0 leans on the mean of its 8 corners. One index, as each of them reads all.
+template <int kCount>
+struct PushRoot {
+  ArrayView<Values<kCount>> values;  // (8)
+  PSK_HD void operator()(std::int64_t /*zero*/) const {
+    const Capped<kCount> capped{values.data};
+    Values<kCount> all;
+    for (int n = 0; n < 8; ++n) all += capped[n];
+    all = mean_of(all);
+    for (int n = 0; n < 8; ++n) values[n] = blended(values[n], all);
+  }
+};
+
+template <int kCount>
+struct Push {
+  octree::LevelView level, above;
+  const Values<kCount>* above_values;
+  ArrayView<Values<kCount>> values;  // of the level: means before, values after
+  PSK_HD void operator()(std::int64_t n) const {
+    values[n] =
+        blended(values[n], octree::prolonged(above, above_values, level.parent[n >> 3], static_cast<int>(n & 7)));
+  }
+};
+
+template <int kCount>
+struct Evaluate {
+  octree::OctreeView tree;
+  const Values<kCount>* values;
+  ArrayView<const Vec3f> points;
+  FromShares scales[kCount];
+  PSK_HD void operator()(std::int64_t i) const {
+    const Values<kCount> at = octree::value_at(tree, values, points[i], tree.depth);
+    PSK_UNROLL for (int c = 0; c < kCount; ++c) scales[c].store(i, at.value[c]);
+  }
+};
+
+/// False for infinities and NaN.
+PSK_HD bool is_finite(double v) { return 0 * v == 0; }
+
+struct RangeOf {
+  TypedView values;
+  ArrayView<const std::int32_t> used;
+  PSK_HD ValueRange operator()(std::int64_t i) const {
+    const double v = values[used.empty() ? i : used[i]];
+    return is_finite(v) ? ValueRange{v, v, 1} : ValueRange{};
+  }
+};
+struct UniteRanges {
+  PSK_HD ValueRange operator()(const ValueRange& a, const ValueRange& b) const {
+    return {a.lowest < b.lowest ? a.lowest : b.lowest, a.highest > b.highest ? a.highest : b.highest,
+            a.counted + b.counted};
+  }
+};
+
+/// Values as shares of the range, in double: neither large nor close values lose their differences.
+struct ToShares {
+  TypedView values;
+  ArrayView<const std::int32_t> order;
+  double lowest, half_extent;
+  ArrayView<float> shares;
+  PSK_HD void operator()(std::int64_t i) const {
+    const double v = values[order[i]];
+    if (!is_finite(v))
+      shares[i] = kNan;
+    else
+      shares[i] = half_extent > 0 ? static_cast<float>((v / 2 - lowest / 2) / half_extent) : 0.0F;
+  }
+};
+
+/// Samples that count for one of two channels only.
+struct CountedDifferently {
+  ArrayView<const float> a, b;
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return (a[i] == a[i]) != (b[i] == b[i]) ? 1 : 0; }
+};
+struct Plus {
+  PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
+};
+
+/// True if both channels miss the same samples, so that one weight a corner serves both.
+template <exec::Space Exec>
+bool count_alike(Exec& ex, const Channel& a, const Channel& b) {
+  if (a.range.counted != b.range.counted) return false;
+  if (a.range.counted == a.shares.size()) return true;
+  return exec::reduce<std::int64_t>(ex, "attributes.compare", a.shares.size(),
+                                    CountedDifferently{a.shares.cview(), b.shares.cview()}, Plus{}) == 0;
+}
+
+/// Values at the corners of all levels, level-major, of the channels from `channels` on.
+template <int kCount, exec::Space Exec>
+exec::Buffer<Values<kCount>> corner_values(Exec& ex, const octree::OctreeView& tree, const AttributeSamples& samples,
+                                           const Channel* channels) {
+  auto values = exec::make_buffer<Values<kCount>>(ex, tree.nodes);
+  const auto of_level = [&](int d) { return values.view().part(tree.levels[d].first_node, tree.levels[d].nodes()); };
+  SamplesView<kCount> view{samples.positions.cview(), samples.weights.cview(), {}};
+  for (int c = 0; c < kCount; ++c) view.values[c] = channels[c].shares.data();
+  const octree::LevelView& finest = tree.finest();
+  if constexpr (Exec::kManyThreads)
+    for_each(ex, "attributes.splat", finest.nodes(), SplatToCorner<kCount>{finest, view, of_level(tree.depth)});
+  else
+    for_each(ex, "attributes.splat", finest.bricks, SplatToBrick<kCount>{finest, view, of_level(tree.depth)});
+  for (int d = tree.depth - 1; d >= 0; --d)
+    for_each(ex, "attributes.pull", tree.levels[d].nodes(),
+             Pull<kCount>{tree.levels[d], tree.levels[d + 1], of_level(d + 1).data, of_level(d)});
+  for_each(ex, "attributes.push", 1, PushRoot<kCount>{of_level(0)});
+  for (int d = 1; d <= tree.depth; ++d)
+    for_each(ex, "attributes.push", tree.levels[d].nodes(),
+             Push<kCount>{tree.levels[d], tree.levels[d - 1], of_level(d - 1).data, of_level(d)});
+  return values;
+}
+
+/// One pass: the channels from `channels` on at `points`.
+template <int kCount, exec::Space Exec>
+void pass(Exec& ex, const octree::OctreeView& tree, const AttributeSamples& samples, const Channel* channels,
+          ArrayView<const Vec3f> points, const TakeValues& take) {
+  exec::TypedBuffer out[kCount];
+  {
+    const exec::Buffer<Values<kCount>> values = corner_values<kCount>(ex, tree, samples, channels);
+    Evaluate<kCount> evaluate{tree, values.data(), points, {}};
+    for (int c = 0; c < kCount; ++c) {
+      out[c] = exec::make_typed_buffer(ex, channels[c].type, points.size);
+      evaluate.scales[c] = {channels[c].range.lowest, channels[c].range.highest, out[c].output()};
+    }
+    for_each(ex, "attributes.evaluate", points.size, evaluate);
+  }
+  for (int c = 0; c < kCount; ++c) take(channels[c].place, std::move(out[c]));
+}
+
+/// A channel for which no sample counts.
+template <exec::Space Exec>
+void take_nothing(Exec& ex, const Channel& channel, std::int64_t points, const TakeValues& take) {
+  exec::TypedBuffer out = exec::make_typed_buffer(ex, channel.type, points);
+  for_each(ex, "attributes.evaluate", points, exec::typed::FillNan{out.output()});
+  take(channel.place, std::move(out));
+}
+
+}  // namespace
+
+template <exec::Space Exec>
+ValueRange find_range(Exec& ex, const TypedView& values, ArrayView<const std::int32_t> used) {
+  const std::int64_t n = used.empty() ? values.size : used.size;
+  return exec::reduce<ValueRange>(ex, "attributes.range", n, RangeOf{values, used}, UniteRanges{});
+}
+
+template <exec::Space Exec>
+Channel make_channel(Exec& ex, std::size_t place, const TypedView& values, const ValueRange& range,
+                     ArrayView<const std::int32_t> order) {
+  Channel channel{place, values.type, exec::make_buffer<float>(ex, order.size), range};
+  for_each(ex, "attributes.shares", order.size,
+           ToShares{values, order, range.lowest, range.highest / 2 - range.lowest / 2, channel.shares.view()});
+  return channel;
+}
+
+template <exec::Space Exec>
+void interpolate(Exec& ex, const octree::OctreeData& tree, const AttributeSamples& samples,
+                 ArrayView<const Vec3f> points, const TakeValues& take) {
+  const std::vector<Channel>& channels = samples.channels;
+  const octree::OctreeView view = tree.view();
+  for (std::size_t first = 0; first < channels.size();) {
+    const Channel* channel = channels.data() + first;
+    if (channel->range.counted == 0) {
+      take_nothing(ex, *channel, points.size, take);
+      ++first;
+      continue;
+    }
+    const std::size_t most = std::min(kAttributesAtOnce, channels.size() - first);
+    std::size_t count = 1;
+    while (count < most && count_alike(ex, channel[0], channel[count])) ++count;
+    if (count == 1) pass<1>(ex, view, samples, channel, points, take);
+    if (count == 2) pass<2>(ex, view, samples, channel, points, take);
+    if (count == 3) pass<3>(ex, view, samples, channel, points, take);
+    first += count;
+  }
+}
+
+PSK_INSTANTIATE(find_range);
+PSK_INSTANTIATE(make_channel);
+PSK_INSTANTIATE(interpolate);
 
 }  // namespace pointskin::field

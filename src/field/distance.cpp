@@ -1,9 +1,135 @@
-#include "exec/cpu_primitives.hpp"
-#include "field/distance_impl.hpp"
+#include "field/distance.hpp"
+
+#include <cmath>
+
+#include "exec/this_space.hpp"
+#include "field/corner_values.hpp"
+#include "octree/walk.hpp"
 
 namespace pointskin::field {
+namespace {
 
-template void normalise(exec::Cpu&, ArrayView<Vec3f>);
-template exec::Buffer<float> distance_to_planes(exec::Cpu&, const octree::OctreeData&, const TangentPlanes&);
+struct Normalise {
+  ArrayView<Vec3f> normals;
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f n = normals[i];
+    const double x = n.x;
+    const double y = n.y;
+    const double z = n.z;
+    const double length = std::sqrt(x * x + y * y + z * z);
+    if (length > 0)
+      normals[i] = {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
+  }
+};
+
+/// The samples found so far, nearest first.
+struct Nearest {
+  int count = 0;
+  std::int32_t sample[kNearestSamples];
+  float squared[kNearestSamples];
+
+  [[nodiscard]] PSK_HD bool is_full() const { return count == kNearestSamples; }
+  [[nodiscard]] PSK_HD float farthest() const { return squared[kNearestSamples - 1]; }
+
+  PSK_HD void add(std::int32_t new_sample, float d) {
+    const auto before = [&](int i) { return d < squared[i] || (d == squared[i] && new_sample < sample[i]); };
+    if (is_full() && !before(kNearestSamples - 1)) return;
+    int place = is_full() ? kNearestSamples - 1 : count++;
+    for (; place > 0 && before(place - 1); --place) {
+      sample[place] = sample[place - 1];
+      squared[place] = squared[place - 1];
+    }
+    sample[place] = new_sample;
+    squared[place] = d;
+  }
+};
+
+/// The value at a corner.
+struct DistanceAtCorner {
+  /// Levels above the finest whose corners first look around themselves: cells of coarser ones hold too many samples.
+  static constexpr int kLevelsAround = 2;
+
+  TangentPlanes planes;
+
+  PSK_HD float operator()(const octree::OctreeView& tree, int depth, std::int32_t node) const {
+    const octree::LevelView& level = tree.levels[depth];
+    const Vec3f x = corners::place_of(level, node);
+    Nearest nearest;
+    const bool is_near = depth + kLevelsAround >= tree.depth && find_around(level, node, x, nearest);
+    if (!is_near) find_anywhere(tree, x, nearest);
+    return -mean_distance(x, nearest) * static_cast<float>(std::int64_t{1} << tree.depth);
+  }
+
+  PSK_HD void scan(const Vec3f& x, std::int32_t first, std::int32_t last, Nearest& nearest) const {
+    for (std::int32_t i = first; i < last; ++i) {
+      if (planes.normals[i] == Vec3f{}) continue;
+      nearest.add(i, octree::squared_distance(x, planes.positions[i]));
+    }
+  }
+
+  /// The cells of the level around the corner: 8, then 64. @returns true if nearer samples cannot be elsewhere
+  PSK_HD bool find_around(const octree::LevelView& level, std::int32_t node, const Vec3f& x, Nearest& nearest) const {
+    const float width = (1 - 1e-5F) / static_cast<float>(1 << level.depth);
+    for (int ring = 1; ring <= 2; ++ring) {
+      for (int dx = -ring; dx < ring; ++dx)
+        for (int dy = -ring; dy < ring; ++dy)
+          for (int dz = -ring; dz < ring; ++dz) {
+            const bool is_inner = dx >= -1 && dx < 1 && dy >= -1 && dy < 1 && dz >= -1 && dz < 1;
+            if (ring == 2 && is_inner) continue;
+            const std::int32_t cell = level.neighbour(node, dx, dy, dz);
+            if (level.is_cell(cell)) scan(x, level.point_begin[cell], level.point_begin[cell + 1], nearest);
+          }
+      const float reach = static_cast<float>(ring) * width;
+      if (nearest.is_full() && nearest.farthest() <= reach * reach) return true;
+    }
+    return false;
+  }
+
+  /// From the root, nothing farther than what is found.
+  PSK_HD void find_anywhere(const octree::OctreeView& tree, const Vec3f& x, Nearest& nearest) const {
+    const bool bounded = nearest.is_full();
+    const float bound = bounded ? nearest.farthest() : 0;
+    nearest.count = 0;
+    const auto prune = [&](float d) { return (bounded && d > bound) || (nearest.is_full() && d > nearest.farthest()); };
+    octree::walk({tree, planes.positions, {}}, x, prune,
+                 [&](std::int32_t first, std::int32_t last) { scan(x, first, last, nearest); });
+  }
+
+  /// Signed, positive outside, in the unit cube.
+  [[nodiscard]] PSK_HD float mean_distance(const Vec3f& x, const Nearest& nearest) const {
+    float sum = 0;
+    float weight = 0;
+    const float reach = nearest.is_full() ? nearest.farthest() : 0;
+    for (int pass = 0; pass < 2 && !(weight > 0); ++pass) {
+      sum = 0;
+      for (int i = 0; i < nearest.count; ++i) {
+        const std::int32_t s = nearest.sample[i];
+        const float share = pass == 0 ? (reach > 0 ? 1 - nearest.squared[i] / reach : 0.0F) : 1.0F;
+        const float a = share * share * (planes.weights.empty() ? 1.0F : planes.weights[s]);
+        const Vec3f p = planes.positions[s];
+        const Vec3f n = planes.normals[s];
+        sum += a * ((x.x - p.x) * n.x + (x.y - p.y) * n.y + (x.z - p.z) * n.z);
+        weight += a;
+      }
+    }
+    return weight > 0 ? sum / weight : 0.0F;
+  }
+};
+
+}  // namespace
+
+template <exec::Space Exec>
+void normalise(Exec& ex, ArrayView<Vec3f> normals) {
+  for_each(ex, "distance.normals", normals.size, Normalise{normals});
+}
+
+template <exec::Space Exec>
+exec::Buffer<float> distance_to_planes(Exec& ex, const octree::OctreeData& tree, const TangentPlanes& planes) {
+  const octree::OctreeView view = tree.view();
+  return fill_corners(ex, "distance.planes", view, DistanceAtCorner{planes});
+}
+
+PSK_INSTANTIATE(normalise);
+PSK_INSTANTIATE(distance_to_planes);
 
 }  // namespace pointskin::field

@@ -1,8 +1,161 @@
-#include "exec/cpu_primitives.hpp"
-#include "field/offset_impl.hpp"
+#include "field/offset.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "exec/this_space.hpp"
+#include "field/corner_values.hpp"
+#include "field/triangle_samples.hpp"
 
 namespace pointskin::field {
+namespace {
 
-template OffsetField make_offset(exec::Cpu&, const SurfaceOfField&, const octree::Frame&, int, double);
+using namespace offset;
+
+/// From the unit cube of one frame into that of another.
+struct BetweenFrames {
+  double scale = 1;
+  Vec3d shift{0, 0, 0};
+
+  static BetweenFrames make(const octree::Frame& from, const octree::Frame& to) {
+    BetweenFrames result;
+    result.scale = from.size / to.size;
+    for (std::size_t a = 0; a < 3; ++a) result.shift[a] = (from.lower[a] - to.lower[a]) / to.size;
+    return result;
+  }
+  [[nodiscard]] PSK_HD Vec3f operator()(const Vec3f& p) const {
+    return {static_cast<float>(p.x * scale + shift[0]), static_cast<float>(p.y * scale + shift[1]),
+            static_cast<float>(p.z * scale + shift[2])};
+  }
+};
+
+struct MoveVertices {
+  BetweenFrames move;
+  ArrayView<const Vec3f> in;
+  ArrayView<Vec3f> out;
+  PSK_HD void operator()(std::int64_t i) const { out[i] = move(in[i]); }
+};
+
+/// Distance from the surface in the unit cube of the offset, positive outside.
+struct SignedDistance {
+  SurfaceDistance distance;
+  FieldView original;
+  BetweenFrames to_original;
+
+  [[nodiscard]] PSK_HD double operator()(const Vec3f& q) const {
+    const double d = std::sqrt(distance.squared(q));
+    return is_inside(to_original(q)) ? -d : d;
+  }
+  [[nodiscard]] PSK_HD bool is_inside(const Vec3f& p) const {
+    const bool in_cube = p.x > 0 && p.y > 0 && p.z > 0 && p.x < 1 && p.y < 1 && p.z < 1;
+    return in_cube && octree::value_at(original.tree, original.values, p, original.tree.depth) >= original.isovalue;
+  }
+};
+
+/// True for cells that may hold a place at the offset. Distances change by no more than the way between two places.
+struct MayHoldOffset {
+  ArrayView<const std::uint64_t> cells;
+  int depth;
+  SignedDistance signed_distance;
+  double offset, slack;  // in the unit cube
+  PSK_HD bool operator()(std::int64_t i) const {
+    constexpr double kHalfDiagonal = 0.8660254037844387;
+    const octree::Coordinates c = octree::decode(cells[i]);
+    const float width = 1.0F / static_cast<float>(1 << depth);
+    const Vec3f centre{(static_cast<float>(c.x) + 0.5F) * width, (static_cast<float>(c.y) + 0.5F) * width,
+                       (static_cast<float>(c.z) + 0.5F) * width};
+    const double off = signed_distance(centre) - offset;
+    return (off < 0 ? -off : off) <= kHalfDiagonal * width + slack;
+  }
+};
+
+/// The first cells: all of a level, in the order of their keys.
+struct AllCells {
+  ArrayView<std::uint64_t> cells;
+  PSK_HD void operator()(std::int64_t i) const { cells[i] = static_cast<std::uint64_t>(i); }
+};
+
+struct ChildrenOf {
+  ArrayView<const std::uint64_t> cells;
+  ArrayView<const std::int32_t> kept;
+  ArrayView<std::uint64_t> children;
+  PSK_HD void operator()(std::int64_t i) const {
+    children[i] = cells[kept[i >> 3]] << 3 | static_cast<std::uint64_t>(i & 7);
+  }
+};
+
+/// A cell as the key of a point in it.
+struct PointInCell {
+  ArrayView<const std::uint64_t> cells;
+  ArrayView<const std::int32_t> kept;
+  int depth;
+  ArrayView<std::uint64_t> keys;
+  PSK_HD void operator()(std::int64_t i) const { keys[i] = cells[kept[i]] << 3 * (octree::kPointBits - depth); }
+};
+
+struct ValueAtCorner {
+  SignedDistance signed_distance;
+  PSK_HD float operator()(const octree::OctreeView& tree, int depth, std::int32_t node) const {
+    const Vec3f x = corners::place_of(tree.levels[depth], node);
+    return -static_cast<float>(signed_distance(x) * static_cast<double>(std::int64_t{1} << tree.depth));
+  }
+};
+
+/// Keys of points, one in every cell of level `depth` that may hold a place at the offset.
+template <exec::Space Exec>
+exec::Buffer<std::uint64_t> find_band(Exec& ex, const SignedDistance& signed_distance, int depth, double offset_cells) {
+  constexpr double kSlackCells = 0.25;  // for distances that are a little too large
+  constexpr const char* kLabel = "offset.band";
+  const double cell = 1 / static_cast<double>(std::int64_t{1} << depth);
+  int level = std::min(depth, octree::kCompleteDepth);
+  auto cells = exec::make_buffer<std::uint64_t>(ex, std::int64_t{1} << 3 * level);
+  for_each(ex, kLabel, cells.size(), AllCells{cells.view()});
+  for (;; ++level) {
+    const exec::Buffer<std::int32_t> kept =
+        select(ex, kLabel, cells.size(),
+               MayHoldOffset{cells.cview(), level, signed_distance, offset_cells * cell, kSlackCells * cell});
+    if (kept.empty())
+      throw Error(ErrorCode::empty_result, "nothing is left of the surface at this offset; choose a smaller distance");
+    if (kept.size() > std::numeric_limits<std::int32_t>::max() / 8)
+      throw Error(ErrorCode::over_limit, "the offset surface is too large for this depth; choose a smaller depth");
+    auto next = exec::make_buffer<std::uint64_t>(ex, level == depth ? kept.size() : 8 * kept.size());
+    if (level == depth) {
+      for_each(ex, kLabel, next.size(), PointInCell{cells.cview(), kept.cview(), depth, next.view()});
+      return next;
+    }
+    for_each(ex, kLabel, next.size(), ChildrenOf{cells.cview(), kept.cview(), next.view()});
+    cells = std::move(next);
+  }
+}
+
+}  // namespace
+
+template <exec::Space Exec>
+OffsetField make_offset(Exec& ex, const SurfaceOfField& surface, const octree::Frame& frame, int depth,
+                        double offset_cells) {
+  auto vertices = exec::make_buffer<Vec3f>(ex, surface.vertices.size);
+  for_each(ex, "offset.vertices", vertices.size(),
+           MoveVertices{BetweenFrames::make(surface.frame, frame), surface.vertices, vertices.view()});
+  const Corners corners{vertices.cview(), surface.triangles};
+  const TriangleSamples samples = lay_samples(ex, corners, depth);
+  const SignedDistance signed_distance{
+      {samples.tree.view(), samples.positions.cview(), samples.owners.cview(), corners},
+      surface.field,
+      BetweenFrames::make(frame, surface.frame)};
+
+  OffsetField result;
+  result.samples = samples.positions.size();
+  const exec::Buffer<std::uint64_t> band = find_band(ex, signed_distance, depth, offset_cells);
+  result.band_cells = band.size();
+  result.tree = octree::build_octree(ex, band.cview(), depth);
+  result.values = fill_corners(ex, "offset.distance", result.tree.view(), ValueAtCorner{signed_distance});
+  return result;
+}
+
+PSK_INSTANTIATE(make_offset);
 
 }  // namespace pointskin::field

@@ -11,7 +11,7 @@
 #include "exec/algorithms.hpp"
 #include "field/offset.hpp"
 #include "octree/octree_data.hpp"
-#include "octree/search_impl.hpp"
+#include "octree/walk.hpp"
 
 namespace pointskin::field::offset {
 
@@ -79,7 +79,7 @@ struct CountPieces {
   [[nodiscard]] PSK_HD std::int32_t pieces_along(std::int64_t t) const {
     float longest = 0;
     for (int k = 0; k < 3; ++k) {
-      const float squared = octree::search::squared_distance(corners(t, k), corners(t, k == 2 ? 0 : k + 1));
+      const float squared = octree::squared_distance(corners(t, k), corners(t, k == 2 ? 0 : k + 1));
       if (squared > longest) longest = squared;
     }
     const float wanted = std::sqrt(longest) * pieces_per_unit;
@@ -155,9 +155,9 @@ struct SurfaceDistance {
     float least = 0;
     std::int32_t nearest = -1;
     const auto prune = [&](float d) { return nearest >= 0 && d > least; };
-    octree::search::walk({tree, positions, {}}, q, prune, [&](std::int32_t begin, std::int32_t end) {
+    octree::walk({tree, positions, {}}, q, prune, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) {
-        const float d = octree::search::squared_distance(q, positions[i]);
+        const float d = octree::squared_distance(q, positions[i]);
         if (nearest >= 0 && (d > least || (d == least && i > nearest))) continue;
         least = d;
         nearest = i;

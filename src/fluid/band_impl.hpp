@@ -11,8 +11,8 @@
 #include "exec/algorithms.hpp"
 #include "exec/atomic.hpp"
 #include "fluid/band.hpp"
+#include "octree/brick_links.hpp"
 #include "octree/brick_sets.hpp"
-#include "octree/build_impl.hpp"
 
 namespace pointskin::fluid {
 namespace band {
@@ -117,7 +117,7 @@ struct BrickIndex {
 
   [[nodiscard]] PSK_HD std::int32_t find(std::uint64_t key) const {
     if (words == nullptr) {
-      const std::int64_t node = octree::build::find_node(keys, key << 3);
+      const std::int64_t node = octree::find_node(keys, key << 3);
       return keys[node >> 3] == key ? static_cast<std::int32_t>(node >> 3) : -1;
     }
     const std::uint32_t word = words[key / octree::build::kWordBits];
@@ -334,7 +334,7 @@ struct MarkDrops {
     if (walls.depth(p) < 0) return;
     const std::uint64_t key = octree::cell_key(octree::point_key(p.x, p.y, p.z), coarse.depth);
     const auto node =
-        static_cast<std::int32_t>(octree::build::find_node({coarse.brick_key, std::int64_t{coarse.bricks}}, key));
+        static_cast<std::int32_t>(octree::find_node({coarse.brick_key, std::int64_t{coarse.bricks}}, key));
     for (int s = 0; s < 8; ++s) {
       const std::int32_t corner = coarse.neighbour(node, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
       if (corner < 0 || values[corner] >= 0) return;
@@ -447,11 +447,11 @@ FineBricks list_fine(Exec& ex, const SparseLevel& coarse, const NodeBits& crosse
   fine.neighbours = exec::make_buffer<std::int32_t>(ex, octree::kNeighbours * fine.bricks());
   octree::LevelView linked = above;
   linked.child_brick = bricks.child_brick.data();
-  const octree::build::FindNeighbours find{linked, bricks.parent.cview(), fine.neighbours.view()};
+  const octree::FindNeighbours find{linked, bricks.parent.cview(), fine.neighbours.view()};
   if constexpr (Exec::kManyThreads)
-    for_each(ex, kLabel, fine.neighbours.size(), octree::build::FindNeighbour{find});
+    for_each(ex, kLabel, fine.neighbours.size(), octree::FindNeighbour{find});
   else
-    for_each(ex, kLabel, fine.bricks(), octree::build::FindNeighboursOfBrick{find, octree::kNeighbourTables});
+    for_each(ex, kLabel, fine.bricks(), octree::FindNeighboursOfBrick{find, octree::kNeighbourTables});
   return bricks;
 }
 

@@ -12,7 +12,7 @@
 #include "exec/host_array.hpp"
 #include "fluid/engine.hpp"
 #include "fluid/surface.hpp"
-#include "octree/frame_impl.hpp"
+#include "octree/bounding_box.hpp"
 #include "reconstruct/kept_names.hpp"
 #include "reconstruct/phase_clock.hpp"
 #include "reconstruct/points.hpp"
@@ -34,7 +34,7 @@ struct CheckParticle {
 };
 struct JoinChecks {
   PSK_HD ParticleCheck operator()(const ParticleCheck& a, const ParticleCheck& b) const {
-    return {octree::frame::Join{}(a.box, b.box), a.not_finite + b.not_finite};
+    return {octree::JoinBoxes{}(a.box, b.box), a.not_finite + b.not_finite};
   }
 };
 

@@ -16,8 +16,8 @@
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
 #include "octree/strays.hpp"
+#include "reconstruct/point_hash.hpp"
 #include "reconstruct/points.hpp"
-#include "reconstruct/points_impl.hpp"
 
 namespace pointskin::detail {
 
@@ -45,7 +45,7 @@ struct ClampToCube {
 
 struct CountNotFinite {
   ArrayView<const Vec3f> values;
-  PSK_HD std::int64_t operator()(std::int64_t i) const { return points::is_finite(values[i]) ? 0 : 1; }
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return is_finite(values[i]) ? 0 : 1; }
 };
 
 template <exec::Space Exec>
@@ -129,7 +129,7 @@ PreparedCloud prepare_cloud(Exec& ex, const Cloud& cloud) {
   for_each(ex, "octree.unit", n, octree::ToUnit{out.frame, world.cview(), unit.view()});
   for_each(ex, "octree.unit", n, prepare::ClampToCube{unit.view()});
   for_each(ex, "octree.hash", n,
-           points::HashPoint{world.cview(), given.empty() ? world.cview() : given.cview(), hashes.view()});
+           HashPoint{world.cview(), given.empty() ? world.cview() : given.cview(), hashes.view()});
   world.reset();
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
   hashes.reset();

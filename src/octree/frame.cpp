@@ -1,22 +1,27 @@
-#include "exec/cpu_primitives.hpp"
-#include "octree/frame_impl.hpp"
+#include "octree/frame.hpp"
+
+#include <pointskin/error.hpp>
 
 #include <algorithm>
 
-namespace pointskin::octree {
+#include "exec/this_space.hpp"
+#include "octree/bounding_box.hpp"
 
-Frame frame_around(const Bounds& box, double scale) {
-  const Vec3d lower{box.lower.x, box.lower.y, box.lower.z};
-  const Vec3d upper{box.upper.x, box.upper.y, box.upper.z};
-  Frame result;
-  result.size = scale * std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
-  if (!(result.size > 0))
-    throw Error(ErrorCode::empty_result, "all points are at one place; there is no surface to reconstruct");
-  for (std::size_t a = 0; a < 3; ++a) result.lower[a] = 0.5 * (lower[a] + upper[a]) - 0.5 * result.size;
-  return result;
+namespace pointskin::octree {
+namespace {}  // namespace
+
+template <exec::Space Exec>
+Bounds box_around(Exec& ex, ArrayView<const Vec3f> positions) {
+  return exec::reduce<Bounds>(ex, "octree.bounds", positions.size, BoxOf{positions}, JoinBoxes{});
 }
 
-template Bounds box_around(exec::Cpu&, ArrayView<const Vec3f>);
-template Frame fit_frame(exec::Cpu&, ArrayView<const Vec3f>, double);
+template <exec::Space Exec>
+Frame fit_frame(Exec& ex, ArrayView<const Vec3f> positions, double scale) {
+  if (positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
+  return frame_around(box_around(ex, positions), scale);
+}
+
+PSK_INSTANTIATE(box_around);
+PSK_INSTANTIATE(fit_frame);
 
 }  // namespace pointskin::octree

@@ -1,145 +1,143 @@
 #include "octree/strays.hpp"
 
+#include <pointskin/error.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
+#include <utility>
 
 #include "core/box.hpp"
-#include "exec/cpu_primitives.hpp"
-#include "octree/strays_impl.hpp"
+#include "core/stray_limit.hpp"
+#include "exec/this_space.hpp"
+#include "octree/bounding_box.hpp"
 
 namespace pointskin::octree {
-namespace strays {
 namespace {
 
-Vec3d wide(const Vec3f& p) { return {p.x, p.y, p.z}; }
+using namespace strays;
 
-/// Of `p` from the box, along the axis where it is largest; 0 inside.
-double distance(const Box& box, const Vec3d& p) {
-  double largest = 0;
-  for (std::size_t a = 0; a < 3; ++a) largest = std::max({largest, box.lower[a] - p[a], p[a] - box.upper[a]});
-  return largest;
-}
-
-Box wide(const Bounds& box) { return {wide(box.lower), wide(box.upper)}; }
-
-struct Place {
-  Vec3d at;
-  std::int32_t index;
+/// Box of the points that one lane of exec::reduce takes: those at equal distances in the caller's order.
+struct BoxOfLane {
+  ArrayView<const Vec3f> positions;
+  std::int64_t lanes;
+  ArrayView<Bounds> out;
+  PSK_HD void operator()(std::int64_t lane) const {
+    out[lane] = exec::combine_lane(BoxOf{positions}, JoinBoxes{}, positions.size, lanes, lane);
+  }
 };
 
-double largest_difference(const Vec3d& p, const Vec3d& q) {
-  return std::max({std::abs(p[0] - q[0]), std::abs(p[1] - q[1]), std::abs(p[2] - q[2])});
-}
-
-/// Moves the places for which `belongs` holds from `outside` into the core. All are asked before the core grows.
-/// @returns false if there are none
-template <class Belongs>
-bool take_in(Box& core, std::vector<Place>& outside, const Belongs& belongs) {
-  const auto first = std::stable_partition(outside.begin(), outside.end(), [&](const Place& p) { return !belongs(p); });
-  if (first == outside.end()) return false;
-  std::for_each(first, outside.end(), [&](const Place& p) { core.add(p.at, p.at); });
-  outside.erase(first, outside.end());
-  return true;
-}
-
-/// What lies within the core's longest side belongs to it.
-bool take_in_near(Box& core, std::vector<Place>& outside) {
-  const double reach = core.longest_side();
-  return take_in(core, outside, [&](const Place& p) { return distance(core, p.at) <= reach; });
-}
-
-/// Of more than a few points, those belong to the cloud that are parts of something: that have company at other places
-/// close by, measured by how far they are from the core.
-bool take_in_parts(Box& core, std::vector<Place>& outside) {
-  constexpr int kCompany = 8;
-  constexpr double kClose = 1.0 / 8;
-  if (static_cast<std::int64_t>(outside.size()) <= kFewPoints) return false;
-  const std::vector<Place> all = outside;
-  const Box before = core;
-  return take_in(core, outside, [&](const Place& p) {
-    const double close = kClose * distance(before, p.at);
-    return kCompany <= std::count_if(all.begin(), all.end(), [&](const Place& q) {
-             return q.at != p.at && largest_difference(p.at, q.at) <= close;
-           });
-  });
-}
-
-/// Bounding box of all points but the strays, of which there are no more than points beyond each end.
-Bounds box_without(const std::vector<Place>& strays, const Candidates& candidates, const Bounds& ends) {
-  std::vector<std::int32_t> left_out;
-  for (const Place& stray : strays) left_out.push_back(stray.index);
-  std::sort(left_out.begin(), left_out.end());
-  Bounds box = ends;
-  for (std::size_t i = 0; i < candidates.indices.size(); ++i) {
-    if (std::binary_search(left_out.begin(), left_out.end(), candidates.indices[i])) continue;
-    box = frame::Join{}(box, {candidates.positions[i], candidates.positions[i]});
+/// The box of all points, and the part of space that the boxes of all lanes have in common: along every axis, each lane
+/// has a point at or beyond either end. The ends are in wrong order where the lanes are apart.
+struct Extent {
+  Bounds all, inner;
+};
+struct ExtentOfLane {
+  ArrayView<const Vec3f> positions;
+  std::int64_t lanes;
+  ArrayView<Extent> out;
+  PSK_HD void operator()(std::int64_t lane) const {
+    const Bounds box = exec::combine_lane(BoxOf{positions}, JoinBoxes{}, positions.size, lanes, lane);
+    out[lane] = {box, box};
   }
-  return box;
+};
+struct JoinExtents {
+  PSK_HD Extent operator()(const Extent& a, const Extent& b) const {
+    return {JoinBoxes{}(a.all, b.all),
+            {JoinBoxes::upper_of(a.inner.lower, b.inner.lower), JoinBoxes::lower_of(a.inner.upper, b.inner.upper)}};
+  }
+};
+
+/// True for points beyond the ends.
+struct IsBeyond {
+  ArrayView<const Vec3f> positions;
+  Bounds ends;
+  PSK_HD bool operator()(std::int64_t i) const {
+    const Vec3f p = positions[i];
+    return p.x < ends.lower.x || p.y < ends.lower.y || p.z < ends.lower.z || p.x > ends.upper.x || p.y > ends.upper.y ||
+           p.z > ends.upper.z;
+  }
+};
+
+/// The i-th index that is not in a list.
+struct SkipListed {
+  ArrayView<const std::int32_t> listed;  // ascending
+  ArrayView<std::int32_t> out;
+  PSK_HD void operator()(std::int64_t i) const {
+    std::int64_t first = 0;  // listed indices below the one that is looked for
+    std::int64_t last = listed.size;
+    while (first < last) {
+      const std::int64_t middle = (first + last) / 2;
+      if (listed[middle] - middle <= i)
+        first = middle + 1;
+      else
+        last = middle;
+    }
+    out[i] = static_cast<std::int32_t>(i + first);
+  }
+};
+
+template <class T, exec::Space Exec>
+std::vector<T> to_vector(Exec& ex, const exec::Buffer<T>& buffer) {
+  std::vector<T> out(static_cast<std::size_t>(buffer.size()));
+  copy_to_host(ex, buffer.cview(), out.data());
+  return out;
 }
 
-StrayPoints farthest_first(std::vector<Place> strays, const Bounds& core) {
-  const Box box = wide(core);
-  std::sort(strays.begin(), strays.end(), [&](const Place& p, const Place& q) {
-    return std::tuple(-distance(box, p.at), p.at, p.index) < std::tuple(-distance(box, q.at), q.at, q.index);
-  });
-  StrayPoints result;
-  result.core = core;
-  for (const Place& p : strays) {
-    result.indices.push_back(p.index);
-    result.positions.push_back({static_cast<float>(p.at[0]), static_cast<float>(p.at[1]), static_cast<float>(p.at[2])});
-  }
-  return result;
+template <exec::Space Exec>
+Extent measure_extent(Exec& ex, ArrayView<const Vec3f> positions) {
+  const std::int64_t lanes = exec::reduce_lanes(positions.size);
+  auto extents = exec::make_buffer<Extent>(ex, lanes);
+  for_each(ex, "octree.bounds", lanes, ExtentOfLane{positions, lanes, extents.view()});
+  return exec::reduce_lane_values(ex, "octree.bounds", std::move(extents), JoinExtents{});
+}
+
+/// Ends beyond which lie few points, but all strays: of many lanes, `limit` and one more have points at or beyond them.
+template <exec::Space Exec>
+Bounds find_ends(Exec& ex, ArrayView<const Vec3f> positions, std::int64_t limit) {
+  constexpr std::int64_t kLanes = 4096;
+  const std::int64_t lanes = std::min(kLanes, exec::reduce_lanes(positions.size));
+  auto boxes = exec::make_buffer<Bounds>(ex, lanes);
+  for_each(ex, "octree.strays", lanes, BoxOfLane{positions, lanes, boxes.view()});
+  return ends_of(to_vector(ex, boxes), limit);
+}
+
+template <exec::Space Exec>
+Candidates find_candidates(Exec& ex, ArrayView<const Vec3f> positions, const Bounds& ends) {
+  const exec::Buffer<std::int32_t> found = select(ex, "octree.strays", positions.size, IsBeyond{positions, ends});
+  auto places = exec::make_buffer<Vec3f>(ex, found.size());
+  exec::gather(ex, positions, found.cview(), places.view());
+  return {to_vector(ex, found), to_vector(ex, places)};
 }
 
 }  // namespace
 
-bool may_have_strays(const Bounds& all, const Bounds& inner) {
-  // A core without strays holds a point at or beyond either inner end, so it reaches at least this far. The factor is
-  // for the rounding of a sum.
-  const Box box = wide(inner);
-  const double reach = 0.999 * std::max(0.0, box.longest_side());
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (wide(all.lower)[a] < box.lower[a] - reach || wide(all.upper)[a] > box.upper[a] + reach) return true;
-  }
-  return false;
+template <exec::Space Exec>
+StrayPoints find_strays(Exec& ex, ArrayView<const Vec3f> positions) {
+  if (positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
+  const Extent extent = measure_extent(ex, positions);
+  const std::int64_t limit = stray_limit(positions.size);
+  const bool countable = positions.size <= std::numeric_limits<std::int32_t>::max();
+  if (limit == 0 || !countable || !may_have_strays(extent.all, extent.inner)) return {{}, {}, extent.all};
+  const Bounds ends = find_ends(ex, positions, limit);
+  return choose_strays(find_candidates(ex, positions, ends), ends, extent.all, limit);
 }
 
-Bounds ends_of(const std::vector<Bounds>& boxes, std::int64_t rank) {
-  const auto at_rank = [&](const auto& value_of) {
-    std::vector<double> values(boxes.size());
-    std::transform(boxes.begin(), boxes.end(), values.begin(), value_of);
-    return static_cast<float>(smallest(std::move(values), rank, 0));
-  };
-  return {{at_rank([](const Bounds& b) { return b.lower.x; }), at_rank([](const Bounds& b) { return b.lower.y; }),
-           at_rank([](const Bounds& b) { return b.lower.z; })},
-          {-at_rank([](const Bounds& b) { return -b.upper.x; }), -at_rank([](const Bounds& b) { return -b.upper.y; }),
-           -at_rank([](const Bounds& b) { return -b.upper.z; })}};
+template <exec::Space Exec>
+exec::Buffer<std::int32_t> without_strays(Exec& ex, std::int64_t n, const StrayPoints& strays) {
+  if (strays.indices.empty()) return {};
+  std::vector<std::int32_t> ascending = strays.indices;
+  std::sort(ascending.begin(), ascending.end());
+  auto listed = exec::make_buffer<std::int32_t>(ex, strays.size());
+  copy_to_device(ex, ascending.data(), listed.view());
+  auto others = exec::make_buffer<std::int32_t>(ex, n - strays.size());
+  for_each(ex, "octree.strays", others.size(), SkipListed{listed.cview(), others.view()});
+  return others;
 }
 
-StrayPoints choose_strays(const Candidates& candidates, const Bounds& ends, const Bounds& all, std::int64_t limit) {
-  constexpr double kWorthIt = 1.5;  // the box with strays / the box without
-  const StrayPoints none{{}, {}, all};
-  std::vector<Place> outside;
-  for (std::size_t i = 0; i < candidates.indices.size(); ++i)
-    outside.push_back({wide(candidates.positions[i]), candidates.indices[i]});
-  // With the number of strays as the rank, every core must hold it.
-  Box core = middle_of(
-      outside, [](const Place& p) { return p.at; }, wide(ends), limit);
-  if (!(core.longest_side() > 0)) return none;  // nearly all points are at one place: the others make the shape
-  take_in(core, outside, [&](const Place& p) { return distance(core, p.at) == 0; });
-  while (take_in_near(core, outside) || take_in_parts(core, outside)) {
-  }
-  if (outside.empty() || static_cast<std::int64_t>(outside.size()) > limit) return none;
-  const Bounds without = box_without(outside, candidates, ends);
-  if (wide(all).longest_side() < kWorthIt * wide(without).longest_side()) return none;
-  return farthest_first(std::move(outside), without);
-}
-
-}  // namespace strays
-
-template StrayPoints find_strays(exec::Cpu&, ArrayView<const Vec3f>);
-template exec::Buffer<std::int32_t> without_strays(exec::Cpu&, std::int64_t, const StrayPoints&);
+PSK_INSTANTIATE(find_strays);
+PSK_INSTANTIATE(without_strays);
 
 }  // namespace pointskin::octree

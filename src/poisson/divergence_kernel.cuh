@@ -5,9 +5,10 @@
 
 #include "exec/cuda_primitives.cuh"
 #include "octree/corner_tile.cuh"
-#include "poisson/divergence_impl.hpp"
+#include "poisson/divergence_of_bricks.hpp"
+#include "poisson/splat_kernel.cuh"
 
-namespace pointskin::poisson::divergence {
+namespace pointskin::poisson {
 
 /// Which of the cells around the bricks are leaves, found by all lanes of a warp together.
 /// @returns for a lane's corner, bit t: the cell at offset slot(t) - 1 is a leaf
@@ -61,4 +62,4 @@ inline void find_divergence(exec::Cuda& ex, const Divergence& divergence) {
   for_each_warp(ex, "splat.divergence", octree::tiles_of(divergence.level), DivergenceOfTile{divergence});
 }
 
-}  // namespace pointskin::poisson::divergence
+}  // namespace pointskin::poisson

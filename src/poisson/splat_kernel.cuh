@@ -9,9 +9,9 @@
 #include <cstdint>
 
 #include "exec/cuda_primitives.cuh"
-#include "poisson/divergence_impl.hpp"
+#include "poisson/splat_to_bricks.hpp"
 
-namespace pointskin::poisson::divergence {
+namespace pointskin::poisson {
 
 using exec::kWarp;
 
@@ -171,4 +171,4 @@ inline void splat_to_bricks(exec::Cuda& ex, const SplatSource& source, const Vec
   for_each_warp(ex, "splat.normals", source.level.bricks, SplatByWarps{source, field});
 }
 
-}  // namespace pointskin::poisson::divergence
+}  // namespace pointskin::poisson

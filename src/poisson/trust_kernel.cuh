@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "exec/cuda_primitives.cuh"
-#include "poisson/trust_impl.hpp"
+#include "poisson/trust_in_cells.hpp"
 
-namespace pointskin::poisson::trust {
+namespace pointskin::poisson {
 
 using exec::kWarp;
 inline constexpr int kCellsPerWarp = kWarp / kLanes;
@@ -41,4 +41,4 @@ inline void find_trust(exec::Cuda& ex, const TrustInCells& cells) {
   for_each_warp(ex, "screening.trust", (cells.level.cells() + kCellsPerWarp - 1) / kCellsPerWarp, TrustByLanes{cells});
 }
 
-}  // namespace pointskin::poisson::trust
+}  // namespace pointskin::poisson

@@ -26,7 +26,7 @@ namespace measure {
 /// By an octree of depth `depth`.
 template <exec::Space Exec>
 Detail by_octree(Exec& ex, const Cloud& cloud, const Options& options, int depth) {
-  DevicePoints points = upload_some(ex, cloud);
+  PointBuffers points = upload_some(ex, cloud);
   RunReport unused;
   const octree::Frame frame = fit_cube(ex, points, options, unused);
   SortedSamples sorted = sort_into_cube(ex, points, frame);

@@ -33,7 +33,7 @@ class EngineOn final : public Engine {
     ex_->pool()->reset_peak();
     std::shared_ptr<const envelope::Envelope> envelope = make_envelope(*ex_, options, cloud.origin);
     PhaseClock clock(*ex_);
-    DevicePoints points = upload(*ex_, input, options);
+    PointBuffers points = upload(*ex_, input, options);
     clock.lap(report.upload_ms);
     clock.read();
     FieldData data = fit_field(*ex_, points, {.envelope = std::move(envelope), .look = true}, options, report);
@@ -57,7 +57,7 @@ class EngineOn final : public Engine {
     ex_->activate();
     const FitSetup setup{
         .keep_points = true, .envelope = make_envelope(*ex_, options, input.cloud.origin), .look = true};
-    DevicePoints points = upload(*ex_, input, options);
+    PointBuffers points = upload(*ex_, input, options);
     std::vector<RunTimes> runs;
     for (int i = 0; i < times; ++i) {
       PhaseClock clock(*ex_);
@@ -80,8 +80,8 @@ class EngineOn final : public Engine {
   }
 
  private:
-  static DevicePoints upload(Exec& ex, const Input& input, const Options& options) {
-    DevicePoints points = detail::upload(ex, input.cloud);
+  static PointBuffers upload(Exec& ex, const Input& input, const Options& options) {
+    PointBuffers points = detail::upload(ex, input.cloud);
     if (input.turned) turn_normals(ex, points.normals.view());
     points.attributes = upload_attributes(ex, input.cloud, options);
     return points;

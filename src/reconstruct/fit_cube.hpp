@@ -23,7 +23,7 @@ inline void report_strays(const octree::StrayPoints& strays, RunReport& report) 
 
 /// The working cube; leaves strays out of the points that are used, unless they are to be kept.
 template <exec::Space Exec>
-octree::Frame fit_cube(Exec& ex, DevicePoints& points, const Options& options, RunReport& report) {
+octree::Frame fit_cube(Exec& ex, PointBuffers& points, const Options& options, RunReport& report) {
   report.strays = 0;
   report.farthest_strays.clear();
   if (options.keep_strays) return octree::fit_frame(ex, points.positions.cview(), options.scale);

@@ -28,7 +28,7 @@ namespace pointskin::detail {
 struct FieldSamples {
   exec::Buffer<Vec3f> positions;     ///< in the unit cube
   exec::Buffer<Vec3f> normals;       ///< unit length or zero
-  exec::Buffer<std::uint8_t> added;  ///< as DevicePoints::added
+  exec::Buffer<std::uint8_t> added;  ///< as PointBuffers::added
 };
 
 /// Everything that is known of a field after the solve. Places are relative to the cloud's origin.
@@ -67,10 +67,10 @@ struct FitSetup {
 };
 
 /// Points to implicit function (P1 to P8). The report's places are relative to the cloud's origin.
-/// Points of DevicePoints::added take part in all but the isovalue.
+/// Points of PointBuffers::added take part in all but the isovalue.
 /// @throws Error empty_result (all points at one place, or outside of the envelope), over_limit, interrupted
 template <exec::Space Exec>
-FieldData fit_field(Exec& ex, DevicePoints& points, const FitSetup& setup, const Options& options, RunReport& report);
+FieldData fit_field(Exec& ex, PointBuffers& points, const FitSetup& setup, const Options& options, RunReport& report);
 
 /// Implicit function to mesh, on the device (P9).
 /// @param report  receives what was cut, with Options::trim, and what was moved, with an envelope
@@ -91,6 +91,15 @@ surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& o
 template <exec::Space Exec>
 void download_mesh(Exec& ex, const FieldData& field, surface::Surface surface, const Options& options,
                    const Vec3d& origin, Mesh& mesh);
+
+/// Surface to mesh on the host, for the last time: of `field` only FieldData::seen is left, freed before the mesh is
+/// copied.
+/// @param origin  of the cloud: what places in `field` are relative to
+/// @param report  receives extract_ms, download_ms, the peak memory and what was cut and moved
+/// @throws Error as extract_some
+template <exec::Space Exec>
+void extract_and_release(Exec& ex, FieldData& field, const Options& options, const Vec3d& origin, Mesh& mesh,
+                         RunReport& report);
 
 /// `data` as what a Field delegates to.
 /// @param origin  of the cloud: what places in `data` are relative to

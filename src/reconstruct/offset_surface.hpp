@@ -9,8 +9,8 @@
 
 #include "exec/algorithms.hpp"
 #include "field/offset.hpp"
+#include "octree/bounding_box.hpp"
 #include "octree/frame.hpp"
-#include "octree/frame_impl.hpp"
 #include "reconstruct/fit_field.hpp"
 #include "reconstruct/phase_clock.hpp"
 
@@ -26,7 +26,7 @@ octree::Frame cube_for_offset(Exec& ex, const octree::Frame& cube, ArrayView<con
   constexpr double kRoom = 1.1;  // as Options::scale, whatever that is
   if (distance <= 0) return cube;
   const Bounds box =
-      exec::reduce<Bounds>(ex, "offset.box", vertices.size, octree::frame::BoxOf{vertices}, octree::frame::Join{});
+      exec::reduce<Bounds>(ex, "offset.box", vertices.size, octree::BoxOf{vertices}, octree::JoinBoxes{});
   const double reach = distance / cube.size + 1.5 / static_cast<double>(std::int64_t{1} << depth);
   const double lowest = std::min({box.lower.x, box.lower.y, box.lower.z});
   const double highest = std::max({box.upper.x, box.upper.y, box.upper.z});

@@ -1,14 +1,224 @@
-#include "exec/cpu_primitives.hpp"
-#include "reconstruct/points_impl.hpp"
+#include "reconstruct/points.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/mix_bits.hpp"
+#include "exec/host_array.hpp"
+#include "exec/this_space.hpp"
+#include "octree/octree_data.hpp"
+#include "reconstruct/kept_names.hpp"
+#include "reconstruct/point_hash.hpp"
 
 namespace pointskin::detail {
+namespace {
 
-template DevicePoints upload_some(exec::Cpu&, const Cloud&);
-template DevicePoints upload(exec::Cpu&, const Cloud&);
-template void turn_normals(exec::Cpu&, ArrayView<Vec3f>);
-template std::vector<DeviceAttribute> upload_attributes(exec::Cpu&, const Cloud&, const Options&);
-template void leave_out(exec::Cpu&, const octree::StrayPoints&, DevicePoints&);
-template SortedSamples sort_into_cube(exec::Cpu&, const DevicePoints&, const octree::Frame&);
-template void download(exec::Cpu&, surface::Surface, const octree::Frame&, const Vec3d&, Mesh&);
+struct ToWorld {
+  octree::Frame frame;
+  ArrayView<Vec3f> positions;
+  PSK_HD void operator()(std::int64_t i) const { positions[i] = frame.to_world(positions[i]); }
+};
+
+struct Turn {
+  ArrayView<Vec3f> normals;
+  PSK_HD void operator()(std::int64_t i) const {
+    const Vec3f n = normals[i];
+    normals[i] = {-n.x, -n.y, -n.z};
+  }
+};
+
+/// Mixes an attribute into the lower half of a point's hash. Points that differ otherwise keep the order that they have
+/// without attributes, so that the surface does not depend on these.
+struct HashAttribute {
+  TypedView values;
+  ArrayView<std::uint64_t> hashes;
+  octree::Selection selection{};
+  PSK_HD void operator()(std::int64_t i) const {
+    constexpr std::uint64_t kLower = 0xffffffff;
+    hashes[i] = (hashes[i] & ~kLower) | (values.mixed_into(hashes[i], selection(i)) & kLower);
+  }
+};
+
+/// What may be wrong with points.
+struct Flaws {
+  std::int64_t not_finite = 0;
+  std::int64_t with_normal = 0;  // normals that are not zero
+};
+struct FindFlaws {
+  ArrayView<const Vec3f> positions, normals;
+  octree::Selection selection{};
+
+  PSK_HD Flaws operator()(std::int64_t i) const {
+    const std::int64_t from = selection(i);
+    const Vec3f n = normals.empty() ? Vec3f{} : normals[from];
+    return {is_finite(positions[from]) && is_finite(n) ? 0 : 1, n.x != 0 || n.y != 0 || n.z != 0 ? 1 : 0};
+  }
+};
+struct AddFlaws {
+  PSK_HD Flaws operator()(const Flaws& a, const Flaws& b) const {
+    return {a.not_finite + b.not_finite, a.with_normal + b.with_normal};
+  }
+};
+
+/// Flaws of the points to use. Waits.
+template <exec::Space Exec>
+Flaws find_flaws(Exec& ex, const PointBuffers& points) {
+  return exec::reduce<Flaws>(ex, "upload.check", points.used_count(),
+                             FindFlaws{points.positions.cview(), points.normals.cview(), {points.used.cview()}},
+                             AddFlaws{});
+}
+
+void require_finite(const Flaws& flaws) {
+  if (flaws.not_finite > 0)
+    throw Error(
+        ErrorCode::invalid_input,
+        std::to_string(flaws.not_finite) + " points have coordinates or normals that are not finite; leave them out");
+}
+
+/// The attributes in the order of the samples.
+/// @param order  index of the caller's point of every sample
+template <exec::Space Exec>
+field::AttributeSamples sort_attributes(Exec& ex, const PointBuffers& points, ArrayView<const std::int32_t> order) {
+  field::AttributeSamples sorted;
+  for (const AttributeBuffer& attribute : points.attributes) {
+    const std::size_t place = sorted.names.size();
+    sorted.names.push_back(attribute.name);
+    const TypedView values = attribute.values.view();
+    if (attribute.is_label()) {
+      sorted.labels.push_back({place, exec::gather_typed(ex, values, order)});
+      continue;
+    }
+    const field::ValueRange range = field::find_range(ex, values, points.used.cview());
+    sorted.channels.push_back(field::make_channel(ex, place, values, range, order));
+  }
+  return sorted;
+}
+
+void require_normals(const Flaws& flaws) {
+  if (flaws.with_normal == 0)
+    throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
+}
+
+}  // namespace
+
+namespace {
+
+void require_points(const Cloud& cloud) {
+  if (cloud.positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
+  if (cloud.size() > std::numeric_limits<std::int32_t>::max())
+    throw Error(ErrorCode::over_limit, "the cloud has more than 2^31 - 1 points; thin it or split it");
+}
+
+}  // namespace
+
+template <exec::Space Exec>
+PointBuffers upload_some(Exec& ex, const Cloud& cloud) {
+  require_points(cloud);
+  PointBuffers points{exec::make_buffer<Vec3f>(ex, cloud.size()), {}, {}};
+  copy_to_device(ex, cloud.positions.data(), points.positions.view());
+  if (cloud.has_normals()) {
+    points.normals = exec::make_buffer<Vec3f>(ex, cloud.size());
+    copy_to_device(ex, cloud.normals.data(), points.normals.view());
+  }
+  require_finite(find_flaws(ex, points));
+  return points;
+}
+
+template <exec::Space Exec>
+PointBuffers upload(Exec& ex, const Cloud& cloud) {
+  require_points(cloud);
+  if (!cloud.has_normals())
+    throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
+  PointBuffers points{exec::make_buffer<Vec3f>(ex, cloud.size()), exec::make_buffer<Vec3f>(ex, cloud.size()), {}};
+  copy_to_device(ex, cloud.positions.data(), points.positions.view());
+  copy_to_device(ex, cloud.normals.data(), points.normals.view());
+  const Flaws flaws = find_flaws(ex, points);
+  require_finite(flaws);
+  require_normals(flaws);
+  return points;
+}
+
+template <exec::Space Exec>
+void turn_normals(Exec& ex, ArrayView<Vec3f> normals) {
+  for_each(ex, "upload.turn", normals.size, Turn{normals});
+}
+
+template <exec::Space Exec>
+void leave_out(Exec& ex, const octree::StrayPoints& strays, PointBuffers& points) {
+  if (strays.indices.empty()) return;
+  points.used = octree::without_strays(ex, points.positions.size(), strays);
+  if (!points.normals.empty()) require_normals(find_flaws(ex, points));
+}
+
+template <exec::Space Exec>
+std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options) {
+  std::vector<AttributeBuffer> attributes;
+  if (!options.attributes) return attributes;
+  const std::vector<std::string> names = kept_names(cloud.attributes, options.density, options.weakness);
+  for (std::size_t a = 0; a < names.size(); ++a) {
+    const Attribute& from = cloud.attributes[a];
+    const auto n = static_cast<std::int64_t>(from.values.size());
+    if (n != cloud.size())
+      throw Error(ErrorCode::invalid_input, "the attribute " + from.name + " has " + std::to_string(n) +
+                                                " values for " + std::to_string(cloud.size()) + " points");
+    attributes.push_back({names[a], exec::upload_typed(ex, from.values)});
+  }
+  return attributes;
+}
+
+template <exec::Space Exec>
+SortedSamples sort_into_cube(Exec& ex, const PointBuffers& points, const octree::Frame& frame) {
+  const std::int64_t n = points.used_count();
+  const octree::Selection selection{points.used.cview()};
+  auto unit = exec::make_buffer<Vec3f>(ex, n);
+  auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
+  for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view(), selection});
+  for_each(ex, "octree.hash", n, HashPoint{points.positions.cview(), points.normals.cview(), hashes.view(), selection});
+  for (const AttributeBuffer& attribute : points.attributes)
+    for_each(ex, "octree.hash", n, HashAttribute{attribute.values.view(), hashes.view(), selection});
+  octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());
+  hashes.reset();
+  SortedSamples out;
+  poisson::Samples& samples = out.samples;
+  samples.positions = exec::make_buffer<Vec3f>(ex, n);
+  exec::gather(ex, unit.cview(), sorted.order.cview(), samples.positions.view());
+  unit.reset();
+  if (!points.used.empty())  // from here on, the order leads to the caller's points
+    exec::gather(ex, points.used.cview(), sorted.order.cview(), sorted.order.view());
+  if (!points.normals.empty()) {
+    samples.normals = exec::make_buffer<Vec3f>(ex, n);
+    exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
+  }
+  if (!points.added.empty()) {
+    out.added = exec::make_buffer<std::uint8_t>(ex, n);
+    exec::gather(ex, points.added.cview(), sorted.order.cview(), out.added.view());
+  }
+  out.keys = std::move(sorted.keys);
+  out.attributes = sort_attributes(ex, points, sorted.order.cview());
+  return out;
+}
+
+template <exec::Space Exec>
+void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh) {
+  const ArrayView<Vec3f> positions = surface.positions.view();
+  for_each(ex, "download.world", positions.size, ToWorld{frame, positions});
+  mesh.origin = origin;
+  mesh.attributes.clear();
+  download_array(ex, surface.positions, mesh.vertices);
+  download_array(ex, surface.normals, mesh.normals);
+  download_array(ex, surface.triangles, mesh.triangles);
+}
+
+PSK_INSTANTIATE(upload_some);
+PSK_INSTANTIATE(upload);
+PSK_INSTANTIATE(turn_normals);
+PSK_INSTANTIATE(upload_attributes);
+PSK_INSTANTIATE(leave_out);
+PSK_INSTANTIATE(sort_into_cube);
+PSK_INSTANTIATE(download);
 
 }  // namespace pointskin::detail

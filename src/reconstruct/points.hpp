@@ -26,7 +26,7 @@
 namespace pointskin::detail {
 
 /// An attribute in a space, in the caller's order.
-struct DeviceAttribute {
+struct AttributeBuffer {
   std::string name;
   exec::TypedBuffer values;
 
@@ -34,9 +34,9 @@ struct DeviceAttribute {
 };
 
 /// A cloud in a space, in the caller's order and coordinates.
-struct DevicePoints {
+struct PointBuffers {
   exec::Buffer<Vec3f> positions, normals;
-  std::vector<DeviceAttribute> attributes{};  ///< those that the mesh is to keep
+  std::vector<AttributeBuffer> attributes{};  ///< those that the mesh is to keep
   exec::Buffer<std::uint8_t>
       added{};  ///< (n) edit/point_kind.hpp; only original points have a say in the isovalue; empty: all are original
   exec::Buffer<std::int32_t> used{};  ///< indices of the points to use, ascending; empty: all of them
@@ -47,14 +47,14 @@ struct DevicePoints {
 /// Copies a cloud to the space, whose normals may be missing or zero.
 /// @throws Error empty_result without points, invalid_input if some are not finite, over_limit beyond 2^31 - 1
 template <exec::Space Exec>
-DevicePoints upload_some(Exec& ex, const Cloud& cloud);
+PointBuffers upload_some(Exec& ex, const Cloud& cloud);
 
 /// Copies a cloud to the space.
 /// @throws Error no_normals if there are none or all have zero length, empty_result without points, invalid_input if
 /// some
 ///         are not finite, over_limit beyond 2^31 - 1
 template <exec::Space Exec>
-DevicePoints upload(Exec& ex, const Cloud& cloud);
+PointBuffers upload(Exec& ex, const Cloud& cloud);
 
 /// Turns all normals the other way round.
 template <exec::Space Exec>
@@ -63,25 +63,25 @@ void turn_normals(Exec& ex, ArrayView<Vec3f> normals);
 /// Copies the attributes that the mesh is to keep, under the names that they have there (kept_names).
 /// @throws Error invalid_input if an attribute has another length than the cloud
 template <exec::Space Exec>
-std::vector<DeviceAttribute> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options);
+std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options);
 
 /// Leaves strays out of the points to use. O(n), and nothing if there are none.
 /// @throws Error no_normals if there are normals, and those of all others have zero length
 template <exec::Space Exec>
-void leave_out(Exec& ex, const octree::StrayPoints& strays, DevicePoints& points);
+void leave_out(Exec& ex, const octree::StrayPoints& strays, PointBuffers& points);
 
 /// The points to use, in the order of their keys.
 struct SortedSamples {
   poisson::Samples samples;            ///< positions in the unit cube, normals as they came
   exec::Buffer<std::uint64_t> keys;    ///< (n) point keys
   field::AttributeSamples attributes;  ///< without positions and weights
-  exec::Buffer<std::uint8_t> added;    ///< as DevicePoints::added
+  exec::Buffer<std::uint8_t> added;    ///< as PointBuffers::added
 };
 
 /// Moves the points to use into the unit cube and sorts them. Points that differ in nothing else are sorted by their
 /// attributes.
 template <exec::Space Exec>
-SortedSamples sort_into_cube(Exec& ex, const DevicePoints& points, const octree::Frame& frame);
+SortedSamples sort_into_cube(Exec& ex, const PointBuffers& points, const octree::Frame& frame);
 
 /// Copies a surface to the host, into world coordinates relative to `origin` and the memory that `mesh` has. Every
 /// array is freed as soon as it is copied.
@@ -91,7 +91,7 @@ void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, co
 /// Moves an array to the host, into memory that `to` may have already.
 template <class T, exec::Space Exec>
 void download_array(Exec& ex, exec::Buffer<T>& from, std::vector<T>& to) {
-  if constexpr (std::is_same_v<Exec, exec::Cpu>)
+  if constexpr (Exec::kOnHost)
     exec::resize(ex, to, static_cast<std::size_t>(from.size()));
   else
     to.resize(static_cast<std::size_t>(from.size()));

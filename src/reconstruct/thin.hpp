@@ -30,7 +30,7 @@ struct Pick {
 /// Up to `count` of the points that a run with these options uses, evenly spread over their Morton order, with their
 /// normals, relative to the cloud's origin. Does not depend on the order of the points.
 template <exec::Space Exec>
-Cloud thin_cloud(Exec& ex, DevicePoints points, const Options& options, std::int64_t count) {
+Cloud thin_cloud(Exec& ex, PointBuffers points, const Options& options, std::int64_t count) {
   RunReport unused;
   const octree::Frame frame = fit_cube(ex, points, options, unused);
   const poisson::Samples samples = sort_into_cube(ex, points, frame).samples;

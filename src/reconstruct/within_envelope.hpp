@@ -43,7 +43,7 @@ class OnHost {
   }
 
  private:
-  static constexpr bool kIsHost = std::is_same_v<Exec, exec::Cpu>;
+  static constexpr bool kIsHost = Exec::kOnHost;
   using Value = std::remove_const_t<T>;
   Exec& ex_;
   ArrayView<T> array_;
@@ -55,9 +55,7 @@ class OnHost {
 template <exec::Space Exec>
 std::shared_ptr<const envelope::Envelope> make_envelope(const Exec& ex, const Options& options, const Vec3d& origin) {
   if (options.envelope == nullptr) return nullptr;
-  int threads = 0;
-  if constexpr (std::is_same_v<Exec, exec::Cpu>) threads = ex.threads();
-  return std::make_shared<envelope::Envelope>(options.envelope, origin, threads);
+  return std::make_shared<envelope::Envelope>(options.envelope, origin, ex.host_threads());
 }
 
 /// Areas of the samples, 0 for those outside: with them only the others decide on the isovalue.

@@ -1,8 +1,401 @@
-#include "exec/cpu_primitives.hpp"
-#include "surface/extract_impl.hpp"
+#include "surface/extract.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "core/bits.hpp"
+#include "exec/this_space.hpp"
+#include "surface/case_table.hpp"
+#include "surface/check_size.hpp"
+#include "surface/edge_vertex.hpp"
+#include "surface/inside_ends.hpp"
+#include "surface/leaf_cell.hpp"
+#include "surface/mark.hpp"
 
 namespace pointskin::surface {
+namespace {
 
-template Surface extract_surface(exec::Cpu&, const field::FieldView&, const ExtractOptions&);
+using namespace extract;
+
+struct IsTraced {
+  ArrayView<const std::uint8_t> marks;
+  PSK_HD bool operator()(std::int64_t n) const { return (marks[n] & kTracedCell) != 0; }
+};
+
+/// The marks of a brick's 8 nodes as one number, the first node in the lowest byte.
+PSK_HD std::uint64_t brick_marks(ArrayView<const std::uint8_t> marks, std::int64_t brick) {
+  std::uint64_t all = 0;
+  memcpy(&all, marks.data + 8 * brick, sizeof all);
+  return all;
+}
+
+/// Two counts that are scanned together.
+PSK_HD constexpr std::uint64_t pack(std::uint64_t low, std::uint64_t high) { return high << 32 | low; }
+PSK_HD constexpr std::int32_t low_count(std::uint64_t packed) { return static_cast<std::int32_t>(packed & 0xffffffff); }
+PSK_HD constexpr std::int32_t high_count(std::uint64_t packed) { return static_cast<std::int32_t>(packed >> 32); }
+
+constexpr std::uint64_t kEveryByte = 0x0101010101010101;
+
+/// Crossed edges and table triangles of the marks of up to 8 nodes.
+PSK_HD std::uint64_t count_marked(std::uint64_t marks) {
+  const std::uint64_t triangles = (marks >> kTrianglesShift & 7 * kEveryByte) * kEveryByte >> 56;  // sum of the bytes
+  return pack(static_cast<std::uint64_t>(count_bits(marks & kEdges * kEveryByte)), triangles);
+}
+
+struct CountBrick {
+  ArrayView<const std::uint8_t> marks;
+  ArrayView<std::uint64_t> counts;
+  PSK_HD void operator()(std::int64_t brick) const { counts[brick] = count_marked(brick_marks(marks, brick)); }
+};
+
+/// Where every node's vertices and triangles start.
+struct Numbering {
+  ArrayView<const std::uint8_t> marks;
+  ArrayView<const std::uint64_t> first;  // (bricks + 1) packed: edge vertices and table triangles before each brick
+
+  /// Packed: before node n.
+  PSK_HD std::uint64_t before(std::int64_t n) const {
+    const std::uint64_t earlier = (std::uint64_t{1} << 8 * (n & 7)) - 1;
+    return first[n >> 3] + count_marked(brick_marks(marks, n >> 3) & earlier);
+  }
+
+  /// Vertex on a crossed edge of node n.
+  PSK_HD std::int32_t vertex(std::int64_t n, int axis) const {
+    const std::uint64_t earlier = (std::uint64_t{1} << (8 * (n & 7) + axis)) - 1;
+    const std::uint64_t edges = brick_marks(marks, n >> 3) & kEdges * kEveryByte & earlier;
+    return low_count(first[n >> 3]) + count_bits(edges);
+  }
+};
+
+/// Where a node of the arrays over all levels is.
+struct Place {
+  int level;
+  std::int32_t node;
+};
+PSK_HD Place place_of(const octree::OctreeView& tree, std::int64_t index) {
+  const int level = tree.level_of(index);
+  return {level, static_cast<std::int32_t>(index - tree.levels[level].first_node)};
+}
+
+/// Sort key of a vertex: the corner that its edge or cell starts at, in units of the finest cells.
+PSK_HD std::uint64_t vertex_key(const octree::OctreeView& tree, const Place& place) {
+  const octree::Coordinates c = octree::decode(tree.levels[place.level].node_key(place.node));
+  const int shift = tree.depth - place.level;
+  return octree::encode({c.x << shift, c.y << shift, c.z << shift});
+}
+
+/// The mesh while it is made: vertices unsorted, edges' first and then the loops' centres.
+struct MeshView {
+  ArrayView<Vec3f> positions, normals;  // normals may be empty
+  ArrayView<std::uint64_t> keys;
+  ArrayView<Triangle> triangles;
+};
+
+/// Notes for every edge vertex where it lies, and for every table triangle what it is: so that the work that follows is
+/// one thread an item, however few nodes meet the surface.
+struct ListItems {
+  Numbering numbering;
+  ArrayView<const std::uint8_t> signs;
+  MeshView mesh;
+
+  PSK_HD void operator()(std::int64_t n) const {
+    const unsigned mark = numbering.marks[n];
+    if ((mark & (kEdges | kTriangles)) == 0) return;
+    const std::uint64_t before = numbering.before(n);
+    std::int32_t vertex = low_count(before);
+    for (int axis = 0; axis < 3; ++axis)
+      if ((mark >> axis & 1) != 0)
+        mesh.keys[vertex++] = static_cast<std::uint64_t>(n) << 2 | static_cast<unsigned>(axis);
+    const int triangles = static_cast<int>((mark & kTriangles) >> kTrianglesShift);
+    const std::int32_t first = high_count(before);
+    for (int t = 0; t < triangles; ++t) mesh.triangles[first + t] = {static_cast<std::int32_t>(n), signs[n], t};
+  }
+};
+
+/// A vertex on an edge that ListItems has noted.
+struct EmitVertex {
+  field::FieldView f;
+  float curvature;
+  MeshView mesh;
+
+  PSK_HD void operator()(std::int64_t vertex) const {
+    const std::uint64_t item = mesh.keys[vertex];
+    const Place place = place_of(f.tree, static_cast<std::int64_t>(item >> 2));
+    emit({place.level, place.node, static_cast<int>(item & 3)}, static_cast<std::int32_t>(vertex));
+  }
+
+  PSK_HD void emit(const EdgeOwner& owner, std::int32_t vertex) const {
+    const CrossedEdge edge = crossed_edge(f.tree, owner);
+    const float t = crossing_parameter(f, edge, curvature);
+    const octree::LevelView& l = f.tree.levels[owner.level];
+    const octree::Coordinates c = octree::decode(l.node_key(owner.node));
+    const float width = 1.0F / static_cast<float>(1 << owner.level);
+    mesh.positions[vertex] = {(static_cast<float>(c.x) + (owner.axis == 0 ? t : 0)) * width,
+                              (static_cast<float>(c.y) + (owner.axis == 1 ? t : 0)) * width,
+                              (static_cast<float>(c.z) + (owner.axis == 2 ? t : 0)) * width};
+    mesh.keys[vertex] = vertex_key(f.tree, {owner.level, owner.node});
+    if (mesh.normals.empty()) return;
+    const Vec3f g0 = field::gradient_at(f, owner.level, edge.start);
+    const Vec3f g1 = field::gradient_at(f, owner.level, edge.end);
+    mesh.normals[vertex] = outward({g0.x + t * (g1.x - g0.x), g0.y + t * (g1.y - g0.y), g0.z + t * (g1.z - g0.z)});
+  }
+};
+
+/// Vertex on an edge.
+struct VertexLookup {
+  octree::OctreeView tree;
+  Numbering numbering;
+  PSK_HD std::int32_t operator()(const EdgeOwner& owner) const {
+    return numbering.vertex(tree.levels[owner.level].first_node + owner.node, owner.axis);
+  }
+};
+
+/// A triangle of a leaf without finer neighbours that ListItems has noted. Needs all positions.
+struct EmitTriangle {
+  field::FieldView f;
+  const Case* cases;
+  VertexLookup vertex_on;
+  MeshView mesh;
+
+  PSK_HD void operator()(std::int64_t t) const {
+    const std::int32_t* item = mesh.triangles[t].data();
+    const Place place = place_of(f.tree, item[0]);
+    const LeafCell cell(f, place.level, place.node);
+    const Case& c = cases[item[1]];
+    if (c.is_quadrilateral()) {
+      mesh.triangles[t] = half_of(cell, place, c, item[2]);
+      return;
+    }
+    const std::uint8_t* edges = c.edges + 3 * item[2];
+    mesh.triangles[t] = {vertex_on(cell.owner_of_edge(edges[0])), vertex_on(cell.owner_of_edge(edges[1])),
+                         vertex_on(cell.owner_of_edge(edges[2]))};
+  }
+
+  /// One of the two triangles of a quadrilateral, cut along the diagonal whose middle is nearer to the surface.
+  [[nodiscard]] PSK_HD Triangle half_of(const LeafCell& cell, const Place& place, const Case& c, int half) const {
+    const std::int32_t a = vertex_on(cell.owner_of_edge(c.edges[3]));
+    const std::int32_t b = vertex_on(cell.owner_of_edge(c.edges[0]));
+    const std::int32_t d = vertex_on(cell.owner_of_edge(c.edges[1]));
+    const std::int32_t e = vertex_on(cell.owner_of_edge(c.edges[2]));
+    if (distance_between(place, a, d) < distance_between(place, b, e))
+      return half == 0 ? Triangle{a, b, d} : Triangle{a, d, e};
+    return half == 0 ? Triangle{b, d, e} : Triangle{a, b, e};
+  }
+
+  /// How far the field is from the isovalue in the middle of two vertices of a cell.
+  [[nodiscard]] PSK_HD float distance_between(const Place& place, std::int32_t a, std::int32_t b) const {
+    const Vec3f p = mesh.positions[a];
+    const Vec3f q = mesh.positions[b];
+    const Vec3f middle{0.5F * (p.x + q.x), 0.5F * (p.y + q.y), 0.5F * (p.z + q.z)};
+    const octree::LevelView& l = f.tree.levels[place.level];
+    const Vec3f local = octree::local_in_cell(middle, octree::decode(l.node_key(place.node)), l.depth);
+    const float off = octree::interpolated(l, f.values + l.first_node, place.node, local) - f.isovalue;
+    return off < 0 ? -off : off;
+  }
+};
+
+/// Triangles and centre vertices of a cell.
+struct CellCounts {
+  std::int32_t triangles = 0, centres = 0;
+};
+
+/// A traced loop of three crossings is a triangle; a longer one is a fan around a vertex at its centre, which has no
+/// diagonals that a neighbour could share.
+PSK_HD CellCounts count_loop(int length) { return length == 3 ? CellCounts{1, 0} : CellCounts{length, 1}; }
+
+/// Packed triangles and centres of the traced cells.
+struct CountTraced {
+  field::FieldView f;
+  ArrayView<const std::int32_t> cells;
+  ArrayView<std::uint64_t> counts;
+  PSK_HD void operator()(std::int64_t i) const {
+    const Place place = place_of(f.tree, cells[i]);
+    std::uint64_t total = 0;
+    LeafCell(f, place.level, place.node).trace().for_loops([&](int, int length) {
+      const CellCounts counted = count_loop(length);
+      total += pack(static_cast<std::uint64_t>(counted.triangles), static_cast<std::uint64_t>(counted.centres));
+    });
+    counts[i] = total;
+  }
+};
+
+struct EmitTraced {
+  field::FieldView f;
+  VertexLookup vertex_on;
+  ArrayView<const std::int32_t> cells;
+  ArrayView<const std::uint64_t> first;  // packed, as counted
+  std::int32_t edge_vertices, table_triangles;
+  MeshView mesh;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const Place place = place_of(f.tree, cells[i]);
+    const LeafCell cell(f, place.level, place.node);
+    std::int32_t triangle = table_triangles + low_count(first[i]);
+    std::int32_t centre = edge_vertices + high_count(first[i]);
+    const CellTracer tracer = cell.trace();
+    tracer.for_loops([&](int start, int length) {
+      const auto vertex = [&](int crossing) { return vertex_on(cell.owner_of(crossing)); };
+      if (length == 3) {
+        const int second = tracer.next(start);
+        mesh.triangles[triangle++] = {vertex(start), vertex(second), vertex(tracer.next(second))};
+        return;
+      }
+      Vec3f position{};
+      Vec3f normal{};
+      int at = tracer.next(start);
+      const std::int32_t first_vertex = vertex(start);
+      std::int32_t here = first_vertex;
+      for (int k = 0; k < length; ++k) {
+        const std::int32_t there = k + 1 < length ? vertex(at) : first_vertex;
+        at = tracer.next(at);
+        mesh.triangles[triangle++] = {here, there, centre};
+        add(position, mesh.positions[here]);
+        if (!mesh.normals.empty()) add(normal, mesh.normals[here]);
+        here = there;
+      }
+      const float share = 1.0F / static_cast<float>(length);
+      mesh.positions[centre] = {position.x * share, position.y * share, position.z * share};
+      if (!mesh.normals.empty()) mesh.normals[centre] = outward({-normal.x, -normal.y, -normal.z});
+      mesh.keys[centre] = vertex_key(f.tree, place);
+      ++centre;
+    });
+  }
+
+  PSK_HD static void add(Vec3f& sum, const Vec3f& v) {
+    sum.x += v.x;
+    sum.y += v.y;
+    sum.z += v.z;
+  }
+};
+
+struct Invert {
+  ArrayView<const std::int32_t> order;
+  ArrayView<std::int32_t> rank;
+  PSK_HD void operator()(std::int64_t i) const { rank[order[i]] = static_cast<std::int32_t>(i); }
+};
+
+struct Renumber {
+  ArrayView<const std::int32_t> rank;
+  ArrayView<Triangle> triangles;
+  PSK_HD void operator()(std::int64_t t) const {
+    std::int32_t* corner = triangles[t].data();
+    for (int k = 0; k < 3; ++k) corner[k] = rank[corner[k]];
+  }
+};
+
+struct LowCount {
+  ArrayView<const std::uint64_t> packed;
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return low_count(packed[i]); }
+};
+struct AddCounts {
+  PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
+};
+
+/// Exclusive scan of packed counts with the total on the host.
+/// @param most_per_entry  bound of the low counts, which must not spill into the high ones
+/// @throws Error over_limit if a total does not fit into 32 bits
+template <exec::Space Exec>
+std::uint64_t scan_counts(Exec& ex, const exec::Buffer<std::uint64_t>& counts, exec::Buffer<std::uint64_t>& first,
+                          std::int64_t most_per_entry) {
+  if (counts.size() > std::numeric_limits<std::int32_t>::max() / most_per_entry)
+    check_size("elements",
+               exec::reduce<std::int64_t>(ex, "extract.scan", counts.size(), LowCount{counts.cview()}, AddCounts{}));
+  first = exec::make_buffer<std::uint64_t>(ex, counts.size() + 1);
+  exclusive_scan(ex, "extract.scan", counts.cview(), first.view());
+  return exec::read_element(ex, first.cview(), counts.size());
+}
+
+/// Vertices in the order of their keys, triangles renumbered.
+template <exec::Space Exec>
+Surface sort_vertices(Exec& ex, Surface unsorted, exec::Buffer<std::uint64_t> keys, int depth) {
+  const std::int64_t n = keys.size();
+  exec::Buffer<std::int32_t> order = exec::iota(ex, n);
+  sort_pairs(ex, "extract.sort", keys, order, 3 * (depth + 1));
+  keys.reset();
+  auto rank = exec::make_buffer<std::int32_t>(ex, n);
+  for_each(ex, "extract.renumber", n, Invert{order.cview(), rank.view()});
+  for_each(ex, "extract.renumber", unsorted.triangles.size(), Renumber{rank.cview(), unsorted.triangles.view()});
+  rank.reset();
+  Surface sorted{exec::make_buffer<Vec3f>(ex, n), exec::make_buffer<Vec3f>(ex, unsorted.normals.size()),
+                 std::move(unsorted.triangles)};
+  exec::gather(ex, unsorted.positions.cview(), order.cview(), sorted.positions.view());
+  exec::gather(ex, unsorted.normals.cview(), order.cview(), sorted.normals.view());
+  return sorted;
+}
+
+TriangleCounts count_triangles(const std::array<Case, 256>& cases) {
+  TriangleCounts counts;
+  std::transform(cases.begin(), cases.end(), counts.of_case, [](const Case& c) { return c.triangles; });
+  return counts;
+}
+
+}  // namespace
+
+template <exec::Space Exec>
+Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOptions& options) {
+  constexpr std::int64_t kMostEdgesPerBrick = 24;
+  constexpr std::int64_t kMostTrianglesPerCell = 64;  // a traced cell has at most 48 segments, so no more triangles
+  static const std::array<Case, 256> kCases = make_case_table();
+  check_size("nodes", f.tree.nodes);
+  auto cases = exec::make_buffer<Case>(ex, 256);
+  copy_constant_to_device(ex, kCases.data(), cases.view());
+  auto marks = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
+  auto signs = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
+  const Marker marker{f, count_triangles(kCases), marks.view(), signs.view()};
+  if constexpr (Exec::kManyThreads)
+    for_each(ex, "extract.mark", f.tree.nodes, MarkNode{marker});
+  else
+    for_each(ex, "extract.mark", f.tree.nodes / 8, MarkBrick{marker});
+
+  auto counts = exec::make_buffer<std::uint64_t>(ex, f.tree.nodes / 8);
+  for_each(ex, "extract.count", counts.size(), CountBrick{marks.cview(), counts.view()});
+  exec::Buffer<std::uint64_t> first;
+  const std::uint64_t table = scan_counts(ex, counts, first, kMostEdgesPerBrick);
+  counts.reset();
+  exec::Buffer<std::int32_t> traced;
+  if (f.tree.finest().first_node > 0)  // there are coarser leaves
+    traced = select(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()});
+  auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
+  for_each_apart(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
+  exec::Buffer<std::uint64_t> first_traced;
+  const std::uint64_t more = traced.empty() ? 0 : scan_counts(ex, traced_counts, first_traced, kMostTrianglesPerCell);
+  const std::int64_t vertices = std::int64_t{low_count(table)} + high_count(more);
+  const std::int64_t triangles = std::int64_t{high_count(table)} + low_count(more);
+  check_size("vertices", vertices);
+  check_size("triangles", triangles);
+
+  Surface surface{exec::make_buffer<Vec3f>(ex, vertices), exec::make_buffer<Vec3f>(ex, options.normals ? vertices : 0),
+                  exec::make_buffer<Triangle>(ex, triangles)};
+  auto keys = exec::make_buffer<std::uint64_t>(ex, vertices);
+  const MeshView mesh{surface.positions.view(), surface.normals.view(), keys.view(), surface.triangles.view()};
+  const Numbering numbering{marks.cview(), first.cview()};
+  const VertexLookup vertex_on{f.tree, numbering};
+  for_each(ex, "extract.list", f.tree.nodes, ListItems{numbering, signs.cview(), mesh});
+  signs.reset();
+  const std::int32_t on_edges = low_count(table);
+  exec::Buffer<Vec3f> inside_ends;
+  if (options.move_vertices) {
+    inside_ends = exec::make_buffer<Vec3f>(ex, on_edges);
+    for_each(ex, "extract.ends", on_edges, InsideEnds{f, keys.cview(), inside_ends.view()});
+  }
+  for_each(ex, "extract.vertices", on_edges, EmitVertex{f, options.curvature, mesh});
+  if (options.move_vertices) options.move_vertices(surface.positions.view().part(0, on_edges), inside_ends.cview());
+  inside_ends.reset();
+  for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh});
+  for_each_apart(
+      ex, "extract.traced", traced.size(),
+      EmitTraced{f, vertex_on, traced.cview(), first_traced.cview(), low_count(table), high_count(table), mesh});
+  marks.reset();
+  first.reset();
+  return sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth);
+}
+
+PSK_INSTANTIATE(extract_surface);
 
 }  // namespace pointskin::surface

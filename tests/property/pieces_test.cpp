@@ -91,7 +91,7 @@ TEST(Pieces, NothingLeftIsAnError) {
             }),
             ErrorCode::empty_result);
   for (const double bad : {-1.0, 1.5, 1e300 * 1e300})
-    EXPECT_EQ(error_of([&] { validate({{}, {.min_component = bad}}); }), ErrorCode::usage) << bad;
+    EXPECT_EQ(error_of([&] { validate(Options{{}, {.min_component = bad}}); }), ErrorCode::usage) << bad;
 }
 
 }  // namespace

@@ -268,10 +268,10 @@ TEST(Trim, OfTinyCloudsEndsInAManifoldOrAnEmptyResult) {
 
 TEST(Trim, IsCheckedToBeAShareBelowOne) {
   for (const double bad : {-0.1, 1.0, 7.0, std::nan("")}) {
-    EXPECT_EQ(error_of([&] { validate({{}, {.trim = bad}}); }), ErrorCode::usage) << bad;
-    EXPECT_EQ(error_of([&] { validate({{}, {.island_ratio = bad}}); }), ErrorCode::usage) << bad;
+    EXPECT_EQ(error_of([&] { validate(Options{{}, {.trim = bad}}); }), ErrorCode::usage) << bad;
+    EXPECT_EQ(error_of([&] { validate(Options{{}, {.island_ratio = bad}}); }), ErrorCode::usage) << bad;
   }
-  EXPECT_NO_THROW(validate({{}, {.trim = 0.999, .island_ratio = 0.999}}));
+  EXPECT_NO_THROW(validate(Options{{}, {.trim = 0.999, .island_ratio = 0.999}}));
 }
 
 }  // namespace

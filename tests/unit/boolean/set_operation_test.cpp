@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "boolean/crease_impl.hpp"
+#include "boolean/crease_kernels.hpp"
 #include "boolean/keep_apart.hpp"
 #include "boolean/set_operation.hpp"
 #include "support/shapes.hpp"
@@ -93,9 +93,9 @@ TEST(LoweredBy, IsMostAtTheCurveAndNothingFarFromItOrAlongEachOther) {
 
 TEST(KeptSheets, AreTwoOfFourButForTheSymmetricDifferenceAll) {
   for (const BooleanOp op : kOps) {
-    const std::vector<crease::Sheet> sheets = crease::kept_sheets(op);
+    const std::vector<Sheet> sheets = kept_sheets(op);
     EXPECT_EQ(sheets.size(), op == BooleanOp::symmetric_difference ? 4 : 2);
-    for (const crease::Sheet& sheet : sheets)
+    for (const Sheet& sheet : sheets)
       EXPECT_EQ(sheet.flipped,
                 expected_fate(op, sheet.of_first, sheet.outside ? Place::outside : Place::inside) == Fate::flipped);
   }
@@ -110,9 +110,9 @@ TEST(TangentLength, IsThatOfALineInACube) {
     const std::vector<Vec3f> point{through};
     const std::vector<field::SurfaceDistance> to_a{at(0, a)};
     const std::vector<field::SurfaceDistance> to_b{at(0, b)};
-    const crease::Found found{{point.data(), 1}, {middle.data(), 1}, {width.data(), 1},
-                              {to_a.data(), 1},  {to_b.data(), 1},   cell};
-    return crease::TangentLength{found}(0);
+    const Found found{{point.data(), 1}, {middle.data(), 1}, {width.data(), 1},
+                      {to_a.data(), 1},  {to_b.data(), 1},   cell};
+    return TangentLength{found}(0);
   };
   const float root = std::sqrt(0.5F);
   EXPECT_FLOAT_EQ(length({0.5F, 0.5F, 0.5F}, {1, 0, 0}, {0, 1, 0}), 1);

@@ -21,7 +21,7 @@ class SurfaceDistances : public testing::Test {
   SurfaceDistances() {
     Options options;
     options.depth = 6;
-    detail::DevicePoints points = detail::upload(ex_, test::sphere_cloud(20'000, 1));
+    detail::PointBuffers points = detail::upload(ex_, test::sphere_cloud(20'000, 1));
     RunReport report;
     field_ = detail::fit_field(ex_, points, {}, options, report);
     cell_ = field_.frame.size / 64;

@@ -29,7 +29,7 @@ std::vector<Vec3f> test_queries() {
 
 TEST(Octree, EveryPointLiesInTheCellThatListsIt) {
   const std::vector<Vec3f> points = test_points();
-  const Octree tree = Octree::build(points, {{.depth = 6}}, Device::cpu());
+  const Octree tree = Octree::build(points, {.depth = 6}, Device::cpu());
   const OctreeLevel level = tree.level(6);
   const std::vector<std::int32_t> order = tree.point_order();
   const double width = tree.cube_size() / 64;
@@ -48,7 +48,7 @@ TEST(Octree, EveryPointLiesInTheCellThatListsIt) {
 }
 
 TEST(Octree, CellsThatShareACornerEdgeOrFaceNameTheSameOwner) {
-  const Octree tree = Octree::build(test_points(), {{.depth = 5}}, Device::cpu());
+  const Octree tree = Octree::build(test_points(), {.depth = 5}, Device::cpu());
   const OctreeLevel level = tree.level(5);
   std::map<std::array<std::int32_t, 3>, std::int32_t> corners;
   std::map<std::tuple<std::array<std::int32_t, 3>, int>, std::int32_t> edges;
@@ -77,14 +77,14 @@ TEST(Octree, CellsThatShareACornerEdgeOrFaceNameTheSameOwner) {
 
 TEST(Octree, LocatesTheLeafThatHoldsThePoint) {
   const std::vector<Vec3f> points = test_points();
-  const Octree tree = Octree::build(points, {{.depth = 7}}, Device::cpu());
+  const Octree tree = Octree::build(points, {.depth = 7}, Device::cpu());
   for (const OctreeLeaf& leaf : tree.locate(points))
     EXPECT_EQ(leaf.depth, 7);  // occupied cells are on the finest level
 }
 
 TEST(Octree, FindsTheSameNearestPointsAsBruteForce) {
   const std::vector<Vec3f> points = test_points();
-  const Octree tree = Octree::build(points, {{.depth = 8}}, Device::cpu());
+  const Octree tree = Octree::build(points, {.depth = 8}, Device::cpu());
   const std::vector<Vec3f> queries = test_queries();
   constexpr int kNeighbours = 12;
   const OctreeNeighbours found = tree.nearest(queries, kNeighbours);
@@ -103,15 +103,15 @@ TEST(Octree, FindsTheSameNearestPointsAsBruteForce) {
 }
 
 TEST(Octree, ReturnsAllPointsWhenFewerThanKExist) {
-  const Octree tree = Octree::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{.depth = 3}}, Device::cpu());
-  const OctreeNeighbours found = tree.nearest({{0.9F, 0.1F, 0}}, 10);
+  const Octree tree = Octree::build(std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {.depth = 3}, Device::cpu());
+  const OctreeNeighbours found = tree.nearest(std::vector<Vec3f>{{0.9F, 0.1F, 0}}, 10);
   ASSERT_EQ(found.points.size(), 3U);
   EXPECT_EQ(found.points[0], 1);
 }
 
 TEST(Octree, FindsTheSamePointsWithinARadiusAsBruteForce) {
   const std::vector<Vec3f> points = test_points();
-  const Octree tree = Octree::build(points, {{.depth = 8}}, Device::cpu());
+  const Octree tree = Octree::build(points, {.depth = 8}, Device::cpu());
   const std::vector<Vec3f> queries = test_queries();
   constexpr float kRadius = 0.15F;
   const OctreeNeighbours found = tree.within(queries, kRadius);
@@ -136,9 +136,12 @@ TEST(Octree, RefusesWhatMakesNoSense) {
     return ErrorCode::internal;
   };
   EXPECT_EQ(code([] { Octree::build({}, {}, Device::cpu()); }), ErrorCode::empty_result);
-  EXPECT_EQ(code([] { Octree::build({{1, 1, 1}, {1, 1, 1}}, {}, Device::cpu()); }), ErrorCode::empty_result);
-  EXPECT_EQ(code([] { Octree::build(test_points(), {{.depth = 21}}, Device::cpu()); }), ErrorCode::usage);
-  const Octree tree = Octree::build(test_points(), {{.depth = 3}}, Device::cpu());
+  EXPECT_EQ(code([] {
+              Octree::build(std::vector<Vec3f>{{1, 1, 1}, {1, 1, 1}}, {}, Device::cpu());
+            }),
+            ErrorCode::empty_result);
+  EXPECT_EQ(code([] { Octree::build(test_points(), {.depth = 21}, Device::cpu()); }), ErrorCode::usage);
+  const Octree tree = Octree::build(test_points(), {.depth = 3}, Device::cpu());
   EXPECT_EQ(code([&] { static_cast<void>(tree.nearest({}, 0)); }), ErrorCode::usage);
   EXPECT_EQ(code([&] { static_cast<void>(tree.within({}, -1)); }), ErrorCode::usage);
   EXPECT_EQ(code([&] { static_cast<void>(tree.level(4)); }), ErrorCode::usage);

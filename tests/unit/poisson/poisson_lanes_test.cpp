@@ -9,9 +9,9 @@
 
 #include "core/float8.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "poisson/divergence_impl.hpp"
+#include "poisson/divergence_of_bricks.hpp"
 #include "poisson/operator.hpp"
-#include "poisson/solve_impl.hpp"
+#include "poisson/relax_bricks.hpp"
 #include "poisson/splat_kernel.hpp"
 #include "unit/poisson/small_tree.hpp"
 
@@ -99,11 +99,11 @@ TEST(RelaxBricks, HasTheBitsOfOneCornerAfterAnother) {
   for_random_levels(
       [](const poisson::LevelSystem& system, const std::vector<float>& u, const std::vector<float>& before) {
         for (const float momentum : {0.0F, 0.3F}) {
-          const poisson::solve::ChebyshevStep chebyshev{momentum, 1.2F};
+          const poisson::ChebyshevStep chebyshev{momentum, 1.2F};
           std::vector<float> plain = before;
           std::vector<float> wide = before;
           const auto relax = [&](std::vector<float>& next) {
-            return poisson::solve::RelaxBricks{system, chebyshev, u.data(), next.data()};
+            return poisson::RelaxBricks{system, chebyshev, u.data(), next.data()};
           };
           exec::run_range_plain(relax(plain), 0, system.level.bricks);
           if (exec::has_wide_vectors()) exec::run_range_wide(relax(wide), 0, system.level.bricks);
@@ -125,7 +125,6 @@ TEST(RelaxBricks, HasTheBitsOfOneCornerAfterAnother) {
 }
 
 TEST(DivergenceOfBricks, HasTheSameBitsInLanes) {
-  namespace divergence = poisson::divergence;
   for (const int depth : {0, 1, 3, 6}) {
     test::Random random(29);
     test::SmallTree tree(test::clustered_points(random, 30, 3, 0.05, 0, 0.9999999), {}, depth);
@@ -141,18 +140,18 @@ TEST(DivergenceOfBricks, HasTheSameBitsInLanes) {
       for (std::uint8_t& c : finer_counts) c = random.below(2) == 0 ? 0 : 1;
       const auto axis = [&](std::size_t a) { return ArrayView<float>{v.data() + a * nodes, level.nodes()}; };
       const auto into = [&](std::vector<float>& b, bool all_count) {
-        return divergence::Divergence{level,
-                                      d == depth ? 0 : tree.view.levels[d + 1].cell_bricks,
-                                      {{axis(0), axis(1), axis(2)}},
-                                      divergence::make_coefficients(),
-                                      {b.data(), level.nodes()},
-                                      all_count ? nullptr : counts.data(),
-                                      all_count || d == depth ? nullptr : finer_counts.data()};
+        return poisson::Divergence{level,
+                                   d == depth ? 0 : tree.view.levels[d + 1].cell_bricks,
+                                   {{axis(0), axis(1), axis(2)}},
+                                   poisson::make_coefficients(),
+                                   {b.data(), level.nodes()},
+                                   all_count ? nullptr : counts.data(),
+                                   all_count || d == depth ? nullptr : finer_counts.data()};
       };
       for (const bool all_count : {true, false}) {
         std::vector<float> plain(nodes, 1), wide(nodes, 2);
-        exec::run_range_plain(divergence::DivergenceOfBricks{into(plain, all_count)}, 0, level.bricks);
-        exec::run_range(divergence::DivergenceOfBricks{into(wide, all_count)}, 0, level.bricks);
+        exec::run_range_plain(poisson::DivergenceOfBricks{into(plain, all_count)}, 0, level.bricks);
+        exec::run_range(poisson::DivergenceOfBricks{into(wide, all_count)}, 0, level.bricks);
         for (std::size_t n = 0; n < nodes; ++n) ASSERT_EQ(bits_of(wide[n]), bits_of(plain[n])) << "node " << n;
       }
     }

@@ -128,7 +128,7 @@ double energy_error(const octree::LevelView& level, const test::ReferenceSystem&
 }
 
 // Chebyshev polynomials on [lower, 1] stay below 1 on (0, lower) as well: no component of the error may grow. From 29
-// iterations on the interval stays the same (solve_impl.hpp) and more iterations must come closer.
+// iterations on the interval stays the same (solve.cpp) and more iterations must come closer.
 TEST(Solve, ErrorNeverGrowsAndFallsWithManyIterations) {
   Problem problem(5);
   const octree::LevelView& level = problem.tree.view.finest();

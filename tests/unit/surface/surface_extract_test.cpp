@@ -162,8 +162,8 @@ TEST(SphereExtract, ShrinksWithARisingIsovalue) {
 TEST(SphereExtract, LeavesOutNormalsWhenTheyAreNotWanted) {
   SmallTree tree = adaptive_tree(2, 6);
   const auto values = test::continuous_values(tree.view, sphere_distance(0.3));
-  const Mesh with = test::extracted(tree, values, 0, true, {{}, {.normals = true}});
-  const Mesh without = test::extracted(tree, values, 0, true, {{}, {.normals = false}});
+  const Mesh with = test::extracted(tree, values, 0, true, {.normals = true});
+  const Mesh without = test::extracted(tree, values, 0, true, {.normals = false});
   EXPECT_EQ(with.normals.size(), with.vertices.size());
   EXPECT_TRUE(without.normals.empty());
   EXPECT_EQ(with.triangles, without.triangles);

@@ -1,0 +1,16 @@
+// A few of many things.
+#pragma once
+
+#include <cstdint>
+
+#include "core/host_device.hpp"
+
+namespace pointskin::diagnose {
+
+/// `some` of `all` things, evenly spread: the i-th of them.
+struct Spread {
+  std::int64_t some = 0, all = 0;
+  PSK_HD std::int64_t operator()(std::int64_t i) const { return i * all / some; }
+};
+
+}  // namespace pointskin::diagnose

@@ -11,6 +11,7 @@ import pathlib
 import re
 import sys
 
+sys.dont_write_bytecode = True  # the folder of the sources stays as it is
 from repository import CONSTANT, Repository, value_of
 
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/decisions/*.md")

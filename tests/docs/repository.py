@@ -82,8 +82,8 @@ class Repository:
 
 
 def expanded(path):
-    """`path` without braces: a{b,c} is ab and ac; <placeholders> and `...` stand for anything."""
-    path = re.sub(r"<[^>]*>|\.\.\.|NNNN|NAME", "*", path)
+    """`path` without braces: a{b,c} is ab and ac; placeholders (<step>, NAME, NNNN, X.cpp, `...`) stand for anything."""
+    path = re.sub(r"<[^>]*>|\.\.\.|NNNN|NAME|\bX(?=[._])", "*", path)
     match = re.search(r"\{([^{}]*,[^{}]*)\}", path)
     if not match:
         return [path]

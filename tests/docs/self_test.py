@@ -12,7 +12,8 @@ See [the steps](docs/steps.md#how-it-works), [0001](docs/decisions/0001-one.md) 
     build/bin/pointskin fit scan.ply --trim auto  # and --this is a comment
     pointskin fit a.ply --peer 'Other --in {in}'
 
-`src/octree/*.hpp`, `octree/{build,keys}.hpp`, `keys.hpp`, `<pointskin/fit.hpp>`, `/dev/null`, `frames/frame_{}.vtk`, `.ply`, `_bytes`, `input_`
+`src/octree/*.hpp`, `octree/{build,keys}.hpp`, `keys.hpp`, `X.hpp`, `src/<room>/<step>.hpp`, `<pointskin/fit.hpp>`,
+`/dev/null`, `frames/frame_{}.vtk`, `.ply`, `_bytes`, `input_`
 """,
     "CHANGELOG.md": "## [Unreleased]\n\n- `--trim`\n\n## [0.1.0]\n\n- `--option-of-old`, `GoneType`\n",
     "docs/steps.md": """# Steps
@@ -28,7 +29,8 @@ See [the steps](docs/steps.md#how-it-works), [0001](docs/decisions/0001-one.md) 
     "CMakeLists.txt": "add_executable(pointskin)\nset(POINTSKIN_TEST_DATA)\n",
     "apps/cli/cmd_fit.cpp": 'add_command(program, "fit", "-o --trim --peer auto folder ply double dam");  // see octree/build.hpp\n',
     "include/pointskin/fit.hpp": "void fit(int max_bytes, int input_x);\n",
-    "src/octree/build.hpp": "struct Octree { void build(); }; struct Build;\nint kFaces = 2; double kHalf = 0.5; int kSweeps = 2;\n// Ghost\n",
+    "src/octree/build.hpp":
+        "struct Octree { void build(); }; struct Build;\nint kFaces = 2; double kHalf = 0.5; int kSweeps = 2;\n// Ghost\n",
     "src/octree/keys.hpp": "struct Keys;\n",
 }
 # What is added to a file, and a part of the one line that is expected.

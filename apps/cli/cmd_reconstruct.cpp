@@ -16,6 +16,7 @@
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "reconstruct_args.hpp"
+#include "resident_runs.hpp"
 #include "report.hpp"
 #include "run_memory.hpp"
 #include "signals.hpp"
@@ -153,8 +154,8 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& m
   if (args.repeat > 0) {
     options.residuals = false;  // They cost time and are not part of the job.
     options.progress = [](const Progress&) { return !interrupted(); };
-    for (const RunTimes& run_times : reconstructor.repeat(cloud, options, args.repeat))
-      record.repeat_ms.push_back(run_times.total_ms);
+    for (const ResidentRun& resident : run_resident(reconstructor, cloud, options, args.repeat))
+      record.repeat_ms.push_back(resident.total_ms);
   }
   return mesh;
 }

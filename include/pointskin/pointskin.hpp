@@ -8,6 +8,7 @@
 #include <pointskin/components.hpp>
 #include <pointskin/deform.hpp>
 #include <pointskin/device.hpp>
+#include <pointskin/device_data.hpp>
 #include <pointskin/edit.hpp>
 #include <pointskin/error.hpp>
 #include <pointskin/field.hpp>
@@ -21,3 +22,4 @@
 #include <pointskin/render.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/vertex_normals.hpp>
+#include <pointskin/workspace.hpp>

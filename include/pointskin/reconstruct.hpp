@@ -10,11 +10,13 @@
 
 #include <pointskin/cloud.hpp>
 #include <pointskin/device.hpp>
+#include <pointskin/device_data.hpp>
 #include <pointskin/field.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/normals.hpp>
 #include <pointskin/progress.hpp>
 #include <pointskin/warning.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin {
 
@@ -207,25 +209,18 @@ struct RunReport {
   std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
 };
 
-/// One of several runs on resident data, in milliseconds on the device's clock.
-struct RunTimes {
-  double octree_ms = 0, splat_ms = 0, solve_ms = 0, extract_ms = 0;
-  double total_ms = 0;         ///< points on the device to mesh on the device
-  std::int64_t vertices = 0;   ///< of the mesh
-  std::int64_t triangles = 0;  ///< of the mesh
-};
-
-/// Owns a device's stream and memory pool, and is reused run after run. Not safe for two threads at once;
-/// several reconstructors may live side by side.
+/// Fits fields to points and makes meshes of them, run after run, in a workspace. Not safe for two threads at once;
+/// several reconstructors may live side by side, each with a workspace of its own or, on one thread, with a shared one.
 class Reconstructor {
  public:
+  /// @param workspace  a Device will do where nothing is to be shared
   /// @throws Error device_unavailable if the device does not answer, usage for a negative number of threads
-  explicit Reconstructor(Device device = Device::automatic());
+  explicit Reconstructor(Workspace workspace = {});
   ~Reconstructor();
   Reconstructor(Reconstructor&&) noexcept;
   Reconstructor& operator=(Reconstructor&&) noexcept;
 
-  /// Points to mesh: solve() and Field::extract() in one.
+  /// Points to mesh: solve() and Field::extract() in one, which keeps less in memory than the two.
   /// @throws Error as solve() and Field::extract()
   Mesh reconstruct(const Cloud& cloud, const Options& options = {});
 
@@ -233,25 +228,35 @@ class Reconstructor {
   /// @throws Error as above; the mesh is then valid but unspecified
   void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh);
 
-  /// Fits the implicit function (Options::field; by default screened Poisson, Kazhdan & Hoppe 2013) on the octree of
-  /// Zhou et al. 2010.
-  /// Strays are left out and reported unless Options::keep_strays: they would take the cube's resolution from the rest.
-  /// The Field shares this reconstructor's device resources and may outlive it.
+  /// The same from points in the memory of the workspace's device to a mesh there: neither is copied. DevicePoints and
+  /// DeviceMesh say who owns what and until when. Where normals are to be repaired or estimated the points go to the
+  /// host and back. The same bytes as from the host.
+  DeviceMesh reconstruct(const DevicePoints& points, const Options& options = {});
+
+  /// Fits the implicit function (SolveOptions::field; by default screened Poisson, Kazhdan & Hoppe 2013) on the octree
+  /// of Zhou et al. 2010.
+  /// Strays are left out and reported unless SolveOptions::keep_strays: they would take the cube's resolution from the
+  /// rest.
+  /// The Field shares this reconstructor's workspace and may outlive it. It keeps what any ExtractOptions need: beyond
+  /// what reconstruct() takes, 24 bytes a point, the sample counts of its octree, and the attributes of the points.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.
   /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),
   ///         invalid_input (points that are not finite, an attribute of another length, an envelope that is not
   ///         watertight), empty_result (no points, all at one place or outside of the envelope; an offset that leaves
-  ///         nothing), over_limit (memory or 32-bit indices), interrupted (Options::progress returned false)
-  Field solve(const Cloud& cloud, const Options& options = {});
+  ///         nothing), over_limit (memory or 32-bit indices), interrupted (RunOptions::progress returned false)
+  Field solve(const Cloud& cloud, const SolveOptions& options = {}, const RunOptions& run = {});
 
-  /// Runs the in-memory job `times` times on points resident on the device, the mesh staying there too.
-  /// report() stays as it was.
-  /// @returns the times of each run
-  std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times);
+  /// The same from points in the memory of the workspace's device, which are not needed any more when it returns.
+  Field solve(const DevicePoints& points, const SolveOptions& options = {}, const RunOptions& run = {});
+
+  /// All of a run's options would be half unused here: what is extracted is said to Field::extract().
+  Field solve(const Cloud& cloud, const Options& options) = delete;
+  Field solve(const DevicePoints& points, const Options& options) = delete;
 
   /// Report of the last run.
   [[nodiscard]] const RunReport& report() const;
 
+  [[nodiscard]] const Workspace& workspace() const;
   [[nodiscard]] const Device& device() const;
 
  private:
@@ -259,12 +264,12 @@ class Reconstructor {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Estimate of the memory that solve() and Field::extract() take on their device, in bytes:
+/// Estimate of the memory that Reconstructor::reconstruct() takes on its device, in bytes:
 /// RunReport::device_peak_bytes within 15 %, from the bricks that the octree of these points would have on every level.
 /// With Options::offset it is an upper bound for common shapes, 1.2 to 3 times what is taken.
 /// With PointNormals::automatic it is that of a run whose normals are kept or turned: to doubt and repair them takes
-/// more, and is left undone where Options::max_memory_bytes does not allow it. What repeat() keeps beyond that, 24
-/// bytes a point and its attributes, and the host's own copy of the cloud are not in it.
+/// more, and is left undone where Options::max_memory_bytes does not allow it. What a Field of solve() keeps beyond that
+/// (see there) and the host's own copy of the cloud are not in it.
 /// @param threads  CPU threads that count, 0: all
 /// @throws Error usage (an option out of range), over_limit (a level beyond 32-bit node ids)
 /// Takes less memory than it predicts and a fraction of the run's time. O(n log n + nodes log nodes).

@@ -9,6 +9,7 @@
 #include <pointskin/device.hpp>
 
 #include "exec/cpu.hpp"
+#include "exec/memory.hpp"
 #ifdef POINTSKIN_HAS_CUDA
 #include "exec/cuda.hpp"
 #endif
@@ -22,6 +23,8 @@ class AnySpace {
   /// @throws Error device_unavailable if it does not answer, or the library was built without it; usage for a negative
   ///         number of threads
   explicit AnySpace(const Device& device);
+  /// On a stream of somebody else's. @throws Error usage unless `device` has streams
+  AnySpace(const Device& device, void* stream);
 
   [[nodiscard]] const std::shared_ptr<MemoryPool>& pool() const {
     return std::visit(
@@ -52,3 +55,13 @@ decltype(auto) visit(const AnySpace& space, F&& f) {
 }
 
 }  // namespace pointskin::exec
+
+namespace pointskin::detail {
+
+/// What a Workspace stands for.
+struct WorkspaceData {
+  Device device;
+  exec::AnySpace space;
+};
+
+}  // namespace pointskin::detail

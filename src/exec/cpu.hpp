@@ -35,6 +35,9 @@ class Cpu {
   /// An exception of one call is rethrown here after the others have stopped. Must not be nested.
   void run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block);
 
+  /// There is none.
+  [[nodiscard]] void* stream() const noexcept { return nullptr; }
+
   /// Does nothing: CPU work is done when its call returns.
   void synchronize() {}
 

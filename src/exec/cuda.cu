@@ -17,7 +17,7 @@ namespace {
 /// kernel. Work on the one stream is ordered, so a block may be handed out while its last user is still running.
 class CudaPool final : public MemoryPool {
  public:
-  CudaPool(int index, cudaStream_t stream) : stream_(stream) {
+  CudaPool(int index, cudaStream_t stream, bool owns_stream) : stream_(stream), owns_stream_(owns_stream) {
     cudaMemPoolProps properties{};
     properties.allocType = cudaMemAllocationTypePinned;
     properties.location.type = cudaMemLocationTypeDevice;
@@ -30,7 +30,7 @@ class CudaPool final : public MemoryPool {
   ~CudaPool() override {
     CudaPool::trim();
     cudaMemPoolDestroy(pool_);
-    cudaStreamDestroy(stream_);
+    if (owns_stream_) cudaStreamDestroy(stream_);
   }
   CudaPool(const CudaPool&) = delete;
   CudaPool& operator=(const CudaPool&) = delete;
@@ -89,22 +89,38 @@ class CudaPool final : public MemoryPool {
 
   std::unordered_map<std::size_t, std::vector<void*>> kept_;
   cudaStream_t stream_;
+  bool owns_stream_;
   cudaMemPool_t pool_ = nullptr;
 };
 
 }  // namespace
 
-Cuda::Cuda(int index) : index_(index) {
+namespace {
+
+void choose(int index) {
   if (index < 0 || index >= cuda_device_count())
     throw Error(ErrorCode::device_unavailable,
                 "no GPU number " + std::to_string(index) + " answers; check nvidia-smi or choose --device cpu");
   cuda_check(cudaSetDevice(index), "choosing the GPU");
+}
+
+cudaStream_t make_stream(int index) {
+  choose(index);
   cudaStream_t stream = nullptr;
   cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "creating a stream");
-  stream_ = stream;
+  return stream;
+}
+
+}  // namespace
+
+Cuda::Cuda(int index) : Cuda(index, make_stream(index), true) {}
+Cuda::Cuda(int index, void* stream) : Cuda(index, stream, false) {}
+
+Cuda::Cuda(int index, void* stream, bool owns_stream) : index_(index), stream_(stream) {
+  choose(index);
   cuda_check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, index),
              "reading the GPU's properties");
-  pool_ = std::make_shared<CudaPool>(index, stream);  // owns the stream: buffers may outlive this object
+  pool_ = std::make_shared<CudaPool>(index, static_cast<cudaStream_t>(stream), owns_stream);  // owns the stream: buffers may outlive this object
   cuda_check(cudaMallocHost(&staging_, kStagingBytes), "allocating page-locked memory");
   for (void*& mark : marks_) {
     cudaEvent_t event = nullptr;

@@ -15,6 +15,8 @@ class Cuda {
  public:
   /// @throws Error device_unavailable if there is no GPU of this index or it does not answer
   explicit Cuda(int index);
+  /// The same on a stream of somebody else's, who keeps it: a cudaStream_t of this GPU.
+  Cuda(int index, void* stream);
   ~Cuda();
   Cuda(const Cuda&) = delete;
   Cuda& operator=(const Cuda&) = delete;
@@ -53,6 +55,8 @@ class Cuda {
   static constexpr std::int64_t kStagingBytes = 4096;
 
  private:
+  Cuda(int index, void* stream, bool owns_stream);
+
   int index_;
   int multiprocessors_ = 0;
   void* stream_ = nullptr;

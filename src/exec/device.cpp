@@ -1,11 +1,13 @@
 #include <pointskin/device.hpp>
 #include <pointskin/error.hpp>
+#include <pointskin/workspace.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <charconv>
 #include <fstream>
+#include <memory>
 
 #include "exec/any_space.hpp"
 
@@ -91,15 +93,44 @@ std::int64_t Device::available_bytes() const {
 namespace exec {
 
 AnySpace::AnySpace(const Device& device) {
-#ifdef POINTSKIN_HAS_CUDA
-  if (device.kind == DeviceKind::cuda) {
-    space_ = std::make_shared<Cuda>(device.index);
+  if (device.kind == DeviceKind::cpu) {
+    space_ = std::make_shared<Cpu>(device.threads);
     return;
   }
+#ifdef POINTSKIN_HAS_CUDA
+  space_ = std::make_shared<Cuda>(device.index);
+#else
+  (void)Device::cuda(device.index);  // throws: says why there is none
 #endif
-  if (device.kind == DeviceKind::cuda) (void)Device::cuda(device.index);  // throws: why there is none
-  space_ = std::make_shared<Cpu>(device.threads);
+}
+
+AnySpace::AnySpace(const Device& device, [[maybe_unused]] void* stream) {
+  if (device.kind == DeviceKind::cpu) throw Error(ErrorCode::usage, "the CPU has no streams; choose a GPU");
+#ifdef POINTSKIN_HAS_CUDA
+  space_ = std::make_shared<Cuda>(device.index, stream);
+#else
+  (void)Device::cuda(device.index);  // throws: says why there is none
+#endif
 }
 
 }  // namespace exec
+
+Workspace::Workspace(const Device& device)
+    : data_(std::make_shared<detail::WorkspaceData>(detail::WorkspaceData{device, exec::AnySpace(device)})) {}
+Workspace::Workspace(const Device& device, void* cuda_stream)
+    : data_(std::make_shared<detail::WorkspaceData>(
+          detail::WorkspaceData{device, exec::AnySpace(device, cuda_stream)})) {}
+
+const Device& Workspace::device() const { return data_->device; }
+void* Workspace::stream() const {
+  return exec::visit(data_->space, [](auto& ex) { return ex.stream(); });
+}
+void Workspace::synchronize() const {
+  exec::visit(data_->space, [](auto& ex) { ex.synchronize(); });
+}
+void Workspace::release_memory() const {
+  exec::visit(data_->space, [](auto& ex) { ex.pool()->trim(); });
+}
+std::int64_t Workspace::held_bytes() const { return data_->space.pool()->held_bytes(); }
+
 }  // namespace pointskin

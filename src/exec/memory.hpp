@@ -45,13 +45,21 @@ class MemoryPool {
   std::int64_t limit_ = 0;
 };
 
-/// An owned array of trivially copyable T, uninitialised, in the space of its pool. Move-only. Keeps its pool alive.
+/// An array of trivially copyable T, uninitialised, in the space of its pool, which it keeps alive; or one of somebody
+/// else's. Move-only.
 template <class T>
 class Buffer {
  public:
   Buffer() = default;
   Buffer(std::shared_ptr<MemoryPool> pool, std::int64_t size) : pool_(std::move(pool)), size_(size) {
     if (size_ > 0) data_ = static_cast<T*>(pool_->allocate(bytes()));
+  }
+  /// Memory of somebody else, who keeps it: not freed here.
+  static Buffer borrowed(T* data, std::int64_t size) noexcept {
+    Buffer buffer;
+    buffer.data_ = data;
+    buffer.size_ = size;
+    return buffer;
   }
   Buffer(Buffer&& other) noexcept { swap(other); }
   Buffer& operator=(Buffer&& other) noexcept {
@@ -61,7 +69,7 @@ class Buffer {
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
   ~Buffer() {
-    if (data_ != nullptr) pool_->deallocate(data_, bytes());
+    if (pool_ != nullptr && data_ != nullptr) pool_->deallocate(data_, bytes());
   }
 
   [[nodiscard]] T* data() const noexcept { return data_; }

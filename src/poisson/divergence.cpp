@@ -144,7 +144,7 @@ exec::Buffer<float> divergence_of_field(Exec& ex, const octree::OctreeView& tree
   const auto find = [&](int depth, const FieldLevel& field, const exec::Buffer<float>& b) {
     const octree::LevelView& level = tree.levels[depth];
     const octree::LevelView* below = depth < tree.depth ? &tree.levels[depth + 1] : nullptr;
-    find_divergence(ex, {level, below != nullptr ? below->cell_bricks : 0, field.view(), make_coefficients(),
+    find_divergence(ex, Divergence{level, below != nullptr ? below->cell_bricks : 0, field.view(), make_coefficients(),
                          b.view().part(level.first_node, level.nodes()), resolution.counts(level),
                          below != nullptr ? resolution.counts(*below) : nullptr});
   };

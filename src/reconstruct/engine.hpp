@@ -1,73 +1,93 @@
-// What a Reconstructor and a Field delegate to: the pipeline on one space, behind an interface that names no backend.
+// What a Reconstructor and a Field delegate to: the steps of a run, in whatever space it works.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include <pointskin/device_data.hpp>
 #include <pointskin/field.hpp>
 #include <pointskin/reconstruct.hpp>
+#include <pointskin/workspace.hpp>
 
 #include "diagnose/counts.hpp"
+#include "reconstruct/fit_field.hpp"
+#include "reconstruct/input.hpp"
+#include "reconstruct/measure_detail.hpp"
+#include "reconstruct/mesh_of_field.hpp"
 
 namespace pointskin::detail {
 
-/// A solved field with the resources of its space.
+/// A solved field and where it is.
 class FieldImpl {
  public:
-  virtual ~FieldImpl() = default;
-  [[nodiscard]] virtual double isovalue() const = 0;
-  [[nodiscard]] virtual double cube_size_world() const = 0;
-  [[nodiscard]] virtual Vec3d cube_lower_world() const = 0;
-  [[nodiscard]] virtual std::vector<float> values(const std::vector<Vec3d>& points_world) const = 0;
+  /// @param options  of the solve; of a field that is to be extracted once, of that, too
+  /// @param origin   of the cloud: what places in `data` are relative to
+  FieldImpl(Workspace workspace, FieldData data, Options options, const Vec3d& origin);
+
+  [[nodiscard]] double isovalue() const { return data_.isovalue; }
+  [[nodiscard]] double cube_size_world() const { return data_.frame.size; }
+  [[nodiscard]] Vec3d cube_lower_world() const;
+  [[nodiscard]] const Workspace& workspace() const { return workspace_; }
+
+  [[nodiscard]] std::vector<float> values(std::span<const Vec3d> points_world) const;
+
   /// @param mesh  receives the mesh; its memory is used again
-  virtual void extract(Mesh& mesh) const = 0;
-  /// The same, for the last time: all else is freed before the mesh is copied.
+  void extract(const ExtractOptions& options, Mesh& mesh) const;
+  [[nodiscard]] DeviceMesh extract_on_device(const ExtractOptions& options) const;
+
+  /// The mesh that the field was solved for, for the last time: all else is freed before the mesh is copied.
   /// @param report  receives extract_ms, download_ms and the peak memory
-  virtual void extract_and_release(Mesh& mesh, RunReport& report) = 0;
+  void extract_and_release(Mesh& mesh, RunReport& report);
+  /// The same, where the field is.
+  DeviceMesh extract_and_release(RunReport& report);
+
   /// What was counted of the samples and the field and, after extract_and_release, of the surface.
-  [[nodiscard]] virtual const diagnose::Counts& seen() const = 0;
+  [[nodiscard]] const diagnose::Counts& seen() const { return data_.seen; }
+
+ private:
+  [[nodiscard]] Options with(const ExtractOptions& options) const;
+
+  Workspace workspace_;
+  FieldData data_;
+  Options options_;
+  Vec3d origin_;
 };
 
-/// How much detail points hold, in world units.
-struct Detail {
-  double cube = 0;     ///< side of the working cube
-  double spacing = 0;  ///< between samples of the surface, median: the side of the square that holds one
-  double noise = 0;    ///< standard deviation of samples across the surface (diagnose/sheets.hpp)
-};
-
-/// The points of a run.
-struct Input {
-  const Cloud& cloud;
-  bool turned = false;  ///< all normals the other way round
-};
-
-/// The pipeline on one space.
+/// The steps of a run.
 class Engine {
  public:
-  virtual ~Engine() = default;
+  explicit Engine(Workspace workspace) : workspace_(std::move(workspace)) {}
+
+  [[nodiscard]] const Workspace& workspace() const { return workspace_; }
   /// What all arrays may take together from now on, in bytes; 0: no limit. Fields of the engine are held to it, too.
-  virtual void limit_memory(std::int64_t bytes) = 0;
+  void limit_memory(std::int64_t bytes) const;
   /// Gives memory that is kept for the next run back to the system.
-  virtual void release_memory() = 0;
-  virtual std::shared_ptr<FieldImpl> solve(const Input& input, const Options& options, RunReport& report) = 0;
+  void release_memory() const { workspace_.release_memory(); }
+  /// @param keep_all  FitSetup::keep_all
+  [[nodiscard]] std::shared_ptr<FieldImpl> solve(const Input& input, const Options& options, bool keep_all,
+                                                 RunReport& report) const;
   /// Up to `count` of the points that a run uses, evenly spread over their Morton order, with their normals.
-  virtual Cloud thin(const Cloud& cloud, const Options& options, std::int64_t count) = 0;
-  /// @throws Error as measure_detail (reconstruct/detail.hpp)
-  virtual Detail measure_detail(const Cloud& cloud, const Options& options) = 0;
-  virtual std::vector<RunTimes> repeat(const Input& input, const Options& options, int times) = 0;
+  [[nodiscard]] Cloud thin(const Input& input, const Options& options, std::int64_t count) const;
+  /// @throws Error as measure_detail
+  [[nodiscard]] Detail measure_detail(const Input& input, const Options& options) const;
+  /// The points on the host.
+  [[nodiscard]] Cloud copy(const Input& input) const;
+
+ private:
+  Workspace workspace_;
 };
 
-/// @throws Error device_unavailable if the device does not answer
-std::unique_ptr<Engine> make_engine(const Device& device);
+/// Arrays of a mesh as what a caller holds.
+DeviceMesh handle_of(const Workspace& workspace, MeshBuffers mesh, const Vec3d& origin);
+
+/// estimate_device_bytes, of points wherever they are.
+std::int64_t bytes_of_run(const Engine& engine, const Input& input, const Options& options);
 
 /// validate(), for what does not choose a depth or a trim by itself.
 /// @throws Error usage
 void validate_settled(const Options& options);
-
-std::unique_ptr<Engine> make_cpu_engine(int threads);
-
-/// @throws Error device_unavailable without a GPU; in builds without CUDA always
-std::unique_ptr<Engine> make_cuda_engine(int index);
 
 }  // namespace pointskin::detail

@@ -12,6 +12,7 @@
 #include "octree/bounding_box.hpp"
 #include "octree/frame.hpp"
 #include "reconstruct/fit_field.hpp"
+#include "reconstruct/mesh_of_field.hpp"
 #include "reconstruct/phase_clock.hpp"
 
 namespace pointskin::detail {

@@ -11,7 +11,6 @@
 #include "exec/host_array.hpp"
 #include "exec/this_space.hpp"
 #include "octree/octree_data.hpp"
-#include "reconstruct/kept_names.hpp"
 #include "reconstruct/point_hash.hpp"
 
 namespace pointskin::detail {
@@ -24,10 +23,11 @@ struct ToWorld {
 };
 
 struct Turn {
-  ArrayView<Vec3f> normals;
+  ArrayView<const Vec3f> normals;
+  ArrayView<Vec3f> turned;
   PSK_HD void operator()(std::int64_t i) const {
     const Vec3f n = normals[i];
-    normals[i] = {-n.x, -n.y, -n.z};
+    turned[i] = {-n.x, -n.y, -n.z};
   }
 };
 
@@ -103,48 +103,105 @@ void require_normals(const Flaws& flaws) {
     throw Error(ErrorCode::no_normals, "all normals have zero length; a surface needs oriented points");
 }
 
-}  // namespace
-
-namespace {
-
-void require_points(const Cloud& cloud) {
-  if (cloud.positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
-  if (cloud.size() > std::numeric_limits<std::int32_t>::max())
+void require_points(const Input& input) {
+  if (input.size() == 0) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
+  if (input.size() > std::numeric_limits<std::int32_t>::max())
     throw Error(ErrorCode::over_limit, "the cloud has more than 2^31 - 1 points; thin it or split it");
+}
+
+template <exec::Space Exec>
+exec::Buffer<Vec3f> copied(Exec& ex, const std::vector<Vec3f>& from) {
+  auto to = exec::make_buffer<Vec3f>(ex, static_cast<std::int64_t>(from.size()));
+  copy_to_device(ex, from.data(), to.view());
+  return to;
+}
+
+/// Positions and, if they have them, normals, as they came.
+template <exec::Space Exec>
+PointBuffers taken(Exec& ex, const Input& input) {
+  PointBuffers points;
+  if (const DevicePoints* const given = input.points()) {
+    points.positions = borrowed(given->positions);
+    if (input.has_normals()) points.normals = borrowed(given->normals);
+  } else {
+    points.positions = copied(ex, input.cloud()->positions);
+    if (input.has_normals()) points.normals = copied(ex, input.cloud()->normals);
+  }
+  return points;
+}
+
+/// All normals the other way round, in memory of their own.
+template <exec::Space Exec>
+exec::Buffer<Vec3f> turned(Exec& ex, const exec::Buffer<Vec3f>& normals) {
+  auto out = exec::make_buffer<Vec3f>(ex, normals.size());
+  for_each(ex, "upload.turn", normals.size(), Turn{normals.cview(), out.view()});
+  return out;
+}
+
+void require_length(const std::string& name, std::int64_t length, std::int64_t points) {
+  if (length != points)
+    throw Error(ErrorCode::invalid_input, "the attribute " + name + " has " + std::to_string(length) + " values for " +
+                                              std::to_string(points) + " points");
 }
 
 }  // namespace
 
 template <exec::Space Exec>
-PointBuffers upload_some(Exec& ex, const Cloud& cloud) {
-  require_points(cloud);
-  PointBuffers points{exec::make_buffer<Vec3f>(ex, cloud.size()), {}, {}};
-  copy_to_device(ex, cloud.positions.data(), points.positions.view());
-  if (cloud.has_normals()) {
-    points.normals = exec::make_buffer<Vec3f>(ex, cloud.size());
-    copy_to_device(ex, cloud.normals.data(), points.normals.view());
-  }
+PointBuffers upload_some(Exec& ex, const Input& input) {
+  require_points(input);
+  PointBuffers points = taken(ex, input);
   require_finite(find_flaws(ex, points));
   return points;
 }
 
 template <exec::Space Exec>
-PointBuffers upload(Exec& ex, const Cloud& cloud) {
-  require_points(cloud);
-  if (!cloud.has_normals())
+PointBuffers upload(Exec& ex, const Input& input) {
+  require_points(input);
+  if (!input.has_normals())
     throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
-  PointBuffers points{exec::make_buffer<Vec3f>(ex, cloud.size()), exec::make_buffer<Vec3f>(ex, cloud.size()), {}};
-  copy_to_device(ex, cloud.positions.data(), points.positions.view());
-  copy_to_device(ex, cloud.normals.data(), points.normals.view());
+  PointBuffers points = taken(ex, input);
   const Flaws flaws = find_flaws(ex, points);
   require_finite(flaws);
   require_normals(flaws);
+  if (input.turned()) points.normals = turned(ex, points.normals);
   return points;
 }
 
 template <exec::Space Exec>
-void turn_normals(Exec& ex, ArrayView<Vec3f> normals) {
-  for_each(ex, "upload.turn", normals.size, Turn{normals});
+std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Input& input) {
+  std::vector<AttributeBuffer> attributes;
+  if (const DevicePoints* const given = input.points()) {
+    for (const DeviceAttribute& from : given->attributes)
+      attributes.push_back({from.name, borrowed(from, input.size())});
+    return attributes;
+  }
+  for (const Attribute& from : input.cloud()->attributes) {
+    require_length(from.name, static_cast<std::int64_t>(from.values.size()), input.size());
+    attributes.push_back({from.name, exec::upload_typed(ex, from.values)});
+  }
+  return attributes;
+}
+
+template <exec::Space Exec>
+PointBuffers copy_points(Exec& ex, const Cloud& cloud) {
+  PointBuffers points = taken(ex, cloud);
+  points.attributes = upload_attributes(ex, cloud);
+  return points;
+}
+
+template <exec::Space Exec>
+Cloud download_points(Exec& ex, const DevicePoints& points) {
+  Cloud cloud;
+  cloud.origin = points.origin;
+  const auto fetch = [&](const DeviceSpan<const Vec3f>& from, std::vector<Vec3f>& to) {
+    to.resize(static_cast<std::size_t>(from.size));
+    copy_to_host(ex, ArrayView<const Vec3f>{from.data, from.size}, to.data());
+  };
+  fetch(points.positions, cloud.positions);
+  fetch(points.normals, cloud.normals);
+  for (const DeviceAttribute& from : points.attributes)
+    cloud.attributes.push_back({from.name, exec::download_typed(ex, borrowed(from, points.positions.size))});
+  return cloud;
 }
 
 template <exec::Space Exec>
@@ -152,22 +209,6 @@ void leave_out(Exec& ex, const octree::StrayPoints& strays, PointBuffers& points
   if (strays.indices.empty()) return;
   points.used = octree::without_strays(ex, points.positions.size(), strays);
   if (!points.normals.empty()) require_normals(find_flaws(ex, points));
-}
-
-template <exec::Space Exec>
-std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options) {
-  std::vector<AttributeBuffer> attributes;
-  if (!options.attributes) return attributes;
-  const std::vector<std::string> names = kept_names(cloud.attributes, options.density, options.weakness);
-  for (std::size_t a = 0; a < names.size(); ++a) {
-    const Attribute& from = cloud.attributes[a];
-    const auto n = static_cast<std::int64_t>(from.values.size());
-    if (n != cloud.size())
-      throw Error(ErrorCode::invalid_input, "the attribute " + from.name + " has " + std::to_string(n) +
-                                                " values for " + std::to_string(cloud.size()) + " points");
-    attributes.push_back({names[a], exec::upload_typed(ex, from.values)});
-  }
-  return attributes;
 }
 
 template <exec::Space Exec>
@@ -203,9 +244,13 @@ SortedSamples sort_into_cube(Exec& ex, const PointBuffers& points, const octree:
 }
 
 template <exec::Space Exec>
-void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh) {
-  const ArrayView<Vec3f> positions = surface.positions.view();
+void to_world(Exec& ex, const octree::Frame& frame, ArrayView<Vec3f> positions) {
   for_each(ex, "download.world", positions.size, ToWorld{frame, positions});
+}
+
+template <exec::Space Exec>
+void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, const Vec3d& origin, Mesh& mesh) {
+  to_world(ex, frame, surface.positions.view());
   mesh.origin = origin;
   mesh.attributes.clear();
   download_array(ex, surface.positions, mesh.vertices);
@@ -215,10 +260,12 @@ void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, co
 
 PSK_INSTANTIATE(upload_some);
 PSK_INSTANTIATE(upload);
-PSK_INSTANTIATE(turn_normals);
 PSK_INSTANTIATE(upload_attributes);
 PSK_INSTANTIATE(leave_out);
 PSK_INSTANTIATE(sort_into_cube);
+PSK_INSTANTIATE(to_world);
 PSK_INSTANTIATE(download);
+PSK_INSTANTIATE(copy_points);
+PSK_INSTANTIATE(download_points);
 
 }  // namespace pointskin::detail

@@ -21,6 +21,7 @@
 #include "octree/frame.hpp"
 #include "octree/strays.hpp"
 #include "poisson/samples.hpp"
+#include "reconstruct/input.hpp"
 #include "surface/extract.hpp"
 
 namespace pointskin::detail {
@@ -35,8 +36,8 @@ struct AttributeBuffer {
 
 /// A cloud in a space, in the caller's order and coordinates.
 struct PointBuffers {
-  exec::Buffer<Vec3f> positions, normals;
-  std::vector<AttributeBuffer> attributes{};  ///< those that the mesh is to keep
+  exec::Buffer<Vec3f> positions, normals;  ///< of the run, or borrowed: then never written
+  std::vector<AttributeBuffer> attributes{};  ///< those that a mesh is to keep
   exec::Buffer<std::uint8_t>
       added{};  ///< (n) edit/point_kind.hpp; only original points have a say in the isovalue; empty: all are original
   exec::Buffer<std::int32_t> used{};  ///< indices of the points to use, ascending; empty: all of them
@@ -44,26 +45,45 @@ struct PointBuffers {
   [[nodiscard]] std::int64_t used_count() const { return used.empty() ? positions.size() : used.size(); }
 };
 
-/// Copies a cloud to the space, whose normals may be missing or zero.
+/// Memory of the caller's, which is not written.
+template <class T>
+exec::Buffer<T> borrowed(const DeviceSpan<const T>& from) {
+  return exec::Buffer<T>::borrowed(const_cast<T*>(from.data), from.size);
+}
+
+inline exec::TypedBuffer borrowed(const DeviceAttribute& from, std::int64_t n) {
+  const auto* const bytes = static_cast<const std::uint8_t*>(from.data);
+  exec::TypedBuffer to{from.type, n, borrowed<std::uint8_t>({bytes, n * static_cast<std::int64_t>(size_of(from.type))}),
+                       {}};
+  if (from.missing != nullptr) to.missing = borrowed<std::uint8_t>({from.missing, n});
+  return to;
+}
+
+/// Brings points to the space, whose normals may be missing or zero; without attributes.
 /// @throws Error empty_result without points, invalid_input if some are not finite, over_limit beyond 2^31 - 1
 template <exec::Space Exec>
-PointBuffers upload_some(Exec& ex, const Cloud& cloud);
+PointBuffers upload_some(Exec& ex, const Input& input);
 
-/// Copies a cloud to the space.
+/// Brings points to the space, without attributes. Arrays that are there already are borrowed.
 /// @throws Error no_normals if there are none or all have zero length, empty_result without points, invalid_input if
 /// some
 ///         are not finite, over_limit beyond 2^31 - 1
 template <exec::Space Exec>
-PointBuffers upload(Exec& ex, const Cloud& cloud);
+PointBuffers upload(Exec& ex, const Input& input);
 
-/// Turns all normals the other way round.
+/// Brings the attributes to the space.
+/// @throws Error invalid_input if an attribute has another length than the points
 template <exec::Space Exec>
-void turn_normals(Exec& ex, ArrayView<Vec3f> normals);
+std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Input& input);
 
-/// Copies the attributes that the mesh is to keep, under the names that they have there (kept_names).
-/// @throws Error invalid_input if an attribute has another length than the cloud
+/// Copies a cloud to the space as it is.
+/// @throws Error invalid_input for an attribute of another length, over_limit
 template <exec::Space Exec>
-std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Cloud& cloud, const Options& options);
+PointBuffers copy_points(Exec& ex, const Cloud& cloud);
+
+/// Copies points that are in the space to the host.
+template <exec::Space Exec>
+Cloud download_points(Exec& ex, const DevicePoints& points);
 
 /// Leaves strays out of the points to use. O(n), and nothing if there are none.
 /// @throws Error no_normals if there are normals, and those of all others have zero length
@@ -82,6 +102,10 @@ struct SortedSamples {
 /// attributes.
 template <exec::Space Exec>
 SortedSamples sort_into_cube(Exec& ex, const PointBuffers& points, const octree::Frame& frame);
+
+/// Moves points of the unit cube to where they are in the world, relative to the cloud's origin.
+template <exec::Space Exec>
+void to_world(Exec& ex, const octree::Frame& frame, ArrayView<Vec3f> positions);
 
 /// Copies a surface to the host, into world coordinates relative to `origin` and the memory that `mesh` has. Every
 /// array is freed as soon as it is copied.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -26,7 +27,10 @@ void check_combinations(const Options& options) {
   exclude(distance && options.envelope != nullptr, "option envelope needs the field poisson");
   exclude(distance && options.boundary == Boundary::dirichlet, "option boundary must be free with the field distance");
   exclude(distance && options.weakness, "option weakness needs the field poisson");
+  exclude(options.envelope != nullptr && options.isovalue.value_or(1) <= 0,
+          "inside an envelope the isovalue must be above 0: the field is 0 outside of it");
   if (options.offset == 0) return;
+  exclude(options.isovalue.has_value(), "options offset and isovalue exclude each other");
   exclude(options.weakness, "options offset and weakness exclude each other: there are no samples on the surface");
   exclude(options.trim != 0, "options offset and trim exclude each other");
   exclude(options.density, "options offset and density exclude each other: there are no samples on the surface");
@@ -39,43 +43,44 @@ void check_combinations(const Options& options) {
 
 class Reconstructor::Impl {
  public:
-  explicit Impl(Device device) : device_(device), engine_(detail::make_engine(device)) {}
+  explicit Impl(Workspace workspace) : engine_(std::move(workspace)) {}
 
+  std::shared_ptr<detail::FieldImpl> solve(const detail::Input& input, const Options& options) {
+    const Options settled = begin(input, options);
+    return detail::Run(engine_, settled, report_).solve(input, true);
+  }
+
+  void reconstruct(const detail::Input& input, const Options& options, Mesh& mesh) {
+    const Options settled = begin(input, options);
+    detail::Run run(engine_, settled, report_);
+    run.extract(run.solve(input, false), mesh);
+  }
+
+  DeviceMesh reconstruct(const detail::Input& input, const Options& options) {
+    const Options settled = begin(input, options);
+    detail::Run run(engine_, settled, report_);
+    return run.extract(run.solve(input, false));
+  }
+
+  [[nodiscard]] const RunReport& report() const { return report_; }
+  [[nodiscard]] const Workspace& workspace() const { return engine_.workspace(); }
+
+ private:
   /// Checks the options, chooses the depth if it is to be chosen, and begins a report.
-  Options begin(const Cloud& cloud, const Options& options) {
+  Options begin(const detail::Input& input, const Options& options) {
     validate(options);
     report_ = {};
-    engine_->limit_memory(options.max_memory_bytes);
+    engine_.limit_memory(options.max_memory_bytes);
     Options settled = options;
     if (options.depth == Options::kAutomaticDepth)
-      settled.depth = detail::suggest_depth(*engine_, device_, cloud, options).depth;
-    check_memory(cloud, settled);
+      settled.depth = detail::suggest_depth(engine_, input, options).depth;
+    check_memory(input, settled);
     return settled;
   }
 
-  std::shared_ptr<detail::FieldImpl> solve(const Cloud& cloud, const Options& options) {
-    const Options settled = begin(cloud, options);
-    return detail::Run(*engine_, device_, settled, report_).solve(cloud);
-  }
-
-  void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh) {
-    const Options settled = begin(cloud, options);
-    detail::Run run(*engine_, device_, settled, report_);
-    run.extract(run.solve(cloud), mesh);
-  }
-
-  std::vector<RunTimes> repeat(const Cloud& cloud, const Options& options, int times) {
-    const RunReport before = std::move(report_);
-    const Options settled = begin(cloud, options);
-    RunReport unused;
-    std::vector<RunTimes> runs = detail::Run(*engine_, device_, settled, unused).repeat(cloud, times);
-    report_ = before;
-    return runs;
-  }
-
-  void check_memory(const Cloud& cloud, const Options& options) const {
+  void check_memory(const detail::Input& input, const Options& options) const {
     if (options.max_memory_bytes == 0) return;
-    const std::int64_t needed = estimate_device_bytes(cloud, options, device_.threads);
+    const std::int64_t needed = detail::bytes_of_run(engine_, input, options);
     if (needed > options.max_memory_bytes)
       throw Error(
           ErrorCode::over_limit,
@@ -83,47 +88,53 @@ class Reconstructor::Impl {
                       needed / 1'000'000, options.max_memory_bytes / 1'000'000));
   }
 
-  Device device_;
-  std::unique_ptr<detail::Engine> engine_;
+  detail::Engine engine_;
   RunReport report_;
 };
 
-Reconstructor::Reconstructor(Device device) : impl_(std::make_unique<Impl>(device)) {}
+Reconstructor::Reconstructor(Workspace workspace) : impl_(std::make_unique<Impl>(std::move(workspace))) {}
 Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
 Reconstructor& Reconstructor::operator=(Reconstructor&&) noexcept = default;
-
-Field Reconstructor::solve(const Cloud& cloud, const Options& options) { return Field(impl_->solve(cloud, options)); }
 
 Mesh Reconstructor::reconstruct(const Cloud& cloud, const Options& options) {
   Mesh mesh;
   reconstruct(cloud, options, mesh);
   return mesh;
 }
-
 void Reconstructor::reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh) {
   impl_->reconstruct(cloud, options, mesh);
 }
-
-std::vector<RunTimes> Reconstructor::repeat(const Cloud& cloud, const Options& options, int times) {
-  require(times > 0, "repeat", "at least 1");
-  return impl_->repeat(cloud, options, times);
+DeviceMesh Reconstructor::reconstruct(const DevicePoints& points, const Options& options) {
+  return impl_->reconstruct(points, options);
 }
 
-const RunReport& Reconstructor::report() const { return impl_->report_; }
-const Device& Reconstructor::device() const { return impl_->device_; }
+Field Reconstructor::solve(const Cloud& cloud, const SolveOptions& options, const RunOptions& run) {
+  return Field(impl_->solve(cloud, Options(options, {}, run)));
+}
+Field Reconstructor::solve(const DevicePoints& points, const SolveOptions& options, const RunOptions& run) {
+  return Field(impl_->solve(points, Options(options, {}, run)));
+}
+
+const RunReport& Reconstructor::report() const { return impl_->report(); }
+const Workspace& Reconstructor::workspace() const { return impl_->workspace(); }
+const Device& Reconstructor::device() const { return workspace().device(); }
 
 Field::Field(std::shared_ptr<detail::FieldImpl> impl) : impl_(std::move(impl)) {}
 double Field::isovalue() const { return impl_->isovalue(); }
 double Field::cube_size_world() const { return impl_->cube_size_world(); }
 Vec3d Field::cube_lower_world() const { return impl_->cube_lower_world(); }
-std::vector<float> Field::values(const std::vector<Vec3d>& points_world) const { return impl_->values(points_world); }
+const Workspace& Field::workspace() const { return impl_->workspace(); }
+std::vector<float> Field::values(std::span<const Vec3d> points_world) const { return impl_->values(points_world); }
 
-Mesh Field::extract() const {
+Mesh Field::extract(const ExtractOptions& options) const {
   Mesh mesh;
-  impl_->extract(mesh);
+  extract(options, mesh);
   return mesh;
 }
+Mesh Field::extract() const { return extract(ExtractOptions()); }
+void Field::extract(const ExtractOptions& options, Mesh& mesh) const { impl_->extract(options, mesh); }
+DeviceMesh Field::extract_on_device(const ExtractOptions& options) const { return impl_->extract_on_device(options); }
 
 void validate(const Options& options) {
   require(options.depth == Options::kAutomaticDepth || (options.depth >= 1 && options.depth <= 20), "depth",
@@ -140,6 +151,7 @@ void validate(const Options& options) {
               (options.min_component < 1 || options.min_component == std::floor(options.min_component)),
           "min-component", "a whole number of triangles, or a share in [0, 1)");
   require(std::isfinite(options.offset), "offset", "finite");
+  require(std::isfinite(options.isovalue.value_or(0)), "isovalue", "finite");
   require(options.max_memory_bytes >= 0, "max-memory", "at least 0");
   check_combinations(options);
 }

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/announce.hpp"
 #include "diagnose/warnings.hpp"
 
 namespace pointskin::detail {
 
 using diagnose::NormalsVerdict;
 
-Run::Run(Engine& engine, const Device& device, const Options& options, RunReport& report)
-    : engine_(engine), device_(device), options_(options), engine_options_(options), report_(report) {
+Run::Run(const Engine& engine, const Options& options, RunReport& report)
+    : engine_(engine), options_(options), engine_options_(options), report_(report) {
   if (options_.progress) engine_options_.progress = [this](const Progress& progress) { return tell(progress); };
 }
 
@@ -27,15 +28,14 @@ bool Run::tell(const Progress& progress) {
   return options_.progress({progress.phase, from_ + share * (until_ - from_)});
 }
 
-std::shared_ptr<FieldImpl> Run::fit(const Cloud& cloud, bool turned) {
+std::shared_ptr<FieldImpl> Run::fit(const Input& input) {
   // What an earlier fit of this run reported is overwritten; what was said of normals stays.
   RunReport report;
   report.warnings = std::move(report_.warnings);
   report.normals = std::move(report_.normals);
   report.normals_done = report_.normals_done;
   report_ = std::move(report);
-  turned_ = turned;
-  std::shared_ptr<FieldImpl> field = engine_.solve({cloud, turned}, engine_options_, report_);
+  std::shared_ptr<FieldImpl> field = engine_.solve(input, engine_options_, keep_all_, report_);
   side_ = field->cube_size_world();
   return field;
 }
@@ -45,23 +45,24 @@ NormalsVerdict Run::judge(const FieldImpl& field) const {
                                  options_.boundary == Boundary::free && options_.envelope == nullptr);
 }
 
-std::shared_ptr<FieldImpl> Run::solve(const Cloud& cloud) {
+std::shared_ptr<FieldImpl> Run::solve(const Input& input, bool keep_all) {
+  keep_all_ = keep_all;
   std::shared_ptr<FieldImpl> field;
   switch (options_.point_normals) {
     case PointNormals::given: {
-      field = fit(cloud, false);
+      field = fit(input);
       warn_of_normals(*field);
       break;
     }
     case PointNormals::automatic:
-      field = fit_judged(cloud);
+      field = fit_judged(input);
       break;
     case PointNormals::repair:
     case PointNormals::estimate: {
       until_ = 0.5;
-      own_ = cloud;
+      own_ = engine_.copy(input);
       const bool repairs = options_.point_normals == PointNormals::repair;
-      if (repairs && !cloud.has_normals())
+      if (repairs && !input.has_normals())
         throw Error(ErrorCode::no_normals, "there are no normals to repair; --normals estimate makes them");
       report_.normals = orient(own_, repairs ? NormalMethod::automatic : options_.normal_estimation.method);
       report_.normals_done = repairs ? NormalsDone::repaired : NormalsDone::estimated;
@@ -78,8 +79,8 @@ std::shared_ptr<FieldImpl> Run::solve(const Cloud& cloud) {
 }
 
 /// Turns a cloud that is inside out, unless it is known where it was seen from: of a room, from inside.
-std::shared_ptr<FieldImpl> Run::fit_outwards(const Cloud& cloud) {
-  std::shared_ptr<FieldImpl> field = fit(cloud, false);
+std::shared_ptr<FieldImpl> Run::fit_outwards(const Input& input) {
+  std::shared_ptr<FieldImpl> field = fit(input);
   if (judge(*field) != NormalsVerdict::inside_out) return field;
   if (report_.normals && report_.normals->method == NormalMethod::sensor) {
     warn_of_normals(*field);
@@ -87,28 +88,28 @@ std::shared_ptr<FieldImpl> Run::fit_outwards(const Cloud& cloud) {
   }
   field.reset();
   next_part(until_ + (0.8 - until_) / 2);
-  field = fit(cloud, true);
+  field = fit(input.with_normals(true));
   if (report_.normals_done == NormalsDone::kept) report_.normals_done = NormalsDone::turned;
   diagnose::warn_of_turning(report_.warnings);
   return field;
 }
 
-std::shared_ptr<FieldImpl> Run::fit_judged(const Cloud& cloud) {
+std::shared_ptr<FieldImpl> Run::fit_judged(const Input& input) {
   constexpr double kFirst = 0.6;  // more may have to follow
   constexpr double kParts = 0.05;
   until_ = kFirst;
-  std::shared_ptr<FieldImpl> field = fit(cloud, false);
+  std::shared_ptr<FieldImpl> field = fit(input);
   switch (judge(*field)) {
     case NormalsVerdict::inside_out:
       field.reset();
       next_part(0.8);
-      field = fit(cloud, true);
+      field = fit(input.with_normals(true));
       report_.normals_done = NormalsDone::turned;
       diagnose::warn_of_turning(report_.warnings);
       return field;
     case NormalsVerdict::suspicious: {
-      const std::optional<double> parts = flipped_parts(cloud);
-      if (parts && *parts >= kParts) return fit_repaired(cloud, std::move(field));
+      const std::optional<double> parts = flipped_parts(input);
+      if (parts && *parts >= kParts) return fit_repaired(input, std::move(field));
       if (parts)
         diagnose::warn_of_parts(*parts, report_.warnings);
       else
@@ -116,7 +117,7 @@ std::shared_ptr<FieldImpl> Run::fit_judged(const Cloud& cloud) {
       return field;
     }
     case NormalsVerdict::wrong:
-      return fit_repaired(cloud, std::move(field));
+      return fit_repaired(input, std::move(field));
     case NormalsVerdict::consistent:
       break;
   }
@@ -132,9 +133,9 @@ void Run::warn_of_normals(const FieldImpl& field) {
 
 /// The share of points whose normals are flipped: a few thousand of them tell, in a fraction of the time that all take.
 /// @returns nothing if a limit leaves no memory for it
-std::optional<double> Run::flipped_parts(const Cloud& cloud) try {
+std::optional<double> Run::flipped_parts(const Input& input) try {
   constexpr std::int64_t kFew = 16384;
-  Cloud few = engine_.thin(cloud, engine_options_, kFew);
+  Cloud few = engine_.thin(input, engine_options_, kFew);
   const NormalReport report = orient(few, NormalMethod::automatic);
   return static_cast<double>(report.flipped) / std::max(1.0, static_cast<double>(report.given));
 } catch (const Error& error) {
@@ -142,21 +143,25 @@ std::optional<double> Run::flipped_parts(const Cloud& cloud) try {
   return std::nullopt;
 }
 
-bool Run::may_take_normals(const Cloud& cloud) const {
+bool Run::may_take_normals(const Input& input) const {
   if (options_.max_memory_bytes == 0) return true;
-  const std::int64_t own = cloud.size() * static_cast<std::int64_t>(2 * sizeof(Vec3f));  // a copy, to be changed
-  return estimate_normals_device_bytes(cloud, device_.threads) + own <= options_.max_memory_bytes;
+  const std::int64_t own = input.size() * static_cast<std::int64_t>(2 * sizeof(Vec3f));  // a copy, to be changed
+  const int threads = engine_.workspace().device().threads;
+  const std::int64_t needed = input.cloud() != nullptr
+                                  ? estimate_normals_device_bytes(*input.cloud(), threads)
+                                  : estimate_normals_device_bytes(engine_.copy(input), threads);
+  return needed + own <= options_.max_memory_bytes;
 }
 
 /// @param field  of the normals as they came; stays if these cannot be repaired
-std::shared_ptr<FieldImpl> Run::fit_repaired(const Cloud& cloud, std::shared_ptr<FieldImpl> field) {
-  if (!may_take_normals(cloud)) {
+std::shared_ptr<FieldImpl> Run::fit_repaired(const Input& input, std::shared_ptr<FieldImpl> field) {
+  if (!may_take_normals(input)) {
     warn_of_normals(*field);
     return field;
   }
   field.reset();
   next_part(0.7);
-  own_ = cloud;
+  own_ = engine_.copy(input);
   report_.normals = orient(own_, NormalMethod::automatic);
   report_.normals_done = NormalsDone::repaired;
   diagnose::warn_of_repair(*report_.normals, report_.warnings);
@@ -174,27 +179,37 @@ NormalReport Run::orient(Cloud& cloud, NormalMethod method) {
       return options_.progress({progress.phase, from_ + progress.fraction * (until_ - from_)});
     };
   engine_.release_memory();
-  NormalEstimator estimator(device_);  // its memory is gone before the solve
+  NormalEstimator estimator(engine_.workspace().device());  // its memory is gone before the solve
   estimator.orient(cloud, options);
   return estimator.report();
 }
 
-void Run::extract(std::shared_ptr<FieldImpl> field, Mesh& mesh) {
+void Run::begin_extraction() {
   own_ = Cloud();
-  if (options_.progress && !options_.progress({"extract", 0.8}))
-    throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
-  const bool is_solid_around = judge(*field) == NormalsVerdict::inside_out;
-  field->extract_and_release(mesh, report_);
-  if (report_.normals)
-    report_.device_peak_bytes = std::max(report_.device_peak_bytes, report_.normals->device_peak_bytes);
-  if (is_solid_around) return;  // which has been said
-  diagnose::warn_of_surface(diagnose::findings_of(field->seen()), {side_, report_.depth}, options_, report_.warnings);
+  announce(options_.progress, "extract", 0.8);
 }
 
-std::vector<RunTimes> Run::repeat(const Cloud& cloud, int times) {
-  solve(cloud);
-  engine_options_.progress = options_.progress;
-  return engine_.repeat({own_.positions.empty() ? cloud : own_, turned_}, engine_options_, times);
+/// @param is_solid_around  which has been said
+void Run::end_extraction(const FieldImpl& field, bool is_solid_around) {
+  if (report_.normals)
+    report_.device_peak_bytes = std::max(report_.device_peak_bytes, report_.normals->device_peak_bytes);
+  if (is_solid_around) return;
+  diagnose::warn_of_surface(diagnose::findings_of(field.seen()), {side_, report_.depth}, options_, report_.warnings);
+}
+
+void Run::extract(std::shared_ptr<FieldImpl> field, Mesh& mesh) {
+  begin_extraction();
+  const bool is_solid_around = judge(*field) == NormalsVerdict::inside_out;
+  field->extract_and_release(mesh, report_);
+  end_extraction(*field, is_solid_around);
+}
+
+DeviceMesh Run::extract(std::shared_ptr<FieldImpl> field) {
+  begin_extraction();
+  const bool is_solid_around = judge(*field) == NormalsVerdict::inside_out;
+  DeviceMesh mesh = field->extract_and_release(report_);
+  end_extraction(*field, is_solid_around);
+  return mesh;
 }
 
 }  // namespace pointskin::detail

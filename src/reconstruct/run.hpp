@@ -17,42 +17,43 @@ class Run {
  public:
   /// @param options  with a depth that is settled
   /// @param report   of the run; empty but for what was said before
-  Run(Engine& engine, const Device& device, const Options& options, RunReport& report);
+  Run(const Engine& engine, const Options& options, RunReport& report);
 
+  /// @param keep_all  FitSetup::keep_all: for a Field, that is extracted later
   /// @throws Error as Reconstructor::solve
-  std::shared_ptr<FieldImpl> solve(const Cloud& cloud);
+  std::shared_ptr<FieldImpl> solve(const Input& input, bool keep_all);
 
   /// The mesh of that field, which is gone then.
   /// @throws Error as Field::extract
   void extract(std::shared_ptr<FieldImpl> field, Mesh& mesh);
-
-  /// A solve, and then runs of the whole in-memory job, with the normals that it had in the end.
-  std::vector<RunTimes> repeat(const Cloud& cloud, int times);
+  /// The same, where the field is.
+  DeviceMesh extract(std::shared_ptr<FieldImpl> field);
 
  private:
   /// The part of the whole run that comes next. Options::progress sees no fraction twice.
   void next_part(double until);
   bool tell(const Progress& progress);
 
-  std::shared_ptr<FieldImpl> fit(const Cloud& cloud, bool turned);
-  std::shared_ptr<FieldImpl> fit_outwards(const Cloud& cloud);
-  std::shared_ptr<FieldImpl> fit_judged(const Cloud& cloud);
-  std::shared_ptr<FieldImpl> fit_repaired(const Cloud& cloud, std::shared_ptr<FieldImpl> field);
+  std::shared_ptr<FieldImpl> fit(const Input& input);
+  std::shared_ptr<FieldImpl> fit_outwards(const Input& input);
+  std::shared_ptr<FieldImpl> fit_judged(const Input& input);
+  std::shared_ptr<FieldImpl> fit_repaired(const Input& input, std::shared_ptr<FieldImpl> field);
+  void begin_extraction();
+  void end_extraction(const FieldImpl& field, bool is_solid_around);
   void warn_of_normals(const FieldImpl& field);
   NormalReport orient(Cloud& cloud, NormalMethod method);
-  [[nodiscard]] std::optional<double> flipped_parts(const Cloud& cloud);
-  [[nodiscard]] bool may_take_normals(const Cloud& cloud) const;
+  [[nodiscard]] std::optional<double> flipped_parts(const Input& input);
+  [[nodiscard]] bool may_take_normals(const Input& input) const;
   [[nodiscard]] diagnose::NormalsVerdict judge(const FieldImpl& field) const;
 
-  Engine& engine_;
-  Device device_;
+  const Engine& engine_;
   const Options& options_;  // the caller's
   Options engine_options_;  // these, with a progress of the part that runs
   RunReport& report_;
   double from_ = 0, until_ = 0.8;
   double side_ = 0;  // of the working cube
   Cloud own_;        // with normals that are not the caller's; or empty
-  bool turned_ = false;
+  bool keep_all_ = false;
 };
 
 }  // namespace pointskin::detail

@@ -5,9 +5,10 @@
 namespace pointskin {
 namespace detail {
 
-DepthSuggestion suggest_depth(Engine& engine, const Device& device, const Cloud& cloud, const Options& options) {
+DepthSuggestion suggest_depth(const Engine& engine, const Input& input, const Options& options) {
+  const Device& device = engine.workspace().device();
   engine.limit_memory(options.max_memory_bytes);
-  const Detail detail = engine.measure_detail(cloud, options);
+  const Detail detail = engine.measure_detail(input, options);
   DepthSuggestion suggestion;
   suggestion.spacing = detail.spacing;
   suggestion.noise = detail.noise;
@@ -18,8 +19,8 @@ DepthSuggestion suggest_depth(Engine& engine, const Device& device, const Cloud&
   for (; suggestion.depth > 1; --suggestion.depth) {
     tried.depth = suggestion.depth;
     // The estimate from the points themselves sorts them: only where that from their number is not clearly enough.
-    if (estimate_device_bytes(cloud.size(), tried) <= memory / 2) break;
-    if (estimate_device_bytes(cloud, tried, device.threads) <= memory) break;
+    if (estimate_device_bytes(input.size(), tried) <= memory / 2) break;
+    if (bytes_of_run(engine, input, tried) <= memory) break;
   }
   return suggestion;
 }
@@ -30,7 +31,7 @@ DepthSuggestion suggest_depth(const Cloud& cloud, const Options& options, Device
   Options any = options;
   any.depth = Options::kAutomaticDepth;
   validate(any);
-  return detail::suggest_depth(*detail::make_engine(device), device, cloud, options);
+  return detail::suggest_depth(detail::Engine(device), cloud, options);
 }
 
 }  // namespace pointskin

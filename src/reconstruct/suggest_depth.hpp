@@ -7,7 +7,7 @@
 
 namespace pointskin::detail {
 
-/// pointskin::suggest_depth on an engine of `device`.
-DepthSuggestion suggest_depth(Engine& engine, const Device& device, const Cloud& cloud, const Options& options);
+/// pointskin::suggest_depth on an engine.
+DepthSuggestion suggest_depth(const Engine& engine, const Input& input, const Options& options);
 
 }  // namespace pointskin::detail

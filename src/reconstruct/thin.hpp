@@ -1,48 +1,20 @@
-// A few of the points of a cloud, once for every space.
+// A few of the points of a cloud.
 #pragma once
 
-#include <pointskin/cloud.hpp>
-
-#include <algorithm>
 #include <cstdint>
 
-#include "exec/algorithms.hpp"
-#include "octree/frame.hpp"
-#include "reconstruct/fit_cube.hpp"
-#include "reconstruct/points.hpp"
+#include <pointskin/cloud.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include "exec/space.hpp"
+#include "reconstruct/input.hpp"
 
 namespace pointskin::detail {
-namespace thin {
-
-struct Pick {
-  octree::Frame frame;
-  ArrayView<const Vec3f> positions, normals;
-  ArrayView<Vec3f> picked_positions, picked_normals;
-  PSK_HD void operator()(std::int64_t i) const {
-    const std::int64_t from = i * positions.size / picked_positions.size;
-    picked_positions[i] = frame.to_world(positions[from]);
-    picked_normals[i] = normals[from];
-  }
-};
-
-}  // namespace thin
 
 /// Up to `count` of the points that a run with these options uses, evenly spread over their Morton order, with their
 /// normals, relative to the cloud's origin. Does not depend on the order of the points.
+/// @throws Error as upload and frame_around
 template <exec::Space Exec>
-Cloud thin_cloud(Exec& ex, PointBuffers points, const Options& options, std::int64_t count) {
-  RunReport unused;
-  const octree::Frame frame = fit_cube(ex, points, options, unused);
-  const poisson::Samples samples = sort_into_cube(ex, points, frame).samples;
-  const std::int64_t n = std::min(count, samples.positions.size());
-  auto positions = exec::make_buffer<Vec3f>(ex, n);
-  auto normals = exec::make_buffer<Vec3f>(ex, n);
-  for_each(ex, "thin", n,
-           thin::Pick{frame, samples.positions.cview(), samples.normals.cview(), positions.view(), normals.view()});
-  Cloud few;
-  download_array(ex, positions, few.positions);
-  download_array(ex, normals, few.normals);
-  return few;
-}
+Cloud thin_cloud(Exec& ex, const Input& input, const Options& options, std::int64_t count);
 
 }  // namespace pointskin::detail

@@ -19,12 +19,11 @@ namespace pointskin::detail {
 inline constexpr float kTrimSpacing = 1.75F;
 
 /// Largest spacing of samples, in finest cells, that the surface keeps.
-/// @param samples  with normals of unit length
+/// @param normals  of the samples, of unit length
 template <exec::Space Exec>
 float trim_limit(Exec& ex, const octree::OctreeData& tree, const poisson::Density& density,
-                 const poisson::Samples& samples, double trim) {
-  return kTrimSpacing *
-         poisson::spacing_of_sparsest(ex, tree, density, samples.positions.cview(), samples.normals.cview(), trim);
+                 ArrayView<const Vec3f> positions, ArrayView<const Vec3f> normals, double trim) {
+  return kTrimSpacing * poisson::spacing_of_sparsest(ex, tree, density, positions, normals, trim);
 }
 
 /// Cuts `surface`, which must have normals, where the spacing of samples exceeds `limit_cells`.

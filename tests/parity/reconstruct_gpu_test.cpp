@@ -232,8 +232,9 @@ TEST_F(Gpu, GivesVerticesTheSameAttributesAsTheCpu) {
   }
   Reconstructor r(gpu_);
   const Mesh expected = r.reconstruct(cloud, {{.depth = 7}, {.attributes = true}});
-  EXPECT_EQ(r.repeat(cloud, {{.depth = 7}, {.attributes = true}}, 3).size(), 3U);
-  expect_same_bytes(r.solve(cloud, {{.depth = 7}, {.attributes = true}}).extract(), expected);
+  expect_same_bytes(r.solve(cloud, {.depth = 7}).extract({.attributes = true}), expected);
+  const UploadedCloud points = upload(r.workspace(), cloud);
+  expect_same_bytes(download(r.workspace(), r.reconstruct(points, {{.depth = 7}, {.attributes = true}})), expected);
   expect_same_bytes(r.reconstruct(test::shuffled(cloud, 24), {{.depth = 7}, {.attributes = true}}), expected);
 }
 
@@ -272,8 +273,9 @@ TEST_F(Gpu, LeavesOutTheStraysThatTheCpuLeavesOut) {
     EXPECT_EQ(on_gpu.report().points, clean.size());
     EXPECT_EQ(on_gpu.report().strays, std::ssize(strays.places));
     EXPECT_EQ(on_gpu.report().farthest_strays, on_cpu.report().farthest_strays);
-    for (const RunTimes& run : on_gpu.repeat(cloud, {{.depth = 6}}, 2))
-      EXPECT_EQ(run.triangles, std::ssize(on_gpu.reconstruct(clean, {{.depth = 6}}).triangles));
+    const UploadedCloud points = upload(on_gpu.workspace(), cloud);
+    expect_same_bytes(download(on_gpu.workspace(), on_gpu.reconstruct(points, {{.depth = 6}})),
+                      on_cpu.reconstruct(clean, {{.depth = 6}}));
   }
 }
 
@@ -293,11 +295,11 @@ TEST_F(Gpu, GivesTheSameBytesRunAfterRun) {
 TEST_F(Gpu, KeepsAFieldAliveAfterItsReconstructor) {
   const Cloud cloud = test::torus_cloud(20'000, 15);
   auto r = std::make_unique<Reconstructor>(gpu_);
-  const Field field = r->solve(cloud, {{.depth = 7}});
+  const Field field = r->solve(cloud, {.depth = 7});
   const Mesh expected = r->reconstruct(cloud, {{.depth = 7}});
   r.reset();
   expect_same_bytes(field.extract(), expected);
-  const Field on_cpu = Reconstructor(Device::cpu()).solve(cloud, {{.depth = 7}});
+  const Field on_cpu = Reconstructor(Device::cpu()).solve(cloud, {.depth = 7});
   std::vector<Vec3d> at;
   test::Random random(16);
   for (int i = 0; i < 1000; ++i) at.push_back({random.in(-2, 2), random.in(-2, 2), random.in(-1, 1)});
@@ -310,19 +312,21 @@ TEST_F(Gpu, RunsTwoReconstructorsSideBySide) {
   const Cloud torus = test::torus_cloud(20'000, 18);
   Reconstructor a(gpu_);
   Reconstructor b(gpu_);
-  const Field field_a = a.solve(sphere, {{.depth = 7}});
-  const Field field_b = b.solve(torus, {{.depth = 7}});
+  const Field field_a = a.solve(sphere, {.depth = 7});
+  const Field field_b = b.solve(torus, {.depth = 7});
   const Mesh mesh_a = field_a.extract();
   const Mesh mesh_b = field_b.extract();
   expect_same_bytes(a.reconstruct(torus, {{.depth = 7}}), mesh_b);
   expect_same_bytes(b.reconstruct(sphere, {{.depth = 7}}), mesh_a);
 }
 
-TEST_F(Gpu, RepeatsResidentRunsAndLeavesResultsAsTheyWere) {
+TEST_F(Gpu, GivesTheSameBytesFromResidentPointsAgainAndAgain) {
   Reconstructor r(gpu_);
   const Cloud cloud = test::sphere_cloud(20'000, 19);
   const Mesh before = r.reconstruct(cloud, {{.depth = 7}});
-  EXPECT_EQ(r.repeat(cloud, {{.depth = 7}}, 4).size(), 4U);
+  const UploadedCloud points = upload(r.workspace(), cloud);
+  for (int i = 0; i < 4; ++i)
+    expect_same_bytes(download(r.workspace(), r.reconstruct(points, {{.depth = 7}})), before);
   expect_same_bytes(r.reconstruct(cloud, {{.depth = 7}}), before);
 }
 

@@ -24,11 +24,10 @@ Options free_faces() { return {{.depth = 6}}; }
 Options dirichlet() { return {{.depth = 6, .boundary = Boundary::dirichlet}}; }
 
 /// Share of the cube's side between the mesh and the nearest face of the cube.
-double margin_of(const Cloud& cloud, Options options) {
-  options.domain_faces = DomainFaces::open;  // a mesh that reaches a face ends there
+double margin_of(const Cloud& cloud, const Options& options) {
   Reconstructor r(Device::cpu(2));
-  const Field field = r.solve(cloud, options);
-  const Mesh mesh = field.extract();
+  const Field field = r.solve(cloud, options, {});
+  const Mesh mesh = field.extract({.domain_faces = DomainFaces::open});  // what reaches a face ends there
   double margin = 1;
   for (const Vec3f& v : mesh.vertices) {
     const double p[3] = {v.x, v.y, v.z};

@@ -60,7 +60,7 @@ TEST(DistanceField, GivesOneClosedSurfaceForEveryShape) {
 TEST(DistanceField, OfASphereIsItsSignedDistanceInCells) {
   const Cloud cloud = test::sphere_cloud(100'000, 8);
   const Options options = distance_options(7);
-  const Field field = Reconstructor(Device::cpu(2)).solve(cloud, options);
+  const Field field = Reconstructor(Device::cpu(2)).solve(cloud, options, {});
   EXPECT_EQ(field.isovalue(), 0);
   const double cell = field.cube_size_world() / 128;
   test::expect_distance_to_unit_sphere(field, 1, 2 * cell, cell);

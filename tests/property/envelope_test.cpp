@@ -166,7 +166,7 @@ TEST(Envelope, GivesTheSameBytesForAnyThreadsAndOrder) {
   const Mesh mesh = run(c.cloud, options, 1).mesh;
   expect_same_bytes(run(c.cloud, options, 3).mesh, mesh);
   expect_same_bytes(run(test::shuffled(c.cloud, 10), options, 2).mesh, mesh);
-  const Field field = Reconstructor(Device::cpu(2)).solve(c.cloud, options);
+  const Field field = Reconstructor(Device::cpu(2)).solve(c.cloud, options, {});
   expect_same_bytes(field.extract(), mesh);
   expect_same_bytes(field.extract(), mesh);
 }
@@ -241,13 +241,12 @@ TEST(Envelope, FailsWhereAllPointsLieOutside) {
       ErrorCode::empty_result);
 }
 
-TEST(Envelope, RunsRepeatedly) {
+TEST(Envelope, HoldsPointsOnADevice) {
   const Case c = cases()[1];
   Reconstructor r(Device::cpu(2));
   const Options options{{.depth = 6, .envelope = shared(c.envelope)}};
-  const Mesh mesh = r.reconstruct(c.cloud, options);
-  for (const RunTimes& times : r.repeat(c.cloud, options, 2))
-    EXPECT_EQ(times.vertices, static_cast<std::int64_t>(mesh.vertices.size()));
+  const UploadedCloud points = upload(r.workspace(), c.cloud);
+  expect_same_bytes(download(r.workspace(), r.reconstruct(points, options)), r.reconstruct(c.cloud, options));
 }
 
 }  // namespace

@@ -226,7 +226,9 @@ TEST(MaxMemory, RefusesOneByteBelowTheEstimateAndRunsAtIt) {
   EXPECT_EQ(error_of([&] { (void)test::reconstructed(cloud, options); }), std::nullopt);
   --options.max_memory_bytes;
   EXPECT_EQ(error_of([&] { (void)test::reconstructed(cloud, options); }), ErrorCode::over_limit);
-  EXPECT_EQ(error_of([&] { (void)Reconstructor(Device::cpu(1)).repeat(cloud, options, 1); }), ErrorCode::over_limit);
+  Reconstructor r(Device::cpu(1));
+  const UploadedCloud points = upload(r.workspace(), cloud);
+  EXPECT_EQ(error_of([&] { (void)r.reconstruct(points, options); }), ErrorCode::over_limit);
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ TEST(Offset, JoinsSpheresThatMeet) {
 }
 
 TEST(Offset, IsAFieldOfDistances) {
-  const Field field = Reconstructor(Device::cpu(2)).solve(test::sphere_cloud(50'000, 6), offset_options(6, 0.25));
+  const Field field = Reconstructor(Device::cpu(2)).solve(test::sphere_cloud(50'000, 6), offset_options(6, 0.25), {});
   const double cell = field.cube_size_world() / 64;
   EXPECT_NEAR(field.isovalue(), -0.25 / cell, 1e-6);
   test::expect_distance_to_unit_sphere(field, 1.25, 1.5 * cell, cell);

@@ -70,7 +70,7 @@ TEST(Problems, WeaknessComesLastAndLeavesAllElseAsItIs) {
   Mesh with = reconstructed(cloud, options);
   ASSERT_EQ(with.attributes.size(), 2U);
   EXPECT_EQ(with.attributes[1].name, "weakness");
-  expect_same_bytes(with, Reconstructor(Device::cpu(3)).solve(test::shuffled(cloud, 4), options).extract());
+  expect_same_bytes(with, Reconstructor(Device::cpu(3)).solve(test::shuffled(cloud, 4), options, {}).extract(options));
   with.attributes.pop_back();
   options.weakness = false;
   expect_same_bytes(with, reconstructed(cloud, options));

@@ -82,7 +82,7 @@ TEST(Options, MoreScreeningComesCloserToTheSamples) {
   double last = 1e9;
   for (const double screening : {0.0, 2.0, 20.0}) {
     Reconstructor r(Device::cpu(2));
-    const Field field = r.solve(cloud, {{.depth = 6, .screening = screening, .iterations = 30}});
+    const Field field = r.solve(cloud, {.depth = 6, .screening = screening, .iterations = 30});
     std::vector<Vec3d> at;
     for (const Vec3f& p : cloud.positions) at.push_back({p.x, p.y, p.z});
     double sum = 0;
@@ -113,7 +113,7 @@ TEST(Options, APlaneIsCappedByAClosedCubeAndEndsAtTheFacesOfAnOpenOne) {
     const MeshReport report = measure(open);
     EXPECT_TRUE(report.manifold() && report.oriented()) << "depth " << depth;
     EXPECT_GT(report.boundary_edges, 0) << "depth " << depth;
-    const Field field = Reconstructor(Device::cpu(1)).solve(cloud, open_options);
+    const Field field = Reconstructor(Device::cpu(1)).solve(cloud, open_options, {});
     const Vec3d lower = field.cube_lower_world();
     const double size = field.cube_size_world();
     for (const auto& edge : boundary_edges(open)) {
@@ -173,7 +173,7 @@ TEST(Options, ScaleIsTheRatioOfTheCubeToTheBoundingCube) {
   cloud.normals.push_back({1, 0, 0});
   cloud.origin = {100, 200, -300};
   for (const double scale : {1.0, 1.1, 3.0}) {
-    const Field field = Reconstructor(Device::cpu(1)).solve(cloud, {{.depth = 4, .scale = scale}});
+    const Field field = Reconstructor(Device::cpu(1)).solve(cloud, {.depth = 4, .scale = scale});
     EXPECT_NEAR(field.cube_size_world(), 2 * scale, 1e-6);
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(field.cube_lower_world()[a], cloud.origin[a] - scale, 1e-5);
   }
@@ -238,23 +238,9 @@ TEST(Options, MemoryEstimatesFromCountsHold) {
     }
 }
 
-TEST(Repeat, ReturnsAsManyTimesAsAskedFor) {
-  Reconstructor r(Device::cpu(2));
-  const Cloud cloud = test::sphere_cloud(2'000, 14);
-  const std::vector<RunTimes> runs = r.repeat(cloud, {{.depth = 5}}, 3);
-  EXPECT_EQ(runs.size(), 3U);
-  const std::size_t triangles = r.reconstruct(cloud, {{.depth = 5}}).triangles.size();
-  for (const RunTimes& run : runs) {
-    EXPECT_GT(run.total_ms, 0);
-    EXPECT_GE(run.total_ms, run.octree_ms + run.splat_ms + run.solve_ms);
-    EXPECT_EQ(run.triangles, static_cast<std::int64_t>(triangles));
-  }
-  EXPECT_EQ(error_of([&] { (void)r.repeat(cloud, {{.depth = 5}}, 0); }), ErrorCode::usage);
-}
-
 TEST(FieldValues, AreAboveTheIsovalueInsideAndBelowItOutside) {
   const Cloud cloud = test::torus_cloud(30'000, 15);
-  const Field field = Reconstructor(Device::cpu(2)).solve(cloud, {{.depth = 7}});
+  const Field field = Reconstructor(Device::cpu(2)).solve(cloud, {.depth = 7});
   std::vector<Vec3d> inside;
   std::vector<Vec3d> outside{{0, 0, 0}, {1.45, 0, 0}, {0, 0, 0.4}, {50, 0, 0}, {-1e9, 1e9, 3}};
   for (int i = 0; i < 100; ++i) {
@@ -269,8 +255,8 @@ TEST(FieldValues, AreAboveTheIsovalueInsideAndBelowItOutside) {
 
 TEST(FieldValues, AreTheIsovalueAtTheVerticesUpToTheFit) {
   Reconstructor r(Device::cpu(2));
-  const Field field = r.solve(test::sphere_cloud(30'000, 16), {{.depth = 6}, {.linear_fit = true}});
-  const Mesh mesh = field.extract();
+  const Field field = r.solve(test::sphere_cloud(30'000, 16), {.depth = 6});
+  const Mesh mesh = field.extract({.linear_fit = true});
   std::vector<Vec3d> at;
   for (const Vec3f& v : mesh.vertices) at.push_back({v.x, v.y, v.z});
   for (const float value : field.values(at)) ASSERT_NEAR(value, field.isovalue(), 0.005);

@@ -155,8 +155,8 @@ TEST(Reconstruct, RunsSideBySideInTwoReconstructorsAndTheirFieldsOutliveThem) {
   const Cloud torus = test::torus_cloud(5'000, 14);
   auto a = std::make_unique<Reconstructor>(Device::cpu(1));
   auto b = std::make_unique<Reconstructor>(Device::cpu(2));
-  const Field field_a = a->solve(sphere, {{.depth = 6}});
-  const Field field_b = b->solve(torus, {{.depth = 6}});
+  const Field field_a = a->solve(sphere, {.depth = 6});
+  const Field field_b = b->solve(torus, {.depth = 6});
   const Mesh mesh_a = a->reconstruct(sphere, {{.depth = 6}});
   a.reset();
   b.reset();

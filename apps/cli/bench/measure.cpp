@@ -93,7 +93,7 @@ MemoryRun measure_in_memory(Reconstructor& reconstructor, const Cloud& cloud, co
   run.vertices = static_cast<std::int64_t>(reconstructor.reconstruct(cloud, options).vertices.size());
   run.nodes = reconstructor.report().nodes;
   run.peak_bytes = reconstructor.report().device_peak_bytes;
-  run.times = reconstructor.repeat(cloud, options, job.repeat);
+  run.times = run_resident(reconstructor, cloud, options, job.repeat);
   run.triangles = run.times.front().triangles;
   return run;
 }

@@ -8,6 +8,7 @@
 #include <pointskin/device.hpp>
 #include <pointskin/reconstruct.hpp>
 
+#include "resident_runs.hpp"
 #include "statistics.hpp"
 
 namespace pointskin::cli {
@@ -27,7 +28,7 @@ struct MemoryRun {
   int depth = 0;
   std::int64_t nodes = 0, vertices = 0, triangles = 0;
   std::int64_t peak_bytes = 0;  ///< largest sum of buffers held at once
-  std::vector<RunTimes> times;
+  std::vector<ResidentRun> times;
 };
 
 /// Runs of a whole program: file to file.
@@ -52,15 +53,15 @@ struct Results {
 template <class Ms>
 Spread spread_of(const MemoryRun& run, const Ms& ms) {
   std::vector<double> values;
-  for (const RunTimes& times : run.times) values.push_back(ms(times));
+  for (const ResidentRun& times : run.times) values.push_back(ms(times));
   return spread_of(std::move(values));
 }
 
 // Columns of the paper's table, in milliseconds.
-inline double octree_ms(const RunTimes& t) { return t.octree_ms; }
-inline double function_ms(const RunTimes& t) { return t.splat_ms + t.solve_ms; }
-inline double surface_ms(const RunTimes& t) { return t.extract_ms; }
-inline double total_ms(const RunTimes& t) { return t.total_ms; }
+inline double octree_ms(const ResidentRun& t) { return t.octree_ms; }
+inline double function_ms(const ResidentRun& t) { return t.splat_ms + t.solve_ms; }
+inline double surface_ms(const ResidentRun& t) { return t.extract_ms; }
+inline double total_ms(const ResidentRun& t) { return t.total_ms; }
 
 /// The peer's run on the same cloud at the same depth, or nothing if it failed or there is none.
 const FileRun* peer_of(const Results& results, const FileRun& run);

@@ -83,8 +83,8 @@ Json memory_run_json(const Results& results, const MemoryRun& run) {
                {"triangles", run.triangles},
                {"repeat", run.times.size()}};
   json["ms"] = {{"octree", spread_json(spread_of(run, octree_ms))},
-                {"splat", spread_json(spread_of(run, [](const RunTimes& t) { return t.splat_ms; }))},
-                {"solve", spread_json(spread_of(run, [](const RunTimes& t) { return t.solve_ms; }))},
+                {"splat", spread_json(spread_of(run, [](const ResidentRun& t) { return t.splat_ms; }))},
+                {"solve", spread_json(spread_of(run, [](const ResidentRun& t) { return t.solve_ms; }))},
                 {"function", spread_json(spread_of(run, function_ms))},
                 {"extract", spread_json(spread_of(run, surface_ms))},
                 {"total", spread_json(total)}};

@@ -19,9 +19,8 @@ using diagnose::NormalsVerdict;
 
 /// Of a whole run.
 Findings findings(const Cloud& cloud, const Options& options = {{.depth = 7}}) {
-  const auto engine = detail::make_cpu_engine(2);
   RunReport report;
-  const auto field = engine->solve({cloud}, options, report);
+  const auto field = detail::Engine(Device::cpu(2)).solve(cloud, options, false, report);
   Mesh mesh;
   field->extract_and_release(mesh, report);
   return diagnose::findings_of(field->seen());
@@ -130,8 +129,7 @@ TEST(Look, IsTheSameForAnyOrderAndThreads) {
   const Cloud cloud = with_flips(test::torus_cloud(20'000, 17), 0.1, 18);
   const auto seen = [](const Cloud& points, int threads) {
     RunReport report;
-    const auto engine = detail::make_cpu_engine(threads);
-    return engine->solve({points}, {{.depth = 7}}, report)->seen();
+    return detail::Engine(Device::cpu(threads)).solve(points, {{.depth = 7}}, false, report)->seen();
   };
   const diagnose::Counts one = seen(cloud, 1);
   const diagnose::Counts other = seen(test::shuffled(cloud, 19), 5);

@@ -41,8 +41,8 @@ void check_files(const BooleanArgs& args) {
       {{"-o", args.output}, {"--cloud", args.cloud, OutputKind::file}, {"--report", args.report, OutputKind::report}},
       args.overwrite);
   check_mesh_output(args.output);
-  if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
-    throw_usage(fmt::format("--cloud: {} does not end in .ply", args.cloud));
+  if (!args.cloud.empty() && !names_cloud(args.cloud))
+    throw_usage(fmt::format("--cloud: {} does not end in {}", args.cloud, extension_list(&FormatInfo::writes_clouds)));
   for (const std::string& file : {args.cloud, args.report})
     if (!file.empty()) check_replaceable(file);
 }

@@ -71,9 +71,10 @@ simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& outp
   check_names(args, output);
   if (!output.output.empty()) check_mesh_output(frame_file(output.output, 0, args.frames));
   if (!args.particles_out.empty()) {
-    if (!has_extension(args.particles_out, ".ply"))
-      throw_usage(fmt::format("--particles-out: {}: particles are written as .ply only", args.particles_out));
-    check_mesh_output(frame_file(args.particles_out, 0, args.frames));
+    if (!names_cloud(args.particles_out))
+      throw_usage(fmt::format("--particles-out: {}: particles are written as {} only", args.particles_out,
+                              extension_list(&FormatInfo::writes_clouds)));
+    check_result(frame_file(args.particles_out, 0, args.frames));
   }
   if (!output.report.empty()) check_replaceable(output.report);
   return *kind;

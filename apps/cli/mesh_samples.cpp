@@ -4,10 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <pointskin/formats.hpp>
+#include <pointskin/merge.hpp>
 #include <pointskin/vertex_normals.hpp>
 
 #include "console.hpp"
-#include "probe.hpp"
 
 namespace pointskin::cli {
 
@@ -20,11 +21,7 @@ bool read_vertices_of_mesh(const std::string& path, const ReadOptions& options, 
                   "triangles)",
                   path, mesh.vertices.size(), mesh.triangles.size()));
   add_vertex_normals(mesh);
-  cloud = Cloud();
-  cloud.origin = mesh.origin;
-  cloud.positions = std::move(mesh.vertices);
-  cloud.normals = std::move(mesh.normals);
-  cloud.attributes = std::move(mesh.attributes);
+  cloud = cloud_of_vertices(std::move(mesh));
   return true;
 }
 

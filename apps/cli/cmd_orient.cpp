@@ -38,9 +38,7 @@ struct OrientArgs : DeviceArgs {
 
 void check_files(const OrientArgs& args) {
   check_distinct(args.inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
-  if (args.output != "-" && !names_cloud(args.output))
-    throw Error(ErrorCode::usage, fmt::format("-o: {0} does not end in {1}; clouds are written as {1} only",
-                                              args.output, extension_list(&FormatInfo::writes_clouds)));
+  check_cloud_name(args.output, "-o: {0} does not end in {1}; clouds are written as {1} only");
   check_result(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
 }

@@ -71,9 +71,7 @@ simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& outp
   check_names(args, output);
   if (!output.output.empty()) check_mesh_output(frame_file(output.output, 0, args.frames));
   if (!args.particles_out.empty()) {
-    if (!names_cloud(args.particles_out))
-      throw_usage(fmt::format("--particles-out: {}: particles are written as {} only", args.particles_out,
-                              extension_list(&FormatInfo::writes_clouds)));
+    check_cloud_name(args.particles_out, "--particles-out: {}: particles are written as {} only");
     check_result(frame_file(args.particles_out, 0, args.frames));
   }
   if (!output.report.empty()) check_replaceable(output.report);

@@ -8,12 +8,34 @@
 #include <pointskin/error.hpp>
 #include <pointskin/formats.hpp>
 #include <pointskin/merge.hpp>
+#include <pointskin/vertex_normals.hpp>
 
 #include "console.hpp"
-#include "mesh_samples.hpp"
 #include "standard_files.hpp"
 
 namespace pointskin::cli {
+namespace {
+
+/// Reads the mesh file `path`, whose vertices have no normals, as a cloud of its vertices with the normals of the faces
+/// around them (add_vertex_normals), and says so in a warning. Vertices without faces get zero normals.
+/// @param cloud  receives the vertices, or stays as it was
+/// @returns false for files that hold no faces, and for stdin, which cannot be read a second time
+/// @throws Error as read_mesh
+bool read_vertices_of_mesh(const std::string& path, const ReadOptions& options, Cloud& cloud) {
+  if (path == "-" || !may_hold_faces(path)) return false;
+  Mesh mesh = read_mesh(path, options);
+  if (mesh.triangles.empty()) return false;
+  print_warning(
+      fmt::format("{}: its vertices have no normals and take those of the faces around them ({} vertices, {} "
+                  "triangles)",
+                  path, mesh.vertices.size(), mesh.triangles.size()));
+  add_vertex_normals(mesh);
+  cloud = cloud_of_vertices(std::move(mesh));
+  return true;
+}
+
+}  // namespace
+
 void check_not_empty(const Cloud& cloud, const std::string& name) {
   if (cloud.size() > 0) return;
   if (cloud.dropped == 0) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no points", name));

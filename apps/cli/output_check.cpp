@@ -69,9 +69,11 @@ void check_replaceable(const std::string& path) {
   }
 }
 
-bool names_cloud(const std::string& path) {
+void check_cloud_name(const std::string& path, const char* story, const std::string& named) {
   const FormatInfo* const format = format_of(path);
-  return format != nullptr && format->writes_clouds;
+  if (path == "-" || (format != nullptr && format->writes_clouds)) return;
+  const std::string extensions = extension_list(&FormatInfo::writes_clouds);
+  throw Error(ErrorCode::usage, fmt::format(fmt::runtime(story), named.empty() ? path : named, extensions));
 }
 
 void check_result(const std::string& path) {

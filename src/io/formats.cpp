@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <ranges>
+#include <utility>
 
 #include "io/ply_header.hpp"
 #include "io/readers.hpp"
@@ -44,25 +47,27 @@ std::vector<Format> make_table() {
   };
 }
 
+/// The first of `entries` that is what is looked for, or null.
+template <class Entries, class Is>
+auto* find(const Entries& entries, const Is& is) {
+  const auto at = std::find_if(std::begin(entries), std::end(entries), is);
+  return at == std::end(entries) ? nullptr : &*at;
+}
+
 const Format* find_magic(Formats table, std::string_view start) {
-  const auto at = std::find_if(table.begin(), table.end(),
-                               [&](const Format& f) { return f.run.has_magic != nullptr && f.run.has_magic(start); });
-  return at == table.end() ? nullptr : &*at;
+  return find(table, [&](const Format& f) { return f.run.has_magic != nullptr && f.run.has_magic(start); });
 }
 
 /// Null for no extension, too.
 const Format* find_extension(Formats table, const std::string& extension) {
-  const auto at =
-      std::find_if(table.begin(), table.end(), [&](const Format& f) { return has_extension(f.info, extension); });
-  return at == table.end() ? nullptr : &*at;
+  return find(table, [&](const Format& f) { return has_extension(f.info, extension); });
 }
 
 /// For stdin and names without an extension.
 const Format* guess(Formats table, std::string_view bytes, bool want_mesh) {
-  const auto at = std::find_if(table.rbegin(), table.rend(), [&](const Format& f) {
+  return find(std::ranges::reverse_view(table), [&](const Format& f) {
     return f.run.looks_like != nullptr && (f.info.reads_meshes || !want_mesh) && f.run.looks_like(bytes, want_mesh);
   });
-  return at == table.rend() ? nullptr : &*at;
 }
 
 const Format& detect(Formats table, const Source& source, bool want_mesh) {
@@ -151,9 +156,7 @@ std::string extension_of(const std::string& path) {
 
 const FormatInfo* format_of(const std::string& path, std::span<const FormatInfo> formats) {
   const std::string extension = extension_of(path);
-  const auto at = std::find_if(formats.begin(), formats.end(),
-                               [&](const FormatInfo& f) { return io::has_extension(f, extension); });
-  return at == formats.end() ? nullptr : &*at;
+  return io::find(formats, [&](const FormatInfo& f) { return io::has_extension(f, extension); });
 }
 
 std::string extension_list(bool FormatInfo::*can, std::span<const FormatInfo> formats) {

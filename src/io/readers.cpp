@@ -44,16 +44,16 @@ bool is_finite(const Column& column, std::int64_t row) {
        "remove the vertex or export the mesh again");
 }
 
+void read_body(exec::Cpu& ex, const PlyInput& input, PlyBody& body) {
+  (input.header.encoding == PlyEncoding::ascii ? read_ascii_body : read_binary_body)(ex, input, body);
+}
+
 }  // namespace
 
 Cloud parse_ply_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
   const PlyHeader header = parse_ply_header(source);
   PlyBody body;
-  const PlyInput input{source, header, false};
-  if (header.encoding == PlyEncoding::ascii)
-    read_ascii_body(ex, input, body);
-  else
-    read_binary_body(ex, input, body);
+  read_body(ex, {source, header, false}, body);
   return assemble(ex, source, body.vertices, options.shift);
 }
 
@@ -61,11 +61,7 @@ Mesh parse_ply_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& opti
   const PlyHeader header = parse_ply_header(source);
   check_vertex_count(source, vertex_count(header));
   PlyBody body;
-  const PlyInput input{source, header, true};
-  if (header.encoding == PlyEncoding::ascii)
-    read_ascii_body(ex, input, body);
-  else
-    read_binary_body(ex, input, body);
+  read_body(ex, {source, header, true}, body);
   return assemble_mesh(ex, source, body.vertices, std::move(body.triangles), options);
 }
 

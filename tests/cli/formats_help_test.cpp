@@ -42,8 +42,9 @@ TEST(FormatsInHelp, MeshesNameThoseThatTheyAreReadFrom) {
       EXPECT_NE(convert.find(format.name), std::string::npos) << format.name;
       EXPECT_NE(check.find(format.name), std::string::npos) << format.name;
     }
-    if (format.writes_meshes || format.writes_clouds)
+    if (format.writes_meshes || format.writes_clouds) {
       EXPECT_NE(convert.find(format.extensions.front()), std::string::npos) << format.name;
+    }
   }
 }
 

@@ -21,7 +21,6 @@ void rebase(Cloud& cloud, const Vec3d& origin) {
 
 /// Distance of the middle of a cloud from a place, times its points: what float positions around that place would lose.
 double loss_around(const Cloud& cloud, const Vec3d& place) {
-  if (cloud.positions.empty()) return 0;
   const Bounds box = bounds_of(cloud.positions);
   const Vec3d lower = {box.lower.x, box.lower.y, box.lower.z};
   const Vec3d upper = {box.upper.x, box.upper.y, box.upper.z};

@@ -47,7 +47,7 @@ Mesh read_mesh(const std::string& path, const ReadOptions& options) {
 
 bool may_hold_faces(const std::string& path) {
   if (path == "-") return io::may_hold_faces(path, start_of(STDIN_FILENO));
-  const io::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const io::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // no waiting for pipes
   return io::may_hold_faces(path, file.valid() ? start_of(file.get()) : "");
 }
 

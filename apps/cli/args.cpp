@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -122,10 +121,6 @@ std::vector<std::string> join_optional_values(std::vector<std::string> args) {
     if (confidence || data || linear_fit) joined.back() += "=" + args[++i];
   }
   return joined;
-}
-
-bool has_extension(const std::string& path, const std::string& extension) {
-  return lower_case(std::filesystem::path(path).extension().string()) == extension;
 }
 
 }  // namespace pointskin::cli

@@ -45,7 +45,4 @@ std::function<std::string(const std::string&)> is_one_of(const std::vector<std::
 /// "--confidence 1" becomes "--confidence=1", "--linear-fit off" becomes "--linear-fit=off".
 std::vector<std::string> join_optional_values(std::vector<std::string> args);
 
-/// True if `path` ends in `extension` (with its dot, lower case), whatever the case of its letters.
-bool has_extension(const std::string& path, const std::string& extension);
-
 }  // namespace pointskin::cli

@@ -32,8 +32,6 @@ namespace {
 
 using Solid = std::variant<Cloud, Mesh>;
 
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
-
 /// Everything that can be found wrong before the inputs are opened.
 void check_files(const BooleanArgs& args) {
   check_distinct(
@@ -41,8 +39,7 @@ void check_files(const BooleanArgs& args) {
       {{"-o", args.output}, {"--cloud", args.cloud, OutputKind::file}, {"--report", args.report, OutputKind::report}},
       args.overwrite);
   check_mesh_output(args.output);
-  if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
-    throw_usage(fmt::format("--cloud: {} does not end in .ply", args.cloud));
+  if (!args.cloud.empty()) check_cloud_name(args.cloud, "--cloud: {} does not end in {}");
   for (const std::string& file : {args.cloud, args.report})
     if (!file.empty()) check_replaceable(file);
 }

@@ -131,8 +131,9 @@ void check(const CompareArgs& args) {
   if (args.with_sign && args.heat.empty())
     throw Error(ErrorCode::usage, "--signed: changes what --heat writes, which is not given");
   if (args.heat.empty()) return;
-  if (!has_extension(args.heat, ".ply"))
-    throw Error(ErrorCode::usage, fmt::format("--heat: {} does not end in .ply", args.heat));
+  const FormatInfo& full = file_formats().front();  // holds clouds, meshes and their properties
+  if (format_of(args.heat) != &full)
+    throw Error(ErrorCode::usage, fmt::format("--heat: {} does not end in {}", args.heat, full.extensions.front()));
   check_replaceable(args.heat);
 }
 

@@ -37,9 +37,7 @@ std::string write(const ConvertArgs& args, const Mesh& mesh) {
 }
 
 std::string write(const ConvertArgs& args, const Cloud& cloud) {
-  if (args.output != "-" && !has_extension(args.output, ".ply")) {
-    throw Error(ErrorCode::usage, fmt::format("{} holds a cloud, and clouds are written as .ply only", args.input));
-  }
+  check_cloud_name(args.output, "{} holds a cloud, and clouds are written as {} only", args.input);
   if (cloud.dropped > 0)
     print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
   write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads});
@@ -50,7 +48,9 @@ int run(const ConvertArgs& args) {
   check_threads(args.threads);
   const ReadOptions options{.shift = parse_shift(args.shift), .threads = args.threads};
   check_distinct({args.input}, {{"OUT", args.output}}, args.overwrite);
-  check_mesh_output(args.output);
+  const FormatInfo* const format = format_of(args.output);
+  if (format == nullptr || !format->writes_clouds) check_mesh_output(args.output);
+  check_result(args.output);
   warn_about_ascii(args.given, args.output);
   const std::variant<Cloud, Mesh> content = read_cloud_or_mesh(args.input, options);
   on_interrupt(OnInterrupt::remember);

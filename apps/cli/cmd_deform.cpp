@@ -76,9 +76,8 @@ void check_outputs(const DeformArgs& args) {
   check_names(args);
   if (!args.output.empty()) check_mesh_output(file_of(args, args.output, 0));
   if (!args.cloud.empty()) {
-    if (args.cloud != "-" && !has_extension(args.cloud, ".ply"))
-      throw_usage(fmt::format("--cloud: {}: clouds are written as .ply only", args.cloud));
-    check_mesh_output(file_of(args, args.cloud, 0));
+    check_cloud_name(args.cloud, "--cloud: {}: clouds are written as {} only");
+    check_result(file_of(args, args.cloud, 0));
   }
   if (!args.report.empty()) check_replaceable(args.report);
 }

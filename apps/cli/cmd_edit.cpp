@@ -54,8 +54,7 @@ void check_names(const EditArgs& args, const std::vector<std::string>& parts) {
 void check_outputs(const EditArgs& args) {
   check_names(args, {});
   if (!args.output.empty()) check_mesh_output(args.output);
-  if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
-    throw Error(ErrorCode::usage, fmt::format("--cloud: {}: clouds are written as .ply only", args.cloud));
+  if (!args.cloud.empty()) check_cloud_name(args.cloud, "--cloud: {}: clouds are written as {} only");
   for (const std::string& path : {args.save, args.cloud, args.report})
     if (!path.empty()) check_replaceable(path);
 }

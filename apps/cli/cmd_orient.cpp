@@ -38,10 +38,8 @@ struct OrientArgs : DeviceArgs {
 
 void check_files(const OrientArgs& args) {
   check_distinct(args.inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
-  if (args.output != "-" && !has_extension(args.output, ".ply"))
-    throw Error(ErrorCode::usage,
-                fmt::format("-o: {} does not end in .ply; clouds are written as .ply only", args.output));
-  check_mesh_output(args.output);
+  check_cloud_name(args.output, "-o: {0} does not end in {1}; clouds are written as {1} only");
+  check_result(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
 }
 

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include <pointskin/error.hpp>
+#include <pointskin/formats.hpp>
 #include <pointskin/io.hpp>
 #include <pointskin/render.hpp>
 
-#include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
@@ -35,7 +35,7 @@ struct PictureFile {
 
 std::vector<PictureFile> pictures_of(const RenderArgs& args) {
   check_patterns(args.input, args.picture, "-o");
-  if (!has_extension(args.picture, ".png"))
+  if (extension_of(args.picture) != ".png")
     throw Error(ErrorCode::usage, fmt::format("{}: pictures are written as .png", args.picture));
   if (!is_pattern(args.input)) check_replaceable(args.picture);  // before the input is looked for
   std::vector<PictureFile> pictures;

@@ -71,9 +71,8 @@ simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& outp
   check_names(args, output);
   if (!output.output.empty()) check_mesh_output(frame_file(output.output, 0, args.frames));
   if (!args.particles_out.empty()) {
-    if (!has_extension(args.particles_out, ".ply"))
-      throw_usage(fmt::format("--particles-out: {}: particles are written as .ply only", args.particles_out));
-    check_mesh_output(frame_file(args.particles_out, 0, args.frames));
+    check_cloud_name(args.particles_out, "--particles-out: {}: particles are written as {} only");
+    check_result(frame_file(args.particles_out, 0, args.frames));
   }
   if (!output.report.empty()) check_replaceable(output.report);
   return *kind;

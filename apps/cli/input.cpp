@@ -1,104 +1,40 @@
 #include "input.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <pointskin/error.hpp>
+#include <pointskin/formats.hpp>
+#include <pointskin/merge.hpp>
+#include <pointskin/vertex_normals.hpp>
 
 #include "console.hpp"
-#include "mesh_samples.hpp"
-#include "probe.hpp"
+#include "standard_files.hpp"
 
 namespace pointskin::cli {
 namespace {
 
-/// Moves the origin to `origin`; world positions stay, to float.
-void rebase(Cloud& cloud, const Vec3d& origin) {
-  const Vec3d move = {cloud.origin[0] - origin[0], cloud.origin[1] - origin[1], cloud.origin[2] - origin[2]};
-  for (Vec3f& p : cloud.positions) {
-    p = {static_cast<float>(p.x + move[0]), static_cast<float>(p.y + move[1]), static_cast<float>(p.z + move[2])};
-  }
-  cloud.origin = origin;
-}
-
-/// Distance of the middle of a cloud from a place, times its points: what float positions around that place would lose.
-double loss_around(const Cloud& cloud, const Vec3d& place) {
-  Vec3d lower, upper;
-  lower.fill(std::numeric_limits<double>::infinity());
-  upper.fill(-std::numeric_limits<double>::infinity());
-  for (const Vec3f& p : cloud.positions) {
-    const double at[3] = {p.x, p.y, p.z};
-    for (std::size_t a = 0; a < 3; ++a) {
-      lower[a] = std::min(lower[a], at[a]);
-      upper[a] = std::max(upper[a], at[a]);
-    }
-  }
-  double farthest = 0;
-  for (std::size_t a = 0; a < 3; ++a)
-    farthest = std::max(farthest, std::abs(cloud.origin[a] + (lower[a] + upper[a]) / 2 - place[a]));
-  return farthest * static_cast<double>(cloud.size());
-}
-
-template <class T>
-void append(std::vector<T>& to, const std::vector<T>& from) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
-/// Adds the attributes of `from_size` points behind those of `to_size`. Points without one of them lack its value.
-void append_attributes(std::vector<Attribute>& to, std::size_t to_size, const std::vector<Attribute>& from,
-                       std::size_t from_size) {
-  const auto find_in = [](auto& attributes, const std::string& name) {
-    return std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
-  };
-  for (const Attribute& theirs : from)
-    if (find_in(to, theirs.name) == to.end())
-      to.push_back({theirs.name, AttributeValues::missing(theirs.type(), to_size)});
-  for (Attribute& mine : to) {
-    const auto theirs = find_in(from, mine.name);
-    if (theirs == from.end())
-      mine.values.resize(to_size + from_size);
-    else
-      mine.values.append(theirs->values);
-  }
-}
-
-template <class T>
-void keep_where(std::vector<T>& values, const std::vector<bool>& keep) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (keep[i]) values[kept++] = values[i];
-  }
-  values.resize(kept);
-}
-
-Cloud vertices_as_cloud(Mesh&& mesh) {
-  Cloud cloud;
-  cloud.origin = mesh.origin;
-  cloud.positions = std::move(mesh.vertices);
-  cloud.normals = std::move(mesh.normals);
-  cloud.attributes = std::move(mesh.attributes);
-  return cloud;
+/// Reads the mesh file `path`, whose vertices have no normals, as a cloud of its vertices with the normals of the faces
+/// around them (add_vertex_normals), and says so in a warning. Vertices without faces get zero normals.
+/// @param cloud  receives the vertices, or stays as it was
+/// @returns false for files that hold no faces, and for stdin, which cannot be read a second time
+/// @throws Error as read_mesh
+bool read_vertices_of_mesh(const std::string& path, const ReadOptions& options, Cloud& cloud) {
+  if (path == "-" || !may_hold_faces(path)) return false;
+  Mesh mesh = read_mesh(path, options);
+  if (mesh.triangles.empty()) return false;
+  print_warning(
+      fmt::format("{}: its vertices have no normals and take those of the faces around them ({} vertices, {} "
+                  "triangles)",
+                  path, mesh.vertices.size(), mesh.triangles.size()));
+  add_vertex_normals(mesh);
+  cloud = cloud_of_vertices(std::move(mesh));
+  return true;
 }
 
 }  // namespace
-
-void append(Cloud& to, Cloud&& from) {
-  if (to.origin != from.origin) {
-    const auto loss = [&](const Vec3d& place) { return loss_around(to, place) + loss_around(from, place); };
-    if (loss(from.origin) < loss(to.origin)) rebase(to, from.origin);
-    if (to.origin != from.origin) rebase(from, to.origin);
-  }
-  const bool normals = to.has_normals() && from.has_normals();
-  append_attributes(to.attributes, to.positions.size(), from.attributes, from.positions.size());
-  append(to.positions, from.positions);
-  append(to.normals, from.normals);
-  if (!normals) to.normals.clear();
-  to.dropped += from.dropped;
-}
 
 void check_not_empty(const Cloud& cloud, const std::string& name) {
   if (cloud.size() > 0) return;
@@ -109,23 +45,18 @@ void check_not_empty(const Cloud& cloud, const std::string& name) {
 
 Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options, MissingNormals missing) {
   Cloud merged;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    Cloud cloud = read_cloud(paths[i], options);
-    const std::string name = paths[i] == "-" ? "stdin" : paths[i];
+  for (const std::string& path : paths) {
+    Cloud cloud = read_cloud(path, options);
+    const std::string name = path == "-" ? "stdin" : path;
     check_not_empty(cloud, name);
-    if (missing == MissingNormals::refused && !cloud.has_normals() &&
-        !read_vertices_of_mesh(paths[i], options, cloud)) {
+    if (missing == MissingNormals::refused && !cloud.has_normals() && !read_vertices_of_mesh(path, options, cloud)) {
       throw Error(
           ErrorCode::no_normals,
           fmt::format("{}: has no normals; it needs outward normals nx, ny, nz; 'pointskin orient' and reconstruct's "
                       "--estimate-normals make them",
                       name));
     }
-    if (i == 0) {
-      merged = std::move(cloud);
-    } else {
-      append(merged, std::move(cloud));
-    }
+    merge_into(merged, std::move(cloud));
   }
   return merged;
 }
@@ -139,10 +70,7 @@ std::int64_t drop_zero_normals(Cloud& cloud) {
   if (zero == 0) return 0;
   std::vector<bool> keep(cloud.normals.size());
   std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(), [](const Vec3f& n) { return n != Vec3f{}; });
-  keep_where(cloud.positions, keep);
-  keep_where(cloud.normals, keep);
-  for (Attribute& attribute : cloud.attributes) attribute.values.keep_where(keep);
-  cloud.dropped += zero;
+  keep_where(cloud, keep);
   return zero;
 }
 
@@ -179,10 +107,12 @@ void warn_about_strays(const Cloud& cloud, int threads) {
                             {origin[0] + p.x, origin[1] + p.y, origin[2] + p.z}));
 }
 
+bool is_colour(const Attribute& attribute) {
+  return attribute.name == "red" || attribute.name == "green" || attribute.name == "blue";
+}
+
 bool keep_colours_only(Cloud& cloud) {
-  std::erase_if(cloud.attributes, [](const Attribute& attribute) {
-    return attribute.name != "red" && attribute.name != "green" && attribute.name != "blue";
-  });
+  std::erase_if(cloud.attributes, [](const Attribute& attribute) { return !is_colour(attribute); });
   return !cloud.attributes.empty();
 }
 
@@ -190,7 +120,7 @@ std::variant<Cloud, Mesh> read_cloud_or_mesh(const std::string& path, const Read
   if (path == "-") make_stdin_seekable();
   if (!may_hold_faces(path)) return read_cloud(path, options);
   Mesh mesh = read_mesh(path, options);
-  if (mesh.triangles.empty()) return vertices_as_cloud(std::move(mesh));
+  if (mesh.triangles.empty()) return cloud_of_vertices(std::move(mesh));
   return mesh;
 }
 

@@ -13,15 +13,10 @@
 
 namespace pointskin::cli {
 
-/// Appends `from` to `to`. Both keep their world positions: of their two origins the one stays around which float loses
-/// less, counted in points. Points without an attribute that the others have lack its value; attributes of two types
-/// get the smallest that holds both (common_type). Normals that only one has are left out; dropped points add up.
-void append(Cloud& to, Cloud&& from);
-
 /// Whether clouds may come without normals. If some do, the merged cloud has none.
 enum class MissingNormals { refused, allowed };
 
-/// Reads and merges `paths`. O(points).
+/// Reads `paths` and merges them (merge_into). O(points).
 /// @throws Error as read_cloud; no_normals if that is refused; empty_result if a merged cloud would have no points,
 /// invalid_input if all were dropped
 Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options,
@@ -49,6 +44,9 @@ std::string strays_text(std::int64_t count, const Vec3d& farthest);
 
 /// Warns of the strays of `cloud`, if there are any.
 void warn_about_strays(const Cloud& cloud, int threads);
+
+/// True for red, green and blue.
+bool is_colour(const Attribute& attribute);
 
 /// Leaves only the attributes red, green and blue.
 /// @returns whether there are any

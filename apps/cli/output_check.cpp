@@ -4,8 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -15,14 +13,10 @@
 
 #include <pointskin/error.hpp>
 
-#include "args.hpp"
 #include "standard_files.hpp"
 
 namespace pointskin::cli {
 namespace {
-
-/// What write_mesh of the library knows.
-constexpr std::array kMeshExtensions = {".ply", ".obj", ".stl"};
 
 /// Creates a file in `folder` that never gets a name, or, where the file system cannot, one that is removed at once.
 /// Asking for permissions would not do: root has them all, and a read-only file system takes them back.
@@ -48,13 +42,12 @@ bool is_special_file(const std::string& path) {
   return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-void check_extension(const std::string& path) {
-  if (is_special_file(path) && std::filesystem::path(path).extension().empty()) return;  // Gets PLY.
-  const bool known = std::any_of(kMeshExtensions.begin(), kMeshExtensions.end(),
-                                 [&](const char* extension) { return has_extension(path, extension); });
-  if (known) return;
-  throw Error(ErrorCode::usage,
-              fmt::format("{}: unknown output format; use .ply, .obj or .stl, or - for PLY on stdout", path));
+void check_extension(const std::string& path, std::span<const FormatInfo> formats) {
+  if (is_special_file(path) && extension_of(path).empty()) return;  // Gets the first format.
+  const FormatInfo* const format = format_of(path, formats);
+  if (format != nullptr && format->writes_meshes) return;
+  throw Error(ErrorCode::usage, fmt::format("{}: unknown output format; use {}, or - for {} on stdout", path,
+                                            extension_list(&FormatInfo::writes_meshes, formats), formats.front().name));
 }
 
 }  // namespace
@@ -76,15 +69,23 @@ void check_replaceable(const std::string& path) {
   }
 }
 
-void check_mesh_output(const std::string& path) {
-  if (path != "-") {
-    check_extension(path);
-    return check_replaceable(path);
-  }
+void check_cloud_name(const std::string& path, const char* story, const std::string& named) {
+  const FormatInfo* const format = format_of(path);
+  if (path == "-" || (format != nullptr && format->writes_clouds)) return;
+  const std::string extensions = extension_list(&FormatInfo::writes_clouds);
+  throw Error(ErrorCode::usage, fmt::format(fmt::runtime(story), named.empty() ? path : named, extensions));
+}
+
+void check_result(const std::string& path) {
+  if (path != "-") return check_replaceable(path);
   if (!stdout_is_open()) throw Error(ErrorCode::output_not_written, "stdout: cannot be written: it is closed");
-  if (isatty(STDOUT_FILENO) == 1) {
+  if (isatty(STDOUT_FILENO) == 1)
     throw Error(ErrorCode::usage, "stdout is a terminal, and PLY is binary; redirect it or name a file with -o");
-  }
+}
+
+void check_mesh_output(const std::string& path, std::span<const FormatInfo> formats) {
+  if (path != "-") check_extension(path, formats);
+  check_result(path);
 }
 
 }  // namespace pointskin::cli

@@ -11,4 +11,8 @@ void hold_standard_files();
 /// False if stdout was closed when the program began.
 bool stdout_is_open();
 
+/// Copies stdin to memory if it is a pipe, so that its start can be looked at before it is read.
+/// @throws Error invalid_input if it cannot be read, over_limit if memory runs out
+void make_stdin_seekable();
+
 }  // namespace pointskin::cli

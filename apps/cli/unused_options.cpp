@@ -6,16 +6,13 @@
 
 #include <fmt/format.h>
 
-#include "args.hpp"
+#include <pointskin/formats.hpp>
+
 #include "console.hpp"
+#include "input.hpp"
 
 namespace pointskin::cli {
 namespace {
-
-bool is_colour(const Attribute& attribute) {
-  constexpr std::array kColours = {"red", "green", "blue"};
-  return std::find(kColours.begin(), kColours.end(), attribute.name) != kColours.end();
-}
 
 double length_of(const Vec3f& v) { return std::hypot(double{v.x}, double{v.y}, double{v.z}); }
 
@@ -29,12 +26,14 @@ bool are_alike(const std::vector<Vec3f>& normals) {
 }
 
 void warn_about_format(const GivenOptions& given, const std::string& output, bool reports) {
-  const bool stl = has_extension(output, ".stl");
-  if (!stl && !has_extension(output, ".obj")) return;
-  const std::string why = stl ? "in STL files, which hold no properties" : "in OBJ files, which hold colours alone";
+  const FormatInfo* const format = format_of(output);
+  if (format == nullptr || format->attributes == HeldAttributes::all) return;
+  const bool none = format->attributes == HeldAttributes::none;
+  const std::string why =
+      fmt::format("in {} files, which hold {}", format->name, none ? "no properties" : "colours alone");
   warn_unused(given, {"--density"}, why);
   if (!reports) warn_unused(given, {"--weakness"}, why);
-  if (stl) warn_unused(given, {"--keep-attributes", "--colors", "--data"}, why);
+  if (none) warn_unused(given, {"--keep-attributes", "--colors", "--data"}, why);
 }
 
 }  // namespace
@@ -58,8 +57,10 @@ void warn_about_unused(const GivenOptions& given, const Options& options, const 
 }
 
 void warn_about_ascii(const GivenOptions& given, const std::string& output) {
-  if (has_extension(output, ".obj")) warn_unused(given, {"--ascii"}, "in OBJ files, which are text always");
-  if (has_extension(output, ".stl")) warn_unused(given, {"--ascii"}, "in STL files, which are written as binary ones");
+  const FormatInfo* const format = format_of(output);
+  if (format == nullptr || format->coding == NumberCoding::either) return;
+  const char* const how = format->coding == NumberCoding::text ? "are text always" : "are written as binary ones";
+  warn_unused(given, {"--ascii"}, fmt::format("in {} files, which {}", format->name, how));
 }
 
 void warn_about_unused_normals(const GivenOptions& given) {
@@ -84,11 +85,12 @@ void warn_about_unused(const GivenOptions& given, const Options& options, const 
   if (!options.attributes) return;
   if (cloud.attributes.empty())
     return warn_unused(given, {"--keep-attributes", "--data"}, "on points without further properties");
-  if (!has_extension(output, ".obj")) return;
+  const FormatInfo* const format = format_of(output);
+  if (format == nullptr || format->attributes != HeldAttributes::colours) return;
   std::string lost;
   for (const Attribute& attribute : cloud.attributes)
     if (!is_colour(attribute)) lost += (lost.empty() ? "" : ", ") + attribute.name;
-  if (!lost.empty()) print_warning(fmt::format("OBJ files hold colours alone: {} is left out", lost));
+  if (!lost.empty()) print_warning(fmt::format("{} files hold colours alone: {} is left out", format->name, lost));
 }
 
 std::int64_t count_outside_box(const Cloud& cloud, const Mesh& mesh) {

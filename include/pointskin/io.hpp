@@ -66,7 +66,7 @@ struct WriteOptions {
 void write_mesh(const std::string& path, const Mesh& mesh, int threads = 0);
 void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options);
 
-/// Writes `cloud` as binary PLY (positions, normals, attributes); the same promises as write_mesh.
+/// Writes `cloud` as PLY, or in the format of its extension if that holds clouds; the same promises as write_mesh.
 void write_cloud(const std::string& path, const Cloud& cloud, int threads = 0);
 void write_cloud(const std::string& path, const Cloud& cloud, const WriteOptions& options);
 

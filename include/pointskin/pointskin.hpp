@@ -13,7 +13,9 @@
 #include <pointskin/error.hpp>
 #include <pointskin/field.hpp>
 #include <pointskin/fluid.hpp>
+#include <pointskin/formats.hpp>
 #include <pointskin/io.hpp>
+#include <pointskin/merge.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/normals.hpp>
 #include <pointskin/octree.hpp>

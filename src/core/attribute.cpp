@@ -7,6 +7,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/compact.hpp"
+
 namespace pointskin {
 namespace {
 
@@ -30,14 +32,6 @@ T cut_off(From value) {
     if (rounded >= static_cast<double>(std::numeric_limits<T>::max())) return std::numeric_limits<T>::max();
     return static_cast<T>(rounded);
   }
-}
-
-template <class T>
-void compact(std::vector<T>& values, const std::vector<bool>& keep) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (keep[i]) values[kept++] = values[i];
-  values.resize(kept);
 }
 
 template <class T>

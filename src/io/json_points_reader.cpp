@@ -1,6 +1,7 @@
 // Particles as JSON: a list of lists of three numbers, [[x, y, z], ...], as splashsurf reads and writes them.
 #include <fmt/format.h>
 
+#include "io/lines.hpp"
 #include "io/number.hpp"
 #include "io/readers.hpp"
 
@@ -60,6 +61,12 @@ class JsonPoints {
 };
 
 }  // namespace
+
+bool looks_like_json(std::string_view bytes, bool want_mesh) {
+  const std::string_view text = without_byte_order_mark(bytes);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return !want_mesh && first != std::string_view::npos && text[first] == '[';
+}
 
 Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
   const std::vector<double> coordinates = JsonPoints(source).parse();

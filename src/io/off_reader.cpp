@@ -7,7 +7,6 @@
 #include "io/parsed_columns.hpp"
 #include "io/polygon.hpp"
 #include "io/readers.hpp"
-#include "io/recognise.hpp"
 
 namespace pointskin::io {
 namespace {
@@ -135,7 +134,8 @@ std::vector<Triangle> parse_faces(exec::Cpu& ex, const Source& source, const Lin
 
 }  // namespace
 
-bool looks_like_off(std::string_view text) {
+bool looks_like_off(std::string_view bytes, bool /*want_mesh*/) {
+  const std::string_view text = without_byte_order_mark(bytes);
   OffHeader header;
   return take_keyword(text.substr(0, text.find_first_of(" \t\r\n")), header);
 }

@@ -160,6 +160,13 @@ bool is_ply(std::string_view bytes) {
   return bytes.starts_with("ply") && (bytes.size() == 3 || bytes[3] == '\n' || is_blank(bytes[3]));
 }
 
+bool ply_announces_faces(std::string_view start) {
+  constexpr std::string_view kFace = "\nelement face ";
+  const std::string_view header = start.substr(0, start.find("end_header"));
+  const std::size_t at = header.find(kFace);
+  return at != std::string_view::npos && header.substr(at + kFace.size()).find_first_not_of(" 0\r\n") == 0;
+}
+
 const char* ply_name_of(AttributeType type) {
   switch (type) {
     case AttributeType::int8:

@@ -45,6 +45,9 @@ const char* ply_name_of(AttributeType type);
 /// True if `bytes` start as a PLY file does.
 bool is_ply(std::string_view bytes);
 
+/// True if the header at `start`, of which the end may be cut off, has a line "element face N" with N > 0.
+bool ply_announces_faces(std::string_view start);
+
 /// Parses the header and compares every count with the bytes that are left.
 /// @throws Error invalid_input with the line if it is garbled, or if the body cannot hold what it promises
 PlyHeader parse_ply_header(const Source& source);

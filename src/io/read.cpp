@@ -1,11 +1,15 @@
 #include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <new>
 #include <stdexcept>
 
+#include "io/file_descriptor.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/readers.hpp"
 
 namespace pointskin {
 namespace {
@@ -23,17 +27,28 @@ auto read_file(const std::string& path, const Read& read) {
   }
 }
 
+std::string start_of(int file) {
+  constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 16;
+  std::string start(kMostHeaderBytes, '\0');
+  const ssize_t count = ::pread(file, start.data(), start.size(), 0);
+  start.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  return start;
+}
+
 }  // namespace
 
 Cloud read_cloud(const std::string& path, const ReadOptions& options) {
-  return read_file(path, [&](const io::Source& source) {
-    return io::parse_cloud(source, io::detect_format(source, false), options);
-  });
+  return read_file(path, [&](const io::Source& source) { return io::parse_cloud(source, options); });
 }
 
 Mesh read_mesh(const std::string& path, const ReadOptions& options) {
-  return read_file(
-      path, [&](const io::Source& source) { return io::parse_mesh(source, io::detect_format(source, true), options); });
+  return read_file(path, [&](const io::Source& source) { return io::parse_mesh(source, options); });
+}
+
+bool may_hold_faces(const std::string& path) {
+  if (path == "-") return io::may_hold_faces(path, start_of(STDIN_FILENO));
+  const io::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // no waiting for pipes
+  return io::may_hold_faces(path, file.valid() ? start_of(file.get()) : "");
 }
 
 }  // namespace pointskin

@@ -1,7 +1,8 @@
-// One reader per format. They parse memory, so that tests and fuzzers need no files.
+// One reader per format, which the table of formats names (formats.hpp), and what they have in common.
 #pragma once
 
-#include <string>
+#include <string_view>
+#include <vector>
 
 #include <pointskin/cloud.hpp>
 #include <pointskin/io.hpp>
@@ -13,22 +14,7 @@
 
 namespace pointskin::io {
 
-enum class Format { ply, text, obj, stl, off, vtk, json };
-
-/// The format of `source`: "ply" or "# vtk DataFile" magic, else the extension of its name, else (no extension, stdin)
-/// its content.
-/// @throws Error invalid_input for an unknown extension
-Format detect_format(const Source& source, bool want_mesh);
-
-/// Extension of `path` in lower case with its dot; empty if there is none.
-std::string extension_of(const std::string& path);
-
-/// Parse `source` as `format`. Clouds of mesh formats are their vertices.
-/// @throws Error invalid_input
-Cloud parse_cloud(const Source& source, Format format, const ReadOptions& options);
-Mesh parse_mesh(const Source& source, Format format, const ReadOptions& options);
-
-/// The format readers behind parse_cloud and parse_mesh.
+/// Parse `source`. @throws Error invalid_input
 Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options);
@@ -37,6 +23,15 @@ Mesh parse_ply_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& opti
 Mesh parse_obj(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_stl(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_off(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+
+/// True if the file starts with "# vtk DataFile".
+inline bool is_vtk(std::string_view start) { return start.starts_with("# vtk DataFile"); }
+
+/// How files without a magic number are recognised: OFF by its first word, which is a keyword; STL by a length that
+/// fits a binary file, or by the word "solid" at its start; JSON by its first bracket, where points are wanted.
+bool looks_like_off(std::string_view bytes, bool want_mesh);
+bool looks_like_stl(std::string_view bytes, bool want_mesh);
+bool looks_like_json(std::string_view bytes, bool want_mesh);
 
 /// Makes the vertices of a mesh from columns; its triangles are moved in. Normals get unit length.
 /// @throws Error invalid_input if a coordinate is not finite, over_limit if 32-bit ids do not reach

@@ -9,7 +9,6 @@
 
 #include "io/lines.hpp"
 #include "io/readers.hpp"
-#include "io/recognise.hpp"
 
 namespace pointskin::io {
 namespace {
@@ -153,7 +152,7 @@ Welded parse_text_stl(exec::Cpu& ex, const Source& source) {
 
 }  // namespace
 
-bool looks_like_stl(std::string_view bytes) {
+bool looks_like_stl(std::string_view bytes, bool /*want_mesh*/) {
   if (without_byte_order_mark(bytes).starts_with("solid")) return true;
   return bytes.size() >= kHeaderBytes && is_binary(bytes) &&
          bytes.size() == kHeaderBytes + kTriangleBytes * promised_triangles(bytes);

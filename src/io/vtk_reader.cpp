@@ -140,7 +140,7 @@ class VtkParser {
   // ---- Structure
 
   void read_head() {
-    if (!line().starts_with("# vtk DataFile")) fail(source_, "does not begin as a legacy VTK file", kExportAgain);
+    if (!is_vtk(line())) fail(source_, "does not begin as a legacy VTK file", kExportAgain);
     line();  // the title
     std::string_view encoding = line();
     const std::string_view name = word(encoding);

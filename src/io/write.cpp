@@ -8,20 +8,11 @@
 #include <stdexcept>
 
 #include "io/blocks.hpp"
+#include "io/formats.hpp"
 #include "io/output.hpp"
-#include "io/readers.hpp"
-#include "io/writers.hpp"
 
 namespace pointskin {
 namespace {
-
-/// ".ply", ".obj" or ".stl". Streams have no name to go by and get PLY.
-std::string output_format(const std::string& path) {
-  const std::string extension = io::extension_of(path);
-  if (path == "-" || (extension.empty() && io::is_stream(path))) return ".ply";
-  if (extension == ".ply" || extension == ".obj" || extension == ".stl") return extension;
-  throw Error(ErrorCode::usage, io::printable(path) + ": unknown extension; use .ply, .obj or .stl");
-}
 
 void check_triangles(exec::Cpu& ex, const Mesh& mesh) {
   constexpr std::int64_t kBlockRows = 1 << 14;
@@ -47,12 +38,6 @@ void format_and_write(exec::Cpu& ex, const std::string& path, const Format& form
   }
 }
 
-/// PLY as `options` want it.
-io::Blocks format_ply(const WriteOptions& options, const io::VertexArrays& vertices,
-                      const std::vector<Triangle>* triangles) {
-  return options.ascii ? io::format_ply_ascii(vertices, triangles) : io::format_ply(vertices, triangles);
-}
-
 }  // namespace
 
 void write_mesh(const std::string& path, const Mesh& mesh, int threads) {
@@ -60,14 +45,10 @@ void write_mesh(const std::string& path, const Mesh& mesh, int threads) {
 }
 
 void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options) {
-  const std::string extension = output_format(path);
+  const io::Format& format = io::mesh_format(path);
   exec::Cpu ex(options.threads);
   check_triangles(ex, mesh);
-  format_and_write(ex, path, [&] {
-    if (extension == ".obj") return io::format_obj(mesh);
-    if (extension == ".stl") return io::format_stl(mesh);
-    return format_ply(options, {mesh.origin, mesh.vertices, mesh.normals, mesh.attributes}, &mesh.triangles);
-  });
+  format_and_write(ex, path, [&] { return format.run.write_mesh(mesh, options); });
 }
 
 void write_cloud(const std::string& path, const Cloud& cloud, int threads) {
@@ -76,9 +57,7 @@ void write_cloud(const std::string& path, const Cloud& cloud, int threads) {
 
 void write_cloud(const std::string& path, const Cloud& cloud, const WriteOptions& options) {
   exec::Cpu ex(options.threads);
-  format_and_write(ex, path, [&] {
-    return format_ply(options, {cloud.origin, cloud.positions, cloud.normals, cloud.attributes}, nullptr);
-  });
+  format_and_write(ex, path, [&] { return io::cloud_format(path).run.write_cloud(cloud, options); });
 }
 
 }  // namespace pointskin

@@ -74,7 +74,7 @@ Section lines(std::size_t rows, const Write& write) {
 
 }  // namespace
 
-Blocks format_obj(const Mesh& mesh) {
+Blocks format_obj(const Mesh& mesh, const WriteOptions& /*options*/) {
   const auto write_vertex = [&mesh, is_world = is_zero(mesh.origin), colour = colour_of(mesh)](std::size_t i,
                                                                                                LineBuffer& line) {
     const Vec3f& p = mesh.vertices[i];

@@ -144,6 +144,16 @@ std::vector<AttributeType> stored_types(const VertexArrays& vertices) {
   return types;
 }
 
+Blocks format_ply_cloud(const Cloud& cloud, const WriteOptions& options) {
+  const auto format = options.ascii ? format_ply_ascii : format_ply;
+  return format({cloud.origin, cloud.positions, cloud.normals, cloud.attributes}, nullptr);
+}
+
+Blocks format_ply_mesh(const Mesh& mesh, const WriteOptions& options) {
+  const auto format = options.ascii ? format_ply_ascii : format_ply;
+  return format({mesh.origin, mesh.vertices, mesh.normals, mesh.attributes}, &mesh.triangles);
+}
+
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
   std::string header = ply_header(vertices, triangles, "binary_little_endian");
   const std::vector<AttributeType> types = stored_types(vertices);

@@ -43,7 +43,7 @@ void store_triangle(const Mesh& mesh, const Triangle& triangle, char* out) {
 
 }  // namespace
 
-Blocks format_stl(const Mesh& mesh) {
+Blocks format_stl(const Mesh& mesh, const WriteOptions& /*options*/) {
   const std::size_t count = mesh.triangles.size();
   if (count > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorCode::over_limit, "STL holds at most 4294967295 triangles; write PLY instead");

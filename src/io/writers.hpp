@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
 
 #include "io/output.hpp"
@@ -21,6 +22,10 @@ struct VertexArrays {
   const std::vector<Vec3f>& normals;
   const std::vector<Attribute>& attributes;
 };
+
+/// PLY, binary or ascii as `options` want it. @throws Error as format_ply
+Blocks format_ply_cloud(const Cloud& cloud, const WriteOptions& options);
+Blocks format_ply_mesh(const Mesh& mesh, const WriteOptions& options);
 
 /// Binary little endian PLY. `triangles` null: no face element. Coordinates are double, and in world units, if the
 /// origin is not zero.
@@ -38,11 +43,11 @@ std::vector<AttributeType> stored_types(const VertexArrays& vertices);
 
 /// OBJ text: world coordinates in the fewest digits that read back equal. Colours, if red, green and blue are uint8
 /// attributes, follow the coordinates as numbers in [0, 1], as many programs read them.
-Blocks format_obj(const Mesh& mesh);
+Blocks format_obj(const Mesh& mesh, const WriteOptions& options);
 
 /// Binary STL, world coordinates as float.
 /// @throws Error over_limit for more than 2^32 - 1 triangles
-Blocks format_stl(const Mesh& mesh);
+Blocks format_stl(const Mesh& mesh, const WriteOptions& options);
 
 /// Rows of a file that are made alike: append(first, last, bytes) adds the rows [first, last) to `bytes`.
 struct Section {

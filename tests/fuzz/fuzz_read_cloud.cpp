@@ -2,23 +2,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <iterator>
+#include <string>
 
 #include <pointskin/error.hpp>
 
-#include "io/readers.hpp"
+#include "io/formats.hpp"
 
 using namespace pointskin;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  constexpr io::Format kFormats[] = {io::Format::ply, io::Format::text, io::Format::obj, io::Format::stl,
-                                     io::Format::off, io::Format::vtk,  io::Format::json};
-  const io::Format format = kFormats[data[0] % std::size(kFormats)];
+  const io::Formats format = io::formats().subspan(data[0] % io::formats().size(), 1);
+  const std::string name = "fuzz" + format.front().info.extensions.front();
   ReadOptions options;
   options.threads = 1;
   try {
-    const Cloud cloud = io::parse_cloud({"fuzz", {reinterpret_cast<const char*>(data + 1), size - 1}}, format, options);
+    const Cloud cloud = io::parse_cloud({name, {reinterpret_cast<const char*>(data + 1), size - 1}}, options, format);
     if (!cloud.normals.empty() && cloud.normals.size() != cloud.positions.size()) std::abort();
     for (const Attribute& a : cloud.attributes)
       if (a.values.size() != cloud.positions.size()) std::abort();

@@ -14,7 +14,7 @@
 #include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
-#include "io/readers.hpp"
+#include "io/formats.hpp"
 
 namespace pointskin::test {
 
@@ -58,13 +58,11 @@ std::string raw(std::type_identity_t<T> value, bool big_endian = false) {
 }
 
 inline Cloud cloud_of(const std::string& name, const std::string& bytes, const ReadOptions& options = {}) {
-  const io::Source source{name, bytes};
-  return io::parse_cloud(source, io::detect_format(source, false), options);
+  return io::parse_cloud({name, bytes}, options);
 }
 
 inline Mesh mesh_of(const std::string& name, const std::string& bytes, const ReadOptions& options = {}) {
-  const io::Source source{name, bytes};
-  return io::parse_mesh(source, io::detect_format(source, true), options);
+  return io::parse_mesh({name, bytes}, options);
 }
 
 /// The story of the Error that `f` throws; "" if it throws none, and the code must be `code`.

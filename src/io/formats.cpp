@@ -1,0 +1,172 @@
+#include "io/formats.hpp"
+
+#include <pointskin/error.hpp>
+#include <pointskin/merge.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <ranges>
+#include <utility>
+
+#include "io/ply_header.hpp"
+#include "io/readers.hpp"
+#include "io/writers.hpp"
+
+namespace pointskin {
+namespace io {
+namespace {
+
+bool has_extension(const FormatInfo& format, const std::string& extension) {
+  return std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end();
+}
+
+/// Lists name formats in the order of the table.
+std::vector<Format> make_table() {
+  using enum HeldAttributes;
+  using enum NumberCoding;
+  return {
+      {{.name = "PLY", .extensions = {".ply"}, .attributes = all, .coding = either},
+       {.has_magic = is_ply,
+        .announces_faces = ply_announces_faces,
+        .read_cloud = parse_ply_cloud,
+        .read_mesh = parse_ply_mesh,
+        .write_cloud = format_ply_cloud,
+        .write_mesh = format_ply_mesh}},
+      {{.name = "text", .extensions = {".xyz", ".pts", ".asc", ".txt", ".csv"}},
+       {.looks_like = [](std::string_view, bool) { return true; }, .read_cloud = parse_text}},
+      {{.name = "VTK", .extensions = {".vtk"}}, {.has_magic = is_vtk, .read_cloud = parse_vtk}},
+      {{.name = "JSON", .extensions = {".json"}}, {.looks_like = looks_like_json, .read_cloud = parse_json_points}},
+      {{.name = "OBJ", .extensions = {".obj"}, .attributes = colours, .coding = text},
+       {.looks_like = [](std::string_view, bool want_mesh) { return want_mesh; },
+        .read_mesh = parse_obj,
+        .write_mesh = format_obj}},
+      {{.name = "STL", .extensions = {".stl"}, .attributes = none, .coding = binary},
+       {.looks_like = looks_like_stl, .read_mesh = parse_stl, .write_mesh = format_stl}},
+      {{.name = "OFF", .extensions = {".off"}}, {.looks_like = looks_like_off, .read_mesh = parse_off}},
+  };
+}
+
+/// The first of `entries` that is what is looked for, or null.
+template <class Entries, class Is>
+auto* find(const Entries& entries, const Is& is) {
+  const auto at = std::find_if(std::begin(entries), std::end(entries), is);
+  return at == std::end(entries) ? nullptr : &*at;
+}
+
+const Format* find_magic(Formats table, std::string_view start) {
+  return find(table, [&](const Format& f) { return f.run.has_magic != nullptr && f.run.has_magic(start); });
+}
+
+/// Null for no extension, too.
+const Format* find_extension(Formats table, const std::string& extension) {
+  return find(table, [&](const Format& f) { return has_extension(f.info, extension); });
+}
+
+/// For stdin and names without an extension.
+const Format* guess(Formats table, std::string_view bytes, bool want_mesh) {
+  return find(std::ranges::reverse_view(table), [&](const Format& f) {
+    return f.run.looks_like != nullptr && (f.info.reads_meshes || !want_mesh) && f.run.looks_like(bytes, want_mesh);
+  });
+}
+
+const Format& detect(Formats table, const Source& source, bool want_mesh) {
+  const std::string extension = extension_of(source.name);
+  const Format* format = find_magic(table, source.bytes);
+  if (format == nullptr)
+    format = extension.empty() ? guess(table, source.bytes, want_mesh) : find_extension(table, extension);
+  if (format != nullptr) return *format;
+  fail(source, "has the unknown extension " + in_quotes(extension),
+       "use " + extension_list(want_mesh ? &FormatInfo::reads_meshes : &FormatInfo::reads_clouds, infos_of(table)));
+}
+
+}  // namespace
+
+Format::Format(FormatInfo about, const FormatFunctions& functions) : info(std::move(about)), run(functions) {
+  info.reads_meshes = run.read_mesh != nullptr;
+  info.reads_clouds = run.read_cloud != nullptr || info.reads_meshes;
+  info.writes_clouds = run.write_cloud != nullptr;
+  info.writes_meshes = run.write_mesh != nullptr;
+}
+
+Formats formats() {
+  static const std::vector<Format> table = make_table();
+  return table;
+}
+
+std::vector<FormatInfo> infos_of(Formats table) {
+  std::vector<FormatInfo> infos;
+  for (const Format& format : table) infos.push_back(format.info);
+  return infos;
+}
+
+Cloud parse_cloud(const Source& source, const ReadOptions& options, Formats table) {
+  const Format& format = detect(table, source, false);
+  exec::Cpu ex(options.threads);
+  if (format.run.read_cloud != nullptr) return format.run.read_cloud(ex, source, options);
+  return cloud_of_vertices(format.run.read_mesh(ex, source, options));
+}
+
+Mesh parse_mesh(const Source& source, const ReadOptions& options, Formats table) {
+  const Format& format = detect(table, source, true);
+  if (!format.info.reads_meshes)
+    fail(source, "is a file of points, not a mesh",
+         "name a " + extension_list(&FormatInfo::reads_meshes, infos_of(table)) + " file");
+  exec::Cpu ex(options.threads);
+  return format.run.read_mesh(ex, source, options);
+}
+
+bool may_hold_faces(const std::string& path, std::string_view start, Formats table) {
+  const Format* format = find_magic(table, start);
+  if (format == nullptr) format = find_extension(table, extension_of(path));
+  if (format == nullptr || !format->info.reads_meshes) return false;
+  return format->run.announces_faces == nullptr || format->run.announces_faces(start);
+}
+
+const Format& mesh_format(const std::string& path, Formats table) {
+  const std::string extension = extension_of(path);
+  if (path == "-" || (extension.empty() && is_stream(path))) return table.front();
+  const Format* format = find_extension(table, extension);
+  if (format != nullptr && format->info.writes_meshes) return *format;
+  throw Error(ErrorCode::usage, printable(path) + ": unknown extension; use " +
+                                    extension_list(&FormatInfo::writes_meshes, infos_of(table)));
+}
+
+const Format& cloud_format(const std::string& path, Formats table) {
+  const Format* format = find_extension(table, extension_of(path));
+  return format != nullptr && format->info.writes_clouds ? *format : table.front();
+}
+
+}  // namespace io
+
+std::span<const FormatInfo> file_formats() {
+  static const std::vector<FormatInfo> infos = io::infos_of(io::formats());
+  return infos;
+}
+
+std::string extension_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::size_t dot = path.rfind('.');
+  const std::size_t name = slash == std::string::npos ? 0 : slash + 1;
+  if (dot == std::string::npos || dot <= name) return {};
+  std::string extension = path.substr(dot);
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+const FormatInfo* format_of(const std::string& path, std::span<const FormatInfo> formats) {
+  const std::string extension = extension_of(path);
+  return io::find(formats, [&](const FormatInfo& f) { return io::has_extension(f, extension); });
+}
+
+std::string extension_list(bool FormatInfo::*can, std::span<const FormatInfo> formats) {
+  std::vector<std::string> words;
+  for (const FormatInfo& format : formats)
+    if (format.*can) words.insert(words.end(), format.extensions.begin(), format.extensions.end());
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    list += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return list;
+}
+
+}  // namespace pointskin

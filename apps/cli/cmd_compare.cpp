@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
+#include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
@@ -188,42 +189,26 @@ constexpr char kFooter[] =
     "all\n"
     "else a cloud. --heat measures all vertices or points of A, not samples.";
 
-void add_measure_options(CLI::App& command, CompareArgs& args) {
-  command.add_option("--tau", args.options.tau, "F-score threshold, as a fraction of B's diagonal")
-      ->type_name("F")
-      ->group("Measure")
-      ->capture_default_str();
-  command.add_option("--samples", args.options.samples, "samples of each mesh, points of each cloud at most")
-      ->type_name("N")
-      ->group("Measure")
-      ->capture_default_str();
-}
-
-void add_output_options(CLI::App& command, CompareArgs& args) {
-  command.add_flag("--json", args.json, "print JSON")->group("Output");
-  command.add_option("--heat", args.heat, "also write A with the property `distance` from B, in world units: .ply")
-      ->type_name("FILE")
-      ->group("Output");
-  command
-      .add_flag("--signed", args.with_sign,
-                "with --heat: `signed_distance` instead, above 0 outside of B, which must be watertight")
-      ->group("Output");
-  add_overwrite_option(command, args.overwrite);
+OptionTable compare_options(CompareArgs& args) {
+  return {{"Measure",
+           {{"A", "mesh or cloud; - reads stdin", &args.a, {}, {.required = true}},
+            {"B", "the reference: mesh or cloud", &args.b, {}, {.required = true}},
+            {"--tau F", "F-score threshold, as a fraction of B's diagonal", &args.options.tau},
+            {"--samples N", "samples of each mesh, points of each cloud at most", &args.options.samples}}},
+          {"Output",
+           {json_row(args.json),
+            {"--heat FILE", "also write A with the property `distance` from B, in world units: .ply", &args.heat},
+            {"--signed", "with --heat: `signed_distance` instead, above 0 outside of B, which must be watertight",
+             &args.with_sign}}},
+          {"Files", {overwrite_row(args.overwrite)}},
+          {"Limits", {threads_row(args.options.threads)}}};
 }
 
 }  // namespace
 
-void add_compare(CLI::App& program, Job& job) {
-  CLI::App* command =
-      add_command(program, "compare", "Measure how far a mesh or cloud is from a reference, both ways.");
-  auto args = std::make_shared<CompareArgs>();
-  command->footer(kFooter);
-  command->add_option("A", args->a, "mesh or cloud; - reads stdin")->required();
-  command->add_option("B", args->b, "the reference: mesh or cloud")->required();
-  add_measure_options(*command, *args);
-  add_output_options(*command, *args);
-  add_threads_option(*command, args->options.threads, "Limits");
-  finish_command(*command, job, args, run);
+Command compare_command() {
+  return make_command({"compare", "Measure how far a mesh or cloud is from a reference, both ways.", kFooter},
+                      compare_options, run);
 }
 
 }  // namespace pointskin::cli

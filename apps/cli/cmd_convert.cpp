@@ -12,6 +12,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
+#include "fit_args.hpp"
 #include "input.hpp"
 #include "output_check.hpp"
 #include "signals.hpp"
@@ -60,23 +61,25 @@ int run(const ConvertArgs& args) {
   return 0;
 }
 
+OptionTable convert_options(ConvertArgs& args) {
+  return {
+      {"Input",
+       {{"IN",
+         "mesh: PLY, OBJ, STL, OFF; cloud: PLY, XYZ, PTS, ASC, TXT, CSV; - is stdin",
+         &args.input,
+         {},
+         {.required = true}},
+        {"OUT", "mesh: .ply, .obj, .stl; cloud: .ply; - writes PLY to stdout", &args.output, {}, {.required = true}},
+        shift_row(args.shift)}},
+      {"Files", {ascii_row(args.ascii), overwrite_row(args.overwrite)}},
+      {"Limits", {threads_row(args.threads)}},
+      quiet_option(args.quiet)};
+}
+
 }  // namespace
 
-void add_convert(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "convert", "Write a mesh in another format, or a cloud as PLY.");
-  auto args = std::make_shared<ConvertArgs>();
-  command->add_option("IN", args->input, "mesh: PLY, OBJ, STL, OFF; cloud: PLY, XYZ, PTS, ASC, TXT, CSV; - is stdin")
-      ->required();
-  command->add_option("OUT", args->output, "mesh: .ply, .obj, .stl; cloud: .ply; - writes PLY to stdout")->required();
-  command->add_option("--shift", args->shift, "offset subtracted while working: auto, none or x,y,z in world units")
-      ->type_name("S")
-      ->group("Input")
-      ->capture_default_str();
-  add_ascii_option(*command, args->ascii);
-  add_overwrite_option(*command, args->overwrite);
-  add_threads_option(*command, args->threads, "Limits");
-  command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
-  finish_command(*command, job, args, run);
+Command convert_command() {
+  return make_command({"convert", "Write a mesh in another format, or a cloud as PLY."}, convert_options, run);
 }
 
 }  // namespace pointskin::cli

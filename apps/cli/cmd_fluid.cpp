@@ -223,32 +223,12 @@ Json frame_json(const FluidFrameRecord& frame) {
             {"total", frame.total_ms}}}};
 }
 
-Json options_json(const FluidArgs& args, const FluidOptions& options) {
-  const auto or_null = [](const std::optional<std::int64_t>& n) { return n ? Json(*n) : Json(nullptr); };
-  return {{"particle_radius", options.particle_radius},
-          {"kernel", args.kernel},
-          {"smoothing_length", options.smoothing_length},
-          {"cube_size", options.cube_size},
-          {"surface_threshold", options.surface_threshold == 0 ? Json("default") : Json(options.surface_threshold)},
-          {"smoothing_iterations", options.smoothing_iterations},
-          {"smoothing_weights", options.smoothing_weights},
-          {"min_component", options.min_component},
-          {"normals", options.normals},
-          {"attributes", options.attributes},
-          {"device", args.device},
-          {"threads", args.threads},
-          {"shift", args.shift},
-          {"first", or_null(args.first)},
-          {"last", or_null(args.last)},
-          {"input", args.input},
-          {"output", args.output}};
-}
-
-void write_report(const FluidArgs& args, const FluidOptions& options, const Device& device,
-                  const std::vector<FluidFrameRecord>& frames, int at_once, double total_ms) {
+void write_report(const FluidArgs& args, const Device& device, const std::vector<FluidFrameRecord>& frames, int at_once,
+                  double total_ms) {
   Json json = {{"version", 1}, {"command", "fluid"}};
   json["device"] = to_json(device);
-  json["options"] = options_json(args, options);
+  FluidArgs shown = args;
+  json["options"] = report_of(fluid_options(shown));
   json["at_once"] = at_once;
   json["frames"] = Json::array();
   std::int64_t peak = 0;
@@ -282,9 +262,12 @@ int run(const FluidArgs& args) {
   const Stopwatch start;
   check_given(args);
   const FluidOptions options = library_options(args);
-  if (!args.simulation.scene.empty())
+  if (!args.simulation.scene.empty()) {
+    FluidArgs shown = args;
     return run_simulation(args.simulation, {args.output, args.report, args, args.quiet, options,
-                                            [&args](bool on_gpu) { warn_about_unused(args, on_gpu); }});
+                                            [&args](bool on_gpu) { warn_about_unused(args, on_gpu); },
+                                            report_of(simulation_report_options(shown))});
+  }
   parse_shift(args.shift);
   if (!args.max_memory.empty()) parse_bytes(args.max_memory, "--max-memory");
   if (args.at_once < 0 || args.at_once > 4096)
@@ -304,7 +287,7 @@ int run(const FluidArgs& args) {
   Sequence sequence(args, options, device, frames);
   sequence.run();
   const double total_ms = start.ms();
-  if (!args.report.empty()) write_report(args, options, device, frames, sequence.at_once(), total_ms);
+  if (!args.report.empty()) write_report(args, device, frames, sequence.at_once(), total_ms);
   if (args.quiet) return 0;
   std::vector<double> surface_ms;
   for (const FluidFrameRecord& frame : frames) surface_ms.push_back(frame.surface_ms);
@@ -319,11 +302,8 @@ int run(const FluidArgs& args) {
 
 }  // namespace
 
-void add_fluid(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "fluid", "Make closed meshes of a simulation's particles.");
-  auto args = std::make_shared<FluidArgs>();
-  define_fluid_options(*command, *args);
-  finish_command(*command, job, args, run);
+Command fluid_command() {
+  return make_command({"fluid", "Make closed meshes of a simulation's particles."}, fluid_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -185,11 +185,8 @@ int run(const RenderArgs& args) {
 
 }  // namespace
 
-void add_render(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "render", "Draw a picture of a mesh or a cloud.");
-  auto args = std::make_shared<RenderArgs>();
-  define_render_options(*command, *args);
-  finish_command(*command, job, args, run);
+Command render_command() {
+  return make_command({"render", "Draw a picture of a mesh or a cloud."}, render_options, run);
 }
 
 }  // namespace pointskin::cli

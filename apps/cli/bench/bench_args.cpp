@@ -10,7 +10,7 @@
 #include "args.hpp"
 #include "bench/launcher.hpp"
 #include "bench/words.hpp"
-#include "commands.hpp"
+#include "fit_args.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -43,52 +43,51 @@ void append_devices(std::vector<Device>& devices, const std::string& name, int t
   }
 }
 
-CLI::Option* add_text(CLI::App& command, const std::string& name, std::string& value, const std::string& description) {
-  return command.add_option(name, value, description)->check([](const std::string& text) {
-    return std::string(text.empty() ? "needs a value" : "");
-  });
-}
-
-void define_peer(CLI::App& command, BenchArgs& args) {
-  const std::string group = "Another program";
-  add_text(command, "--peer", args.peer, "its command, with {in}, {out}, {depth}; run in turn with ours, file to file")
-      ->type_name("CMD")
-      ->group(group);
-  command.add_option("--peer-repeat", args.peer_repeat, "runs of each, 1 to 1000")
-      ->type_name("N")
-      ->group(group)
-      ->check(CLI::Range(1, 1000).description(""))
-      ->capture_default_str();
+/// A check for whole numbers.
+std::function<std::string(const std::string&)> in_range(int least, int most) {
+  return [least, most](const std::string& text) {
+    const double value = parse_number(text).value_or(least - 1);
+    const bool good = value >= least && value <= most && value == static_cast<int>(value);
+    return good ? "" : fmt::format("Value {} not in range {} to {}", text, least, most);
+  };
 }
 
 }  // namespace
 
-void define_bench_options(CLI::App& command, BenchArgs& args) {
-  command.add_option("IN", args.inputs, "oriented clouds, measured one by one [default the paper's six, generated]");
-  command.add_option("--generate", args.generate, "a cloud of a known shape, e.g. knot:1000000; may be repeated")
-      ->type_name("SHAPE:N")
-      ->group("Work")
-      ->allow_extra_args(false);
-  add_text(command, "--depths", args.depths,
-           "octree depths, 1 to 20 [default 8,9,10; those of the paper for its clouds]")
-      ->type_name("D,D,...")
-      ->group("Work");
-  command.add_option("--repeat", args.repeat, "runs on data in memory, 1 to 100000")
-      ->type_name("N")
-      ->group("Work")
-      ->check(CLI::Range(1, 100000).description(""))
-      ->capture_default_str();
-  add_text(command, "--devices", args.devices, "cpu, cuda (every GPU), cuda:N, separated by commas, or all")
-      ->type_name("DEV,...")
-      ->group("Device and limits")
-      ->capture_default_str();
-  add_threads_option(command, args.threads, "Device and limits");
-  define_peer(command, args);
-  add_text(command, "--report", args.report, "write what was measured, and where, as JSON")
-      ->type_name("FILE")
-      ->group("Output");
-  add_text(command, "--plot", args.plot, "draw time against points and depth")->type_name("FILE.svg")->group("Output");
-  command.add_flag("-q,--quiet", args.quiet, "no progress on stderr")->group("Output");
+OptionTable bench_options(BenchArgs& args) {
+  const OptionRules text = {.check = needs_a_value};
+  return {
+      {"Work",
+       {{"IN", "oriented clouds, measured one by one [default the paper's six, generated]", &args.inputs},
+        {"--generate SHAPE:N", "a cloud of a known shape, e.g. knot:1000000; may be repeated", &args.generate},
+        {"--depths D,D,...",
+         "octree depths, 1 to 20 [default 8,9,10; those of the paper for its clouds]",
+         &args.depths,
+         {},
+         text},
+        {"--repeat N",
+         "runs on data in memory, 1 to 100000",
+         &args.repeat,
+         {"repeat", 1, R"({"minimum": 1})"},
+         {.check = in_range(1, 100000)}}}},
+      {kDeviceGroup,
+       {{"--devices DEV,...", "cpu, cuda (every GPU), cuda:N, separated by commas, or all", &args.devices, {}, text},
+        threads_row(args.threads)}},
+      {"Another program",
+       {{"--peer CMD",
+         "its command, with {in}, {out}, {depth}; run in turn with ours, file to file",
+         &args.peer,
+         {},
+         text},
+        {"--peer-repeat N",
+         "runs of each, 1 to 1000",
+         &args.peer_repeat,
+         {"peer_repeat", 40, R"({"minimum": 1})"},
+         {.check = in_range(1, 1000)}}}},
+      {"Output",
+       {{"--report FILE", "write what was measured, and where, as JSON", &args.report, {}, text},
+        {"--plot FILE.svg", "draw time against points and depth", &args.plot, {}, text},
+        {"-q,--quiet", "no progress on stderr", &args.quiet}}}};
 }
 
 std::vector<int> parse_depths(const std::string& text) {

@@ -8,30 +8,22 @@ namespace pointskin::cli {
 namespace {
 
 OptionGroup file_options(BooleanArgs& args) {
-  return {
-      "Files",
-      {{"-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {}, {.required = true}},
-       {"--cloud FILE",
-        "also write the oriented points of the result, as PLY",
-        &args.cloud,
-        {},
-        {.check = needs_a_name}},
-       report_row(args.report),
-       overwrite_row(args.overwrite),
-       shift_row(args.shift)}};
+  return {"Files",
+          {option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {},
+                  {.required = true}),
+           option("--cloud FILE", "also write the oriented points of the result, as PLY", &args.cloud, {},
+                  {.check = needs_a_name}),
+           report_row(args.report), overwrite_row(args.overwrite), shift_row(args.shift)}};
 }
 
 OptionGroup crease_options(BooleanArgs& args) {
   BooleanOptions& o = args.booleans;
-  return {kSurfaceGroup,
-          {{"--creases C",
-            "where surfaces cross: sampled, or none",
-            one_of<Creases>(o.creases, {{"none", Creases::none}, {"sampled", Creases::sampled}}),
-            {"creases", 24}},
-           {"--coincidence N",
-            "surfaces that run alike coincide up to this distance, cells, 0 to 100",
-            &o.coincidence_cells,
-            {"coincidence", 25, R"({"minimum": 0, "description": "cells"})"}}}};
+  return {
+      kSurfaceGroup,
+      {option("--creases C", "where surfaces cross: sampled, or none",
+              one_of<Creases>(o.creases, {{"none", Creases::none}, {"sampled", Creases::sampled}}), {"creases", 24}),
+       option("--coincidence N", "surfaces that run alike coincide up to this distance, cells, 0 to 100",
+              &o.coincidence_cells, {"coincidence", 25, R"({"minimum": 0, "description": "cells"})"})}};
 }
 
 }  // namespace
@@ -44,17 +36,17 @@ Binding operation_of(BooleanOp& op) {
 }
 
 OptionTable boolean_options(BooleanArgs& args) {
+  OptionGroup surface = fit_options(args.fit);
+  surface.row("--envelope").report = {};
+  surface.without(kBeyondSolve);
   return {{"Options",
-           {{"A", "oriented cloud or closed mesh; - reads stdin", &args.a, {}, {.required = true}},
-            {"B", "oriented cloud or closed mesh; - reads stdin", &args.b, {}, {.required = true}},
-            {"--op OP",
-             "union, intersection, difference (A without B) or symmetric-difference (in exactly one)",
-             operation_of(args.op),
-             {},
-             {.required = true, .no_default = true}}}},
+           {option("A", "oriented cloud or closed mesh; - reads stdin", &args.a, {}, {.required = true}),
+            option("B", "oriented cloud or closed mesh; - reads stdin", &args.b, {}, {.required = true}),
+            option("--op OP", "union, intersection, difference (A without B) or symmetric-difference (in exactly one)",
+                   operation_of(args.op), {}, {.required = true, .no_default = true})}},
           file_options(args).unreported(),
           crease_options(args),
-          fit_options(args.fit).without(kBeyondSolve),
+          surface,
           device_options(args).unreported(),
           quiet_option(args.quiet)};
 }

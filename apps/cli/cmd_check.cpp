@@ -126,13 +126,13 @@ constexpr char kFooter[] =
     "`reconstruct` crosses itself in single cells of three rare kinds only; an envelope and smoothing may fold it.";
 
 OptionTable check_options(CheckArgs& args) {
-  return {
-      {"Check",
-       {{"MESH", "mesh: PLY, OBJ, STL or OFF; - reads PLY from stdin", &args.file, {}, {.required = true}},
-        {"--self-intersections", "also find pairs of triangles that meet beside what they share; 5 if there are any",
-         &args.self_intersections}}},
-      {"Output", {json_row(args.json)}},
-      {"Limits", {threads_row(args.threads)}}};
+  return {{"Check",
+           {option("MESH", "mesh: PLY, OBJ, STL or OFF; - reads PLY from stdin", &args.file, {}, {.required = true}),
+            option("--self-intersections",
+                   "also find pairs of triangles that meet beside what they share; 5 if there are any",
+                   &args.self_intersections)}},
+          {"Output", {json_row(args.json)}},
+          {"Limits", {threads_row(args.threads)}}};
 }
 
 }  // namespace

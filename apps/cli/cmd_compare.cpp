@@ -191,15 +191,15 @@ constexpr char kFooter[] =
 
 OptionTable compare_options(CompareArgs& args) {
   return {{"Measure",
-           {{"A", "mesh or cloud; - reads stdin", &args.a, {}, {.required = true}},
-            {"B", "the reference: mesh or cloud", &args.b, {}, {.required = true}},
-            {"--tau F", "F-score threshold, as a fraction of B's diagonal", &args.options.tau},
-            {"--samples N", "samples of each mesh, points of each cloud at most", &args.options.samples}}},
+           {option("A", "mesh or cloud; - reads stdin", &args.a, {}, {.required = true}),
+            option("B", "the reference: mesh or cloud", &args.b, {}, {.required = true}),
+            option("--tau F", "F-score threshold, as a fraction of B's diagonal", &args.options.tau),
+            option("--samples N", "samples of each mesh, points of each cloud at most", &args.options.samples)}},
           {"Output",
            {json_row(args.json),
-            {"--heat FILE", "also write A with the property `distance` from B, in world units: .ply", &args.heat},
-            {"--signed", "with --heat: `signed_distance` instead, above 0 outside of B, which must be watertight",
-             &args.with_sign}}},
+            option("--heat FILE", "also write A with the property `distance` from B, in world units: .ply", &args.heat),
+            option("--signed", "with --heat: `signed_distance` instead, above 0 outside of B, which must be watertight",
+                   &args.with_sign)}},
           {"Files", {overwrite_row(args.overwrite)}},
           {"Limits", {threads_row(args.options.threads)}}};
 }

@@ -62,18 +62,15 @@ int run(const ConvertArgs& args) {
 }
 
 OptionTable convert_options(ConvertArgs& args) {
-  return {
-      {"Input",
-       {{"IN",
-         "mesh: PLY, OBJ, STL, OFF; cloud: PLY, XYZ, PTS, ASC, TXT, CSV; - is stdin",
-         &args.input,
-         {},
-         {.required = true}},
-        {"OUT", "mesh: .ply, .obj, .stl; cloud: .ply; - writes PLY to stdout", &args.output, {}, {.required = true}},
-        shift_row(args.shift)}},
-      {"Files", {ascii_row(args.ascii), overwrite_row(args.overwrite)}},
-      {"Limits", {threads_row(args.threads)}},
-      quiet_option(args.quiet)};
+  return {{"Input",
+           {option("IN", "mesh: PLY, OBJ, STL, OFF; cloud: PLY, XYZ, PTS, ASC, TXT, CSV; - is stdin", &args.input, {},
+                   {.required = true}),
+            option("OUT", "mesh: .ply, .obj, .stl; cloud: .ply; - writes PLY to stdout", &args.output, {},
+                   {.required = true}),
+            shift_row(args.shift)}},
+          {"Files", {ascii_row(args.ascii), overwrite_row(args.overwrite)}},
+          {"Limits", {threads_row(args.threads)}},
+          quiet_option(args.quiet)};
 }
 
 }  // namespace

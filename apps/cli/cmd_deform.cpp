@@ -45,23 +45,17 @@ struct DeformArgs : FitArgs, DeviceArgs {
 };
 
 OptionGroup file_options(DeformArgs& args) {
-  return {"Files",
-          {{"IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}, {.required = true}},
-           {"--script FILE",
-            "the deformation as JSON; - reads stdin",
-            &args.script,
-            {"script", 61, R"({"type": "string"})"},
-            {.required = true}},
-           {"-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62}},
-           {"--cloud OUT", "deformed points: .ply, - writes to stdout", &args.cloud, {"cloud", 63}},
-           {"--report FILE", "write what was done as JSON; also measures how far apart samples are", &args.report},
-           overwrite_row(args.overwrite),
-           shift_row(args.shift),
-           {"--frames N",
-            "N frames from the rest pose to the deformation; {} in OUT: number",
-            &args.frames,
-            {"frames", 50, R"({"minimum": 1})"},
-            {.no_default = true}}}};
+  return {
+      "Files",
+      {option("IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}, {.required = true}),
+       option("--script FILE", "the deformation as JSON; - reads stdin", &args.script, {"script", 61, kNeverNull},
+              {.required = true}),
+       option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62}),
+       option("--cloud OUT", "deformed points: .ply, - writes to stdout", &args.cloud, {"cloud", 63}),
+       option("--report FILE", "write what was done as JSON; also measures how far apart samples are", &args.report),
+       overwrite_row(args.overwrite), shift_row(args.shift),
+       option("--frames N", "N frames from the rest pose to the deformation; {} in OUT: number", &args.frames,
+              {"frames", 50, kFromOne}, {.no_default = true})}};
 }
 
 OptionTable deform_options(DeformArgs& args) {
@@ -179,8 +173,8 @@ void warn_about_unused(const DeformArgs& args, const Options& options, const Def
   warn_about_unused(args.given, options, cloud, args.output);
   if (args.output.empty())
     warn_unused(args.given,
-                {"--linear-fit", "--open", "--envelope", "--offset", "--trim", "--island-ratio", "--weakness",
-                 "--no-normals", "--density", "--keep-attributes"},
+                option("--linear-fit", "--open", "--envelope", "--offset", "--trim", "--island-ratio", "--weakness",
+                       "--no-normals", "--density", "--keep-attributes"),
                 kNoMesh);
   if (!moves_anything(deformation)) print_warning(fmt::format("{}: moves nothing", args.script));
   for (const std::string& story : idle_parts(deformation, cloud))

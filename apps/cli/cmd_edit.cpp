@@ -39,20 +39,17 @@ struct EditArgs : FitArgs, DeviceArgs {
 
 OptionGroup file_options(EditArgs& args) {
   const OptionRules named = {.check = needs_a_name};
-  return {
-      "Files",
-      {{"IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}, {.required = true}},
-       {"--script FILE",
-        "operations, as JSON",
-        &args.script,
-        {"script", 61, R"({"type": "string"})"},
-        {.required = true, .check = needs_a_name}},
-       {"-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62}, named},
-       {"--cloud FILE", "write the edited points, with the property added, as PLY", &args.cloud, {"cloud", 63}, named},
-       {"--save FILE", "write the operations that are done, as a script", &args.save, {"save", 64}, named},
-       report_row(args.report, "write what every step did as JSON"),
-       overwrite_row(args.overwrite),
-       shift_row(args.shift)}};
+  return {"Files",
+          {option("IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}, {.required = true}),
+           option("--script FILE", "operations, as JSON", &args.script, {"script", 61, kNeverNull},
+                  {.required = true, .check = needs_a_name}),
+           option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62},
+                  named),
+           option("--cloud FILE", "write the edited points, with the property added, as PLY", &args.cloud,
+                  {"cloud", 63}, named),
+           option("--save FILE", "write the operations that are done, as a script", &args.save, {"save", 64}, named),
+           report_row(args.report, "write what every step did as JSON"), overwrite_row(args.overwrite),
+           shift_row(args.shift)}};
 }
 
 OptionTable edit_options(EditArgs& args) {
@@ -60,10 +57,8 @@ OptionTable edit_options(EditArgs& args) {
           fit_options(args).without({"--offset"}),  // a session has none
           device_options(args),
           {kSurfaceGroup,
-           {{"--cold",
-             "solve every surface anew, instead of from the one before",
-             negated(args.warm_start),
-             {"warm_start", 24}}}},
+           {option("--cold", "solve every surface anew, instead of from the one before", negated(args.warm_start),
+                   {"warm_start", 24})}},
           quiet_option(args.quiet)};
 }
 
@@ -154,7 +149,7 @@ void run_script(const EditScript& script, const EditArgs& args, EditSession& ses
 void warn_about_options(const EditArgs& args, const Options& options) {
   warn_about_unused(args.given, options, args.output, false);
   if (!args.output.empty()) return;
-  warn_unused(args.given, {"--no-normals", "--density", "--weakness"}, kNoMesh);
+  warn_unused(args.given, option("--no-normals", "--density", "--weakness"), kNoMesh);
   if (args.cloud.empty()) warn_unused(args.given, {"--keep-attributes"}, "where neither mesh nor cloud is written");
 }
 

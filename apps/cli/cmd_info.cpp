@@ -148,10 +148,10 @@ constexpr char kFooter[] =
     "points along the surface, their noise across it, and the memory of this machine.";
 
 OptionTable info_options(InfoArgs& args) {
-  return {
-      {"Output", {{"FILE", "cloud or mesh; - reads stdin", &args.file, {}, {.required = true}}, json_row(args.json)}},
-      {"Input", {shift_row(args.shift, "on reading")}},
-      {"Limits", {threads_row(args.threads)}}};
+  return {{"Output",
+           {option("FILE", "cloud or mesh; - reads stdin", &args.file, {}, {.required = true}), json_row(args.json)}},
+          {"Input", {shift_row(args.shift, "on reading")}},
+          {"Limits", {threads_row(args.threads)}}};
 }
 
 }  // namespace

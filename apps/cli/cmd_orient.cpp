@@ -38,16 +38,10 @@ struct OrientArgs : DeviceArgs {
 
 OptionGroup file_options(OrientArgs& args) {
   return {"Files",
-          {{"IN", "clouds, merged; - reads stdin", &args.inputs, {}, {.required = true}},
-           {"-o,--output OUT",
-            "cloud: .ply; - writes PLY to stdout",
-            &args.output,
-            {},
-            {.required = true, .check = needs_a_name}},
-           report_row(args.report),
-           ascii_row(args.ascii),
-           overwrite_row(args.overwrite),
-           shift_row(args.shift)}};
+          {option("IN", "clouds, merged; - reads stdin", &args.inputs, {}, {.required = true}),
+           option("-o,--output OUT", "cloud: .ply; - writes PLY to stdout", &args.output, {},
+                  {.required = true, .check = needs_a_name}),
+           report_row(args.report), ascii_row(args.ascii), overwrite_row(args.overwrite), shift_row(args.shift)}};
 }
 
 OptionTable orient_options(OrientArgs& args) {
@@ -58,8 +52,8 @@ OptionTable orient_options(OrientArgs& args) {
   return {file_options(args).unreported(),
           normals,
           {kNormalGroup,
-           {{"--curvature", "add the property curvature, mean, 1 / world unit", &o.curvature},
-            {"--no-confidence", "leave the property confidence out", negated(o.confidence)}}},
+           {option("--curvature", "add the property curvature, mean, 1 / world unit", &o.curvature),
+            option("--no-confidence", "leave the property confidence out", negated(o.confidence))}},
           device_options(args).unreported(),
           quiet_option(args.quiet)};
 }

@@ -57,7 +57,7 @@ void warn_about_options(const ReconstructArgs& args, const Options& options) {
   warn_about_unused(args.given, options, mesh_file(args), !args.report.empty());
   warn_about_ascii(args.given, args.output);
   if (mesh_file(args).empty())
-    warn_unused(args.given, {"--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"},
+    warn_unused(args.given, option("--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"),
                 kNoMesh);
   if (options.point_normals == PointNormals::given) warn_about_unused_normals(args.given);
   warn_about_poisson_recon(args.given, args.poisson_recon_data);

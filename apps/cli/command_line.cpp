@@ -157,7 +157,7 @@ class Program {
   std::function<int()> job_;
   std::string topic_;
   const Command help_{{"help", "Print the help on the program, or on a command."},
-                      {{"", {{"COMMAND", "the command [default the program]", &topic_}}}},
+                      {{"", {option("COMMAND", "the command [default the program]", &topic_)}}},
                       [this](const GivenOptions&) { return write_stdout(help_on(topic_)), 0; }};
   const Command version_{{"version", "Print the version."}, {}, [](const GivenOptions&) {
                            return write_stdout(version_text() + "\n"), 0;

@@ -39,84 +39,59 @@ Binding share_or_auto(double& share) {
 
 /// How a field is solved for.
 std::vector<OptionRow> solve_rows(Options& o) {
-  return {
-      {"--depth D",
-       "octree depth D in levels, 1 to 20; cells are cube / 2^D wide",
-       depth_or_auto(o.depth),
-       {"depth", 1, R"({"minimum": 1})"}},
-      {"--screening W",
-       "weight of the points, no unit, >= 0; 0: unscreened",
-       &o.screening,
-       {"screening", 3, R"({"minimum": 0})"}},
-      {"--iterations N", "relaxations per level, 1 to 1000", &o.iterations, {"iterations", 4, R"({"minimum": 1})"}},
-      {"--scale F",
-       "working cube / bounding cube of the points, 1 to 100",
-       &o.scale,
-       {"scale", 5, R"({"minimum": 1})"}},
-      {"--samples-per-node N",
-       "points a cell should hold, 0 to 100",
-       &o.samples_per_node,
-       {"samples_per_node", 6, R"({"minimum": 0})"}},
-      {"--fixed-screening",
-       "weigh all points alike, however much they scatter",
-       &o.fixed_screening,
-       {"fixed_screening", 8}},
-      {"--linear-fit", "place vertices by linear interpolation (also =on, =off)", &o.linear_fit, {"linear_fit", 9}},
-      {"--boundary B",
-       "field on the cube's faces: free (also called neumann), or dirichlet: 0",
-       one_of<Boundary>(o.boundary,
-                        {{"free", Boundary::free}, {"dirichlet", Boundary::dirichlet}, {"neumann", Boundary::free}}),
-       {"boundary", 15}},
-      {"--keep-strays", "use stray points, too, and make the cube for all points", &o.keep_strays, {"keep_strays", 21}},
-      {"--no-normals", "leave vertex normals out of the mesh", negated(o.normals), {"normals", 13}}};
+  return {option("--depth D", "octree depth D in levels, 1 to 20; cells are cube / 2^D wide", depth_or_auto(o.depth),
+                 {"depth", 1, kFromOne}),
+          option("--screening W", "weight of the points, no unit, >= 0; 0: unscreened", &o.screening,
+                 {"screening", 3, kFromZero}),
+          option("--iterations N", "relaxations per level, 1 to 1000", &o.iterations, {"iterations", 4, kFromOne}),
+          option("--scale F", "working cube / bounding cube of the points, 1 to 100", &o.scale, {"scale", 5, kFromOne}),
+          option("--samples-per-node N", "points a cell should hold, 0 to 100", &o.samples_per_node,
+                 {"samples_per_node", 6, kFromZero}),
+          option("--fixed-screening", "weigh all points alike, however much they scatter", &o.fixed_screening,
+                 {"fixed_screening", 8}),
+          option("--linear-fit", "place vertices by linear interpolation (also =on, =off)", &o.linear_fit,
+                 {"linear_fit", 9}),
+          option("--boundary B", "field on the cube's faces: free (also called neumann), or dirichlet: 0",
+                 one_of<Boundary>(
+                     o.boundary,
+                     {{"free", Boundary::free}, {"dirichlet", Boundary::dirichlet}, {"neumann", Boundary::free}}),
+                 {"boundary", 15}),
+          option("--keep-strays", "use stray points, too, and make the cube for all points", &o.keep_strays,
+                 {"keep_strays", 21}),
+          option("--no-normals", "leave vertex normals out of the mesh", negated(o.normals), {"normals", 13})};
 }
 
 /// What is done with the field then.
 std::vector<OptionRow> mesh_rows(FitArgs& args) {
   Options& o = args.options;
   return {
-      {"--field F",
-       "poisson (a field solved for), or distance (to the points' tangent planes)",
-       one_of<FieldKind>(o.field, {{"poisson", FieldKind::poisson}, {"distance", FieldKind::distance}}),
-       {"field", 2}},
-      {"--confidence",
-       "the length of a normal is the weight of its point",
-       zero_or_one(o.confidence),
-       {"confidence", 7}},
-      {"--open",
-       "leave the surface open at the cube's faces, instead of closed",
-       turned(o.domain_faces, DomainFaces::open),
-       {"open", 14}},
-      {"--envelope MESH",
-       "closed mesh that the surface stays inside of [default none]",
-       &args.envelope,
-       {"envelope", 33},
-       {.check = needs_a_name}},
-      {"--offset D",
-       "distance of the mesh from the surface, world units, > 0 outwards",
-       &o.offset,
-       {"offset", 16, R"({"description": "world units, > 0 outwards; 0: off"})"}},
-      {"--trim Q",
-       "cut where samples end: share that counts as sparse, 0 (off) to below 1",
-       share_or_auto(o.trim),
-       {"trim", 17, R"({"minimum": 0, "exclusiveMaximum": 1,
-          "description": "0: off, also where auto found nothing to cut"})"}},
-      {"--island-ratio R",
-       "trim: smallest piece, share of the area, 0 to below 1",
-       &o.island_ratio,
-       {"island_ratio", 18, R"({"minimum": 0, "exclusiveMaximum": 1})"}},
-      {"--largest", "keep only the connected piece with the largest area", &o.largest, {"largest", 19}},
-      {"--min-component N|RATIO",
-       "leave out smaller pieces: triangles, or below 1 the share of the area; 0: none",
-       &o.min_component,
-       {"min_component", 20, R"({"minimum": 0, "description": "triangles, or below 1 a share of the area; 0: none"})"}},
-      {"--density", "add the property density, points per world unit^2", &o.density, {"density", 10}},
-      {"--weakness", "add the property weakness, 0 to 1: how doubtful the topology is", &o.weakness, {"weakness", 11}},
-      {"--keep-attributes",
-       "carry colours and every other property of the points to the vertices",
-       &o.attributes,
-       {"attributes", 12}},
-      {"", "", &o.max_memory_bytes, {"max_memory_bytes", 22, R"({"minimum": 0, "description": "0: no limit"})"}}};
+      option("--field F", "poisson (a field solved for), or distance (to the points' tangent planes)",
+             one_of<FieldKind>(o.field, {{"poisson", FieldKind::poisson}, {"distance", FieldKind::distance}}),
+             {"field", 2}),
+      option("--confidence", "the length of a normal is the weight of its point", zero_or_one(o.confidence),
+             {"confidence", 7}),
+      option("--open", "leave the surface open at the cube's faces, instead of closed",
+             turned(o.domain_faces, DomainFaces::open), {"open", 14}),
+      option("--envelope MESH", "closed mesh that the surface stays inside of [default none]", &args.envelope,
+             {"envelope", 33}, {.check = needs_a_name}),
+      option("--offset D", "distance of the mesh from the surface, world units, > 0 outwards", &o.offset,
+             {"offset", 16, R"({"description": "world units, > 0 outwards; 0: off"})"}),
+      option("--trim Q", "cut where samples end: share that counts as sparse, 0 (off) to below 1",
+             share_or_auto(o.trim), {"trim", 17, R"({"minimum": 0, "exclusiveMaximum": 1,
+          "description": "0: off, also where auto found nothing to cut"})"}),
+      option("--island-ratio R", "trim: smallest piece, share of the area, 0 to below 1", &o.island_ratio,
+             {"island_ratio", 18, R"({"minimum": 0, "exclusiveMaximum": 1})"}),
+      option("--largest", "keep only the connected piece with the largest area", &o.largest, {"largest", 19}),
+      option("--min-component N|RATIO",
+             "leave out smaller pieces: triangles, or below 1 the share of the area; 0: none", &o.min_component,
+             {"min_component", 20,
+              R"({"minimum": 0, "description": "triangles, or below 1 a share of the area; 0: none"})"}),
+      option("--density", "add the property density, points per world unit^2", &o.density, {"density", 10}),
+      option("--weakness", "add the property weakness, 0 to 1: how doubtful the topology is", &o.weakness,
+             {"weakness", 11}),
+      option("--keep-attributes", "carry colours and every other property of the points to the vertices", &o.attributes,
+             {"attributes", 12}),
+      option("", "", &o.max_memory_bytes, {"max_memory_bytes", 22, R"({"minimum": 0, "description": "0: no limit"})"})};
 }
 
 }  // namespace
@@ -127,8 +102,9 @@ std::string needs_a_name(const std::string& file) { return file.empty() ? "needs
 std::string needs_a_value(const std::string& text) { return text.empty() ? "needs a value" : ""; }
 
 OptionGroup device_options(DeviceArgs& args) {
-  return {kDeviceGroup,
-          {{"--device DEV", "auto, cpu, cuda or cuda:N", &args.device, {"device", 30}}, threads_row(args.threads)}};
+  return {
+      kDeviceGroup,
+      {option("--device DEV", "auto, cpu, cuda or cuda:N", &args.device, {"device", 30}), threads_row(args.threads)}};
 }
 
 OptionGroup fit_options(FitArgs& args) {
@@ -138,28 +114,29 @@ OptionGroup fit_options(FitArgs& args) {
 }
 
 OptionRow threads_row(int& threads) {
-  return {"--threads N",
-          "CPU threads, 0: all that the process may use",
-          &threads,
-          {"threads", 31, R"({"minimum": 0, "description": "0: all"})"}};
+  return option("--threads N", "CPU threads, 0: all that the process may use", &threads,
+                {"threads", 31, R"({"minimum": 0, "description": "0: all"})"});
 }
 
 OptionRow shift_row(std::string& shift, const std::string& when) {
-  return {"--shift S", "offset subtracted " + when + ": auto, none or x,y,z in world units", &shift, {"shift", 32}};
+  return option("--shift S", "offset subtracted " + when + ": auto, none or x,y,z in world units", &shift,
+                {"shift", 32});
 }
 
-OptionRow ascii_row(bool& ascii) { return {"--ascii", "write PLY as text", &ascii}; }
+OptionRow ascii_row(bool& ascii) { return option("--ascii", "write PLY as text", &ascii); }
 
 OptionRow overwrite_row(bool& overwrite) {
-  return {"--overwrite", "let an output replace an input, once that has been read", &overwrite};
+  return option("--overwrite", "let an output replace an input, once that has been read", &overwrite);
 }
 
 OptionRow report_row(std::string& file, const std::string& help) {
   return {"--report FILE", help, &file, {}, {.check = needs_a_name}};
 }
 
-OptionRow json_row(bool& json) { return {"--json", "print JSON", &json}; }
+OptionRow json_row(bool& json) { return option("--json", "print JSON", &json); }
 
-OptionGroup quiet_option(bool& quiet) { return {"Messages", {{"-q,--quiet", "errors and warnings only", &quiet}}}; }
+OptionGroup quiet_option(bool& quiet) {
+  return {"Messages", {option("-q,--quiet", "errors and warnings only", &quiet)}};
+}
 
 }  // namespace pointskin::cli

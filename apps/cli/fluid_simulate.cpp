@@ -207,33 +207,22 @@ void write_report(const SimulateArgs& args, const SimulateOutput& output, const 
 }  // namespace
 
 OptionGroup simulation_options(SimulateArgs& args) {
-  return {"Simulation",
-          {{"--simulate SCENE",
-            "simulate dam-break, double-dam-break, drop, obstacle or stir instead of reading IN",
-            &args.scene,
-            {"simulate", 1, R"({"type": "string"})"}},
-           {"--frames N",
-            "frames to write, the first at rest; {} in names: number",
-            &args.frames,
-            {"frames", 3, R"({"minimum": 1})"}},
-           {"--particles N",
-            "particles of the scene, 200 to 64000000",
-            &args.particles,
-            {"particles", 2, R"({"minimum": 200})"}},
-           {"--fps F", "frames per simulated second", &args.fps, {"fps", 4, R"({"minimum": 1})"}},
-           {"--iterations N",
-            "of the density constraint a substep, 1 to 100",
-            &args.iterations,
-            {"iterations", 5, R"({"minimum": 1})"}},
-           {"--viscosity C", "of XSPH, no unit, 0 to 1", &args.viscosity, {"viscosity", 6, R"({"minimum": 0})"}},
-           {"--vorticity E",
-            "of vorticity confinement, no unit, 0: none",
-            &args.vorticity,
-            {"vorticity", 7, R"({"minimum": 0})"}},
-           {"--particles-out OUT",
-            "particles of every frame: .ply with velocity_x, _y, _z",
-            &args.particles_out,
-            {"particles_out", 62}}}};
+  return {
+      "Simulation",
+      {option("--simulate SCENE", "simulate dam-break, double-dam-break, drop, obstacle or stir instead of reading IN",
+              &args.scene, {"simulate", 1, kNeverNull}),
+       option("--frames N", "frames to write, the first at rest; {} in names: number", &args.frames,
+              {"frames", 3, kFromOne}),
+       option("--particles N", "particles of the scene, 200 to 64000000", &args.particles,
+              {"particles", 2, R"({"minimum": 200})"}),
+       option("--fps F", "frames per simulated second", &args.fps, {"fps", 4, kFromOne}),
+       option("--iterations N", "of the density constraint a substep, 1 to 100", &args.iterations,
+              {"iterations", 5, kFromOne}),
+       option("--viscosity C", "of XSPH, no unit, 0 to 1", &args.viscosity, {"viscosity", 6, kFromZero}),
+       option("--vorticity E", "of vorticity confinement, no unit, 0: none", &args.vorticity,
+              {"vorticity", 7, kFromZero}),
+       option("--particles-out OUT", "particles of every frame: .ply with velocity_x, _y, _z", &args.particles_out,
+              {"particles_out", 62})}};
 }
 
 int run_simulation(const SimulateArgs& args, const SimulateOutput& output) {

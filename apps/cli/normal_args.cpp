@@ -28,29 +28,20 @@ Binding method_of(NormalMethod& method) {
 
 OptionGroup normal_options(NormalArgs& args) {
   NormalOptions& o = args.options;
-  return {kNormalGroup,
-          {{"", "", method_of(o.method), {"method", 40}},
-           {"--sensor X,Y,Z",
-            "where a scanner stood, world coordinates; may be repeated, the nearest saw a point",
-            shown_as(&args.sensors, [&o] { return o.sensors; }),
-            {"sensors", 41}},
-           {"--keep-within A",
-            "repair: largest angle of a normal that stays, degrees, 0 to 90",
-            &o.keep_within_degrees,
-            {"keep_within_degrees", 46, R"({"minimum": 0, "maximum": 90})"}},
-           {"--max-rounds N",
-            "trial reconstructions at most, 1 to 1000",
-            &o.max_rounds,
-            {"max_rounds", 44, R"({"minimum": 1})"}},
-           {"--time-limit S",
-            "begin no further trial after so many seconds, 0: no limit",
-            &o.time_limit_s,
-            {"time_limit_s", 45, R"({"minimum": 0})"}},
-           {"--random-start",
-            "iterate: start from signs at random, not propagated ones",
-            &o.random_start,
-            {"random_start", 42}},
-           {"--seed N", "of the random start", &o.seed, {"seed", 43, R"({"minimum": 0})"}}}};
+  return {
+      kNormalGroup,
+      {option("", "", method_of(o.method), {"method", 40}),
+       option("--sensor X,Y,Z", "where a scanner stood, world coordinates; may be repeated, the nearest saw a point",
+              shown_as(&args.sensors, [&o] { return o.sensors; }), {"sensors", 41}),
+       option("--keep-within A", "repair: largest angle of a normal that stays, degrees, 0 to 90",
+              &o.keep_within_degrees, {"keep_within_degrees", 46, R"({"minimum": 0, "maximum": 90})"}),
+       option("--max-rounds N", "trial reconstructions at most, 1 to 1000", &o.max_rounds,
+              {"max_rounds", 44, kFromOne}),
+       option("--time-limit S", "begin no further trial after so many seconds, 0: no limit", &o.time_limit_s,
+              {"time_limit_s", 45, kFromZero}),
+       option("--random-start", "iterate: start from signs at random, not propagated ones", &o.random_start,
+              {"random_start", 42}),
+       option("--seed N", "of the random start", &o.seed, {"seed", 43, kFromZero})}};
 }
 
 NormalOptions library_options(const NormalArgs& args) {

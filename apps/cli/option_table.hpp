@@ -80,6 +80,17 @@ struct OptionRow {
   [[nodiscard]] bool has(const std::string& name) const;  ///< @param name  with its dashes
 };
 
+/// A row; of this form, so that tables stay narrow.
+inline OptionRow option(std::string spelling, std::string help, Binding binding, ReportEntry report = {},
+                        OptionRules rules = {}) {
+  return {std::move(spelling), std::move(help), std::move(binding), std::move(report), std::move(rules)};
+}
+
+/// Schemas that many entries have.
+inline constexpr char kFromZero[] = R"({"minimum": 0})";
+inline constexpr char kFromOne[] = R"({"minimum": 1})";
+inline constexpr char kNeverNull[] = R"({"type": "string"})";
+
 /// Rows that --help lists together.
 struct OptionGroup {
   std::string name;  ///< empty: --help does not list them

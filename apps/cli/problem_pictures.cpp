@@ -45,18 +45,12 @@ std::string caption_of(const std::vector<ProblemRegion>& regions, std::size_t r,
 
 OptionGroup problem_options(ProblemPictureArgs& args) {
   return {"Pictures",
-          {{"--pictures DIR",
-            "draw the views into this folder, which is made: problem_01_1.png, ...",
-            &args.folder,
-            {"pictures", 52, R"({"description": "of problems: the folder of the pictures"})"}},
-           {"--pictures-most N",
-            "regions to draw, the worst first, 1 to 999",
-            &args.most,
-            {"pictures_most", 53, R"({"minimum": 1, "description": "of problems: regions to draw"})"}},
-           {"--up AXIS",
-            "axis that points up in the views: x, y, z, -x, -y or -z",
-            &args.up,
-            {"up", 51, R"({"description": "of problems: the axis that points up in the views"})"}}}};
+          {option("--pictures DIR", "draw the views into this folder, which is made: problem_01_1.png, ...",
+                  &args.folder, {"pictures", 52, R"({"description": "of problems: the folder of the pictures"})"}),
+           option("--pictures-most N", "regions to draw, the worst first, 1 to 999", &args.most,
+                  {"pictures_most", 53, R"({"minimum": 1, "description": "of problems: regions to draw"})"}),
+           option("--up AXIS", "axis that points up in the views: x, y, z, -x, -y or -z", &args.up,
+                  {"up", 51, R"({"description": "of problems: the axis that points up in the views"})"})}};
 }
 
 void check_problem_pictures(const ProblemPictureArgs& args) {

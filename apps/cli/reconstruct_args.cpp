@@ -16,12 +16,9 @@ OptionGroup file_options(ReconstructArgs& args) {
   OptionRow ascii = ascii_row(args.ascii);
   ascii.report = {"ascii", 63, R"({"description": "PLY was written as text"})"};
   return {"Files",
-          {{"IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}},
-           {"-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62}},
-           report_row(args.report),
-           ascii,
-           overwrite_row(args.overwrite),
-           shift_row(args.shift)}};
+          {option("IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}),
+           option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62}),
+           report_row(args.report), ascii, overwrite_row(args.overwrite), shift_row(args.shift)}};
 }
 
 OptionGroup surface_options(ReconstructArgs& args) {
@@ -30,7 +27,7 @@ OptionGroup surface_options(ReconstructArgs& args) {
   group.row("--depth").help = "octree depth D in levels, 1 to 20, or auto; cells are cube / 2^D wide";
   group.row("--trim").help = "cut where samples end: share that counts as sparse, 0 (off) to below 1, or auto";
   // A list of problems has weakness, which is defined for the field poisson alone, and for no offset.
-  if (args.problems) group.without({"--field", "--offset", "--weakness"});
+  if (args.problems) group.without(option("--field", "--offset", "--weakness"));
   return group;
 }
 
@@ -54,15 +51,11 @@ OptionGroup normals_policy(ReconstructArgs& args) {
        {PointNormals::given, PointNormals::automatic, PointNormals::repair, PointNormals::estimate})
     policies.emplace_back(name_of(policy), policy);
   return {kNormalGroup,
-          {{"--normals WHAT",
-            "given (as they are), auto (turned or repaired where wrong), repair, estimate",
-            one_of(o.point_normals, policies),
-            {"point_normals", 23}},
-           {"--estimate-normals{auto}",
-            "same as --normals estimate; =METHOD: auto, sensor, propagate, iterate, repair",
-            estimate_by(args.normals.options.method, o.point_normals),
-            {},
-            {.excludes = "--normals"}}}};
+          {option("--normals WHAT", "given (as they are), auto (turned or repaired where wrong), repair, estimate",
+                  one_of(o.point_normals, policies), {"point_normals", 23}),
+           option("--estimate-normals{auto}",
+                  "same as --normals estimate; =METHOD: auto, sensor, propagate, iterate, repair",
+                  estimate_by(args.normals.options.method, o.point_normals), {}, {.excludes = "--normals"})}};
 }
 
 /// @param unit  behind the text; "G" for a number of 2^30 bytes, of which 0 is no limit
@@ -77,20 +70,17 @@ Binding memory_limit(std::int64_t& bytes, const std::string& unit = "") {
 
 OptionGroup limits(ReconstructArgs& args) {
   return {kDeviceGroup,
-          {{"--max-memory BYTES", "refuse to start above this estimate, e.g. 8G [default no limit]",
-            memory_limit(args.options.max_memory_bytes)},
-           {"--dry-run", "print the memory estimate and stop", &args.dry_run}}};
+          {option("--max-memory BYTES", "refuse to start above this estimate, e.g. 8G [default no limit]",
+                  memory_limit(args.options.max_memory_bytes)),
+           option("--dry-run", "print the memory estimate and stop", &args.dry_run)}};
 }
 
 OptionGroup messages(ReconstructArgs& args) {
   return {"Messages",
-          {{"--repeat N",
-            "run N more times on data in memory and time it",
-            &args.repeat,
-            {"repeat", 50, R"({"minimum": 0})"},
-            {.no_default = true}},
-           {"-q,--quiet", "errors and warnings only", &args.quiet},
-           {"-v,--verbose", "add the levels of the solve", &args.verbose, {}, {.excludes = "--quiet"}}}};
+          {option("--repeat N", "run N more times on data in memory and time it", &args.repeat,
+                  {"repeat", 50, kFromZero}, {.no_default = true}),
+           option("-q,--quiet", "errors and warnings only", &args.quiet),
+           option("-v,--verbose", "add the levels of the solve", &args.verbose, {}, {.excludes = "--quiet"})}};
 }
 
 /// Names that scripts written for PoissonRecon use.
@@ -107,20 +97,20 @@ OptionGroup poisson_recon_names(ReconstructArgs& args) {
   type.rules.check = is_one_of({"1", "2", "3"});
   OptionRow memory = alias("--maxMemory GB", memory_limit(o.max_memory_bytes, "G"), "--max-memory");
   memory.help += ", in units of 2^30 bytes, 0: no limit";
-  return {
-      "Names of PoissonRecon",
-      {alias("--iters N", &o.iterations, "--iterations"),
-       {"--linearFit", "same as --linear-fit", &o.linear_fit},
-       {"--in FILE", "same as IN", &args.named_inputs},
-       alias("--out OUT", &args.output, "--output"),
-       alias("--pointWeight W", &o.screening, "--screening"),
-       alias("--samplesPerNode N", &o.samples_per_node, "--samples-per-node"),
-       type,
-       {"--width W", "widest finest cell, world units; chooses the depth", &args.width_world, {}, {.no_default = true}},
-       {"--colors", "same as --keep-attributes, but for red, green and blue alone", &args.colors},
-       {fmt::format("--data{{{}}}", kDataAlone), "same as --keep-attributes", &args.poisson_recon_data},
-       {"--showResidual", "same as --verbose", &args.verbose, {}, {.excludes = "--quiet"}},
-       memory}};
+  return {"Names of PoissonRecon",
+          {alias("--iters N", &o.iterations, "--iterations"),
+           option("--linearFit", "same as --linear-fit", &o.linear_fit),
+           option("--in FILE", "same as IN", &args.named_inputs),
+           alias("--out OUT", &args.output, "--output"),
+           alias("--pointWeight W", &o.screening, "--screening"),
+           alias("--samplesPerNode N", &o.samples_per_node, "--samples-per-node"),
+           type,
+           option("--width W", "widest finest cell, world units; chooses the depth", &args.width_world, {},
+                  {.no_default = true}),
+           option("--colors", "same as --keep-attributes, but for red, green and blue alone", &args.colors),
+           {fmt::format("--data{{{}}}", kDataAlone), "same as --keep-attributes", &args.poisson_recon_data},
+           option("--showResidual", "same as --verbose", &args.verbose, {}, {.excludes = "--quiet"}),
+           memory}};
 }
 
 }  // namespace

@@ -70,64 +70,63 @@ void check_numbers(const RenderArgs& args) {
 
 OptionGroup file_options(RenderArgs& args) {
   return {"Files",
-          {{"IN", "mesh or cloud, or frame_{}.ply for a sequence; - reads stdin", &args.input, {}, {.required = true}},
-           {"-o,--output OUT", "picture, .png; {} where IN has it", &args.picture, {}, {.required = true}},
-           overwrite_row(args.overwrite),
-           {"--first N", "number of the first frame of a sequence", &args.first},
-           {"--last N", "number of the last frame of a sequence", &args.last}}};
+          {option("IN", "mesh or cloud, or frame_{}.ply for a sequence; - reads stdin", &args.input, {},
+                  {.required = true}),
+           option("-o,--output OUT", "picture, .png; {} where IN has it", &args.picture, {}, {.required = true}),
+           overwrite_row(args.overwrite), option("--first N", "number of the first frame of a sequence", &args.first),
+           option("--last N", "number of the last frame of a sequence", &args.last)}};
 }
 
 OptionGroup view_options(RenderArgs& args) {
   RenderOptions& o = args.options;
   return {"View",
-          {{"--size WxH", "width and height in pixels, each 1 to 16384", &args.size},
-           {"--up AXIS",
-            "axis that points up: x, y, z, -x, -y or -z;\n"
-            "the front is +z (y, x, -x), -y (z), -z (-y) or +y (-z)",
-            &args.up},
-           {"--azimuth DEG", "camera about the up axis, degrees; 0 sees the front", &o.azimuth_degrees},
-           {"--elevation DEG", "camera above the horizon, degrees, -90 to 90", &o.elevation_degrees},
-           {"--target X,Y,Z", "point in the middle of the picture [default the middle of what is seen]", &args.target},
-           {"--fit WHAT",
-            "what fills the picture: box (what is seen, as large as can be)\n"
-            "or sphere (around all, the same size from every side)",
-            one_of<Fit>(o.fit, {{"box", Fit::box}, {"sphere", Fit::sphere}})},
-           {"--zoom F", "enlarges the picture about its middle, above 0 to 1000", &o.zoom},
-           {"--fov DEG", "vertical field of view, 1 to 170 degrees [default 30.3 of the shorter side]",
-            &o.field_of_view_degrees},
-           {"--orthographic", "parallel instead of perspective projection",
-            turned(o.projection, Projection::orthographic)}}};
+          {option("--size WxH", "width and height in pixels, each 1 to 16384", &args.size),
+           option("--up AXIS",
+                  "axis that points up: x, y, z, -x, -y or -z;\n"
+                  "the front is +z (y, x, -x), -y (z), -z (-y) or +y (-z)",
+                  &args.up),
+           option("--azimuth DEG", "camera about the up axis, degrees; 0 sees the front", &o.azimuth_degrees),
+           option("--elevation DEG", "camera above the horizon, degrees, -90 to 90", &o.elevation_degrees),
+           option("--target X,Y,Z", "point in the middle of the picture [default the middle of what is seen]",
+                  &args.target),
+           option("--fit WHAT",
+                  "what fills the picture: box (what is seen, as large as can be)\n"
+                  "or sphere (around all, the same size from every side)",
+                  one_of<Fit>(o.fit, {{"box", Fit::box}, {"sphere", Fit::sphere}})),
+           option("--zoom F", "enlarges the picture about its middle, above 0 to 1000", &o.zoom),
+           option("--fov DEG", "vertical field of view, 1 to 170 degrees [default 30.3 of the shorter side]",
+                  &o.field_of_view_degrees),
+           option("--orthographic", "parallel instead of perspective projection",
+                  turned(o.projection, Projection::orthographic))}};
 }
 
 OptionGroup surface_options(RenderOptions& o) {
   return {"Surface",
-          {{"--wireframe", "draw the edges of a mesh, hidden ones removed", &o.wireframe},
-           {"--flat", "shade a mesh by faces, a cloud without its normals", negated(o.smooth)},
-           {"--cull",
-            "leave out what is seen from behind, which is drawn red:\n"
-            "an open surface from its other side, or normals turned inwards",
-            negated(o.back_faces)},
-           {"--point-size PX",
-            "diameter of a cloud's points in pixels [default by their spacing]",
-            &o.point_size,
-            {},
-            {.no_default = true}},
-           {"--no-shadows", "no shadows, and all light in hollows", negated(o.shadows)}}};
+          {option("--wireframe", "draw the edges of a mesh, hidden ones removed", &o.wireframe),
+           option("--flat", "shade a mesh by faces, a cloud without its normals", negated(o.smooth)),
+           option("--cull",
+                  "leave out what is seen from behind, which is drawn red:\n"
+                  "an open surface from its other side, or normals turned inwards",
+                  negated(o.back_faces)),
+           option("--point-size PX", "diameter of a cloud's points in pixels [default by their spacing]", &o.point_size,
+                  {}, {.no_default = true}),
+           option("--no-shadows", "no shadows, and all light in hollows", negated(o.shadows))}};
 }
 
 OptionGroup colour_options(RenderArgs& args) {
   RenderOptions& o = args.options;
-  return {"Colours",
-          {{"--colour-by,--color-by NAME", "colours by an attribute, or by x, y or z, with a scale", &o.colour_by},
-           {"--range LOW,HIGH", "values of the scale's ends [default the 1st and 99th percentiles]", &args.range},
-           {"--colour-map,--color-map MAP",
-            "sequential, diverging (from 0 both ways), or auto: diverging\n"
-            "for ranges on both sides of 0",
-            one_of<ColourMap>(o.colour_map, {{"auto", ColourMap::automatic},
-                                             {"sequential", ColourMap::sequential},
-                                             {"diverging", ColourMap::diverging}})},
-           {"--no-colour-bar,--no-color-bar", "leave the scale out", negated(o.colour_bar)},
-           {"--no-colours,--no-colors", "ignore red, green and blue", negated(o.colours)}}};
+  return {
+      "Colours",
+      {option("--colour-by,--color-by NAME", "colours by an attribute, or by x, y or z, with a scale", &o.colour_by),
+       option("--range LOW,HIGH", "values of the scale's ends [default the 1st and 99th percentiles]", &args.range),
+       option("--colour-map,--color-map MAP",
+              "sequential, diverging (from 0 both ways), or auto: diverging\n"
+              "for ranges on both sides of 0",
+              one_of<ColourMap>(o.colour_map, {{"auto", ColourMap::automatic},
+                                               {"sequential", ColourMap::sequential},
+                                               {"diverging", ColourMap::diverging}})),
+       option("--no-colour-bar,--no-color-bar", "leave the scale out", negated(o.colour_bar)),
+       option("--no-colours,--no-colors", "ignore red, green and blue", negated(o.colours))}};
 }
 
 }  // namespace

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
+#include "args.hpp"
 
 namespace pointskin::cli {
 namespace {
 
 OptionGroup file_options(BooleanArgs& args) {
   return {"Files",
-          {option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {},
-                  {.required = true}),
+          {output_row(args.output, {.required = true}),
            option("--cloud FILE", "also write the oriented points of the result, as PLY", &args.cloud, {},
                   {.check = needs_a_name}),
            report_row(args.report), overwrite_row(args.overwrite), shift_row(args.shift)}};
@@ -26,14 +25,16 @@ OptionGroup crease_options(BooleanArgs& args) {
               &o.coincidence_cells, {"coincidence", 25, R"({"minimum": 0, "description": "cells"})"})}};
 }
 
-}  // namespace
-
 Binding operation_of(BooleanOp& op) {
   return one_of<BooleanOp>(op, {{"union", BooleanOp::unite},
                                 {"intersection", BooleanOp::intersect},
                                 {"difference", BooleanOp::subtract},
                                 {"symmetric-difference", BooleanOp::symmetric_difference}});
 }
+
+}  // namespace
+
+std::string word_of(BooleanOp op) { return std::get<std::string>(operation_of(op).value()); }
 
 OptionTable boolean_options(BooleanArgs& args) {
   OptionGroup surface = fit_options(args.fit);
@@ -56,7 +57,7 @@ BooleanOptions library_options(const BooleanArgs& args) {
   options.reconstruction = args.fit.options;
   validate(options.reconstruction);
   if (!(options.coincidence_cells >= 0 && options.coincidence_cells <= 100))
-    throw Error(ErrorCode::usage, fmt::format("--coincidence: {} is not in [0, 100]", options.coincidence_cells));
+    throw_usage(fmt::format("--coincidence: {} is not in [0, 100]", options.coincidence_cells));
   return options;
 }
 

@@ -23,8 +23,8 @@ struct BooleanArgs : DeviceArgs {
   GivenOptions given;
 };
 
-/// The words that mean an operation.
-Binding operation_of(BooleanOp& op);
+/// The word that means an operation.
+std::string word_of(BooleanOp op);
 
 OptionTable boolean_options(BooleanArgs& args);
 

@@ -32,8 +32,6 @@ namespace {
 
 using Solid = std::variant<Cloud, Mesh>;
 
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
-
 /// Everything that can be found wrong before the inputs are opened.
 void check_files(const BooleanArgs& args) {
   check_distinct(
@@ -122,9 +120,8 @@ int run(const BooleanArgs& args) {
   record.mesh.triangles = static_cast<std::int64_t>(result.mesh.triangles.size());
   if (!args.quiet) record.shape = shape_words(result.mesh, args.threads);
   if (!args.report.empty()) {
-    BooleanArgs shown = args;
-    record.op = std::get<std::string>(operation_of(shown.op).value());
-    record.shown_options = report_of(boolean_options(shown));
+    record.op = word_of(args.op);
+    record.shown_options = report_of(boolean_options, args);
     record.files = {{"a", args.a}, {"b", args.b}, {"output", args.output}, {"cloud", or_null(args.cloud)}};
     record.mesh = measure(result.mesh, args.threads);
     record.shape = shape_words(record.mesh);

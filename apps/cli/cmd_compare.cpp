@@ -126,14 +126,12 @@ std::string human_text(const CompareArgs& args, const Comparison& comparison) {
 /// Everything that can be found wrong before the inputs are opened.
 void check(const CompareArgs& args) {
   check_threads(args.options.threads);
-  if (args.options.samples < 1) throw Error(ErrorCode::usage, "--samples: must be at least 1");
-  if (!(args.options.tau > 0)) throw Error(ErrorCode::usage, "--tau: must be above 0");
+  if (args.options.samples < 1) throw_usage("--samples: must be at least 1");
+  if (!(args.options.tau > 0)) throw_usage("--tau: must be above 0");
   check_distinct({args.a, args.b}, {{"compare", "-"}, {"--heat", args.heat}}, args.overwrite);
-  if (args.with_sign && args.heat.empty())
-    throw Error(ErrorCode::usage, "--signed: changes what --heat writes, which is not given");
+  if (args.with_sign && args.heat.empty()) throw_usage("--signed: changes what --heat writes, which is not given");
   if (args.heat.empty()) return;
-  if (!has_extension(args.heat, ".ply"))
-    throw Error(ErrorCode::usage, fmt::format("--heat: {} does not end in .ply", args.heat));
+  if (!has_extension(args.heat, ".ply")) throw_usage(fmt::format("--heat: {} does not end in .ply", args.heat));
   check_replaceable(args.heat);
 }
 
@@ -141,8 +139,7 @@ Content read(const std::string& file, const CompareArgs& args) {
   Content content = read_cloud_or_mesh(file, {.shift = std::nullopt, .threads = args.options.threads});
   const auto* cloud = std::get_if<Cloud>(&content);
   const std::string name = file == "-" ? "stdin" : file;
-  if (cloud != nullptr && cloud->dropped > 0)
-    print_warning(fmt::format("{}: {} points were dropped: a coordinate is not finite", name, cloud->dropped));
+  if (cloud != nullptr) warn_about_dropped(cloud->dropped, name + ": ");
   if (cloud != nullptr && cloud->positions.empty())
     throw Error(ErrorCode::invalid_input, fmt::format("{}: holds no points with finite coordinates", name));
   return content;

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
 #include "args.hpp"
@@ -39,10 +38,9 @@ std::string write(const ConvertArgs& args, const Mesh& mesh) {
 
 std::string write(const ConvertArgs& args, const Cloud& cloud) {
   if (args.output != "-" && !has_extension(args.output, ".ply")) {
-    throw Error(ErrorCode::usage, fmt::format("{} holds a cloud, and clouds are written as .ply only", args.input));
+    throw_usage(fmt::format("{} holds a cloud, and clouds are written as .ply only", args.input));
   }
-  if (cloud.dropped > 0)
-    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
+  warn_about_dropped(cloud.dropped);
   write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads});
   return fmt::format("{} points", cloud.size());
 }

@@ -47,10 +47,10 @@ struct DeformArgs : FitArgs, DeviceArgs {
 OptionGroup file_options(DeformArgs& args) {
   return {
       "Files",
-      {option("IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}, {.required = true}),
+      {clouds_row(args.inputs),
        option("--script FILE", "the deformation as JSON; - reads stdin", &args.script, {"script", 61, kNeverNull},
               {.required = true}),
-       option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62}),
+       output_row(args.output),
        option("--cloud OUT", "deformed points: .ply, - writes to stdout", &args.cloud, {"cloud", 63}),
        option("--report FILE", "write what was done as JSON; also measures how far apart samples are", &args.report),
        overwrite_row(args.overwrite), shift_row(args.shift),
@@ -61,8 +61,6 @@ OptionGroup file_options(DeformArgs& args) {
 OptionTable deform_options(DeformArgs& args) {
   return {file_options(args), fit_options(args), device_options(args), quiet_option(args.quiet)};
 }
-
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
 std::string file_of(const DeformArgs& args, const std::string& pattern, int frame) {
   return args.given.has("--frames") ? frame_file(pattern, frame, args.frames) : pattern;
@@ -173,8 +171,8 @@ void warn_about_unused(const DeformArgs& args, const Options& options, const Def
   warn_about_unused(args.given, options, cloud, args.output);
   if (args.output.empty())
     warn_unused(args.given,
-                option("--linear-fit", "--open", "--envelope", "--offset", "--trim", "--island-ratio", "--weakness",
-                       "--no-normals", "--density", "--keep-attributes"),
+                {"--linear-fit", "--open", "--envelope", "--offset", "--trim", "--island-ratio", "--weakness",
+                 "--no-normals", "--density", "--keep-attributes"},
                 kNoMesh);
   if (!moves_anything(deformation)) print_warning(fmt::format("{}: moves nothing", args.script));
   for (const std::string& story : idle_parts(deformation, cloud))
@@ -219,8 +217,7 @@ int run(const DeformArgs& args) {
                    {"used", deformer.report().rest_points},
                    {"dropped", cloud.dropped},
                    {"strays", at_rest.strays}};
-  DeformArgs shown = args;
-  json["options"] = report_of(deform_options(shown));
+  json["options"] = report_of(deform_options, args);
   cloud = Cloud();
 
   Frames frames(args, deformer, deformation);

@@ -40,11 +40,10 @@ struct EditArgs : FitArgs, DeviceArgs {
 OptionGroup file_options(EditArgs& args) {
   const OptionRules named = {.check = needs_a_name};
   return {"Files",
-          {option("IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}, {.required = true}),
+          {clouds_row(args.inputs),
            option("--script FILE", "operations, as JSON", &args.script, {"script", 61, kNeverNull},
                   {.required = true, .check = needs_a_name}),
-           option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62},
-                  named),
+           output_row(args.output, named),
            option("--cloud FILE", "write the edited points, with the property added, as PLY", &args.cloud,
                   {"cloud", 63}, named),
            option("--save FILE", "write the operations that are done, as a script", &args.save, {"save", 64}, named),
@@ -80,7 +79,7 @@ void check_outputs(const EditArgs& args) {
   check_names(args, {});
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.cloud.empty() && !has_extension(args.cloud, ".ply"))
-    throw Error(ErrorCode::usage, fmt::format("--cloud: {}: clouds are written as .ply only", args.cloud));
+    throw_usage(fmt::format("--cloud: {}: clouds are written as .ply only", args.cloud));
   for (const std::string& path : {args.save, args.cloud, args.report})
     if (!path.empty()) check_replaceable(path);
 }
@@ -132,10 +131,8 @@ void run_script(const EditScript& script, const EditArgs& args, EditSession& ses
     const ScriptStep step = script.step(i, camera_of_picture);
     try {
       if (step.kind == ScriptStep::Kind::apply) session.apply(step.operation);
-      if (step.kind == ScriptStep::Kind::undo && !session.undo())
-        throw Error(ErrorCode::usage, "there is nothing to undo");
-      if (step.kind == ScriptStep::Kind::redo && !session.redo())
-        throw Error(ErrorCode::usage, "there is nothing to redo");
+      if (step.kind == ScriptStep::Kind::undo && !session.undo()) throw_usage("there is nothing to undo");
+      if (step.kind == ScriptStep::Kind::redo && !session.redo()) throw_usage("there is nothing to redo");
     } catch (const Error& error) {
       throw error.while_doing(fmt::format("running operations[{}] of {}", i, args.script));
     }
@@ -149,7 +146,7 @@ void run_script(const EditScript& script, const EditArgs& args, EditSession& ses
 void warn_about_options(const EditArgs& args, const Options& options) {
   warn_about_unused(args.given, options, args.output, false);
   if (!args.output.empty()) return;
-  warn_unused(args.given, option("--no-normals", "--density", "--weakness"), kNoMesh);
+  warn_unused(args.given, {"--no-normals", "--density", "--weakness"}, kNoMesh);
   if (args.cloud.empty()) warn_unused(args.given, {"--keep-attributes"}, "where neither mesh nor cloud is written");
 }
 
@@ -188,8 +185,7 @@ int run(const EditArgs& args) {
   Cloud base = read_base(args, options.reconstruction);
   Json json = {{"version", 1}, {"command", "edit"}, {"device", to_json(device)}};
   json["input"] = {{"points", base.size() + base.dropped}, {"dropped", base.dropped}};
-  EditArgs shown = args;
-  json["options"] = report_of(edit_options(shown));
+  json["options"] = report_of(edit_options, args);
   json["ms"]["read"] = watch.ms();
 
   on_interrupt(OnInterrupt::remember);

@@ -227,8 +227,7 @@ void write_report(const FluidArgs& args, const Device& device, const std::vector
                   double total_ms) {
   Json json = {{"version", 1}, {"command", "fluid"}};
   json["device"] = to_json(device);
-  FluidArgs shown = args;
-  json["options"] = report_of(fluid_options(shown));
+  json["options"] = report_of(fluid_options, args);
   json["at_once"] = at_once;
   json["frames"] = Json::array();
   std::int64_t peak = 0;
@@ -245,33 +244,31 @@ void write_report(const FluidArgs& args, const Device& device, const std::vector
 
 /// What CLI11 cannot know: which of the options belong together.
 void check_given(const FluidArgs& args) {
-  const auto refuse = [](const std::string& story) { throw Error(ErrorCode::usage, story); };
   const bool simulates = !args.simulation.scene.empty();
   if (simulates && !args.input.empty())
-    refuse(args.input + " is not read because of --simulate; leave one of them out");
-  if (simulates && (args.first || args.last)) refuse("--first and --last belong to sequences of files; use --frames");
+    throw_usage(args.input + " is not read because of --simulate; leave one of them out");
+  if (simulates && (args.first || args.last))
+    throw_usage("--first and --last belong to sequences of files; use --frames");
   if (simulates) return;
-  if (args.input.empty()) refuse("IN is required: particles of a frame, or --simulate SCENE");
-  if (args.output.empty()) refuse("--output is required");
+  if (args.input.empty()) throw_usage("IN is required: particles of a frame, or --simulate SCENE");
+  if (args.output.empty()) throw_usage("--output is required");
   if (args.options.particle_radius == 0)
-    refuse("particle_radius is required and must be positive: --particle-radius R");
-  if (!args.simulation.particles_out.empty()) refuse("--particles-out needs --simulate");
+    throw_usage("particle_radius is required and must be positive: --particle-radius R");
+  if (!args.simulation.particles_out.empty()) throw_usage("--particles-out needs --simulate");
 }
 
 int run(const FluidArgs& args) {
   const Stopwatch start;
   check_given(args);
   const FluidOptions options = library_options(args);
-  if (!args.simulation.scene.empty()) {
-    FluidArgs shown = args;
+  if (!args.simulation.scene.empty())
     return run_simulation(args.simulation, {args.output, args.report, args, args.quiet, options,
                                             [&args](bool on_gpu) { warn_about_unused(args, on_gpu); },
-                                            report_of(simulation_report_options(shown))});
-  }
+                                            report_of(simulation_report_options, args)});
   parse_shift(args.shift);
   if (!args.max_memory.empty()) parse_bytes(args.max_memory, "--max-memory");
   if (args.at_once < 0 || args.at_once > 4096)
-    throw Error(ErrorCode::usage, fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
+    throw_usage(fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
   const Device device = args.chosen();
   std::vector<FluidFrameRecord> frames;
   for (FrameFile& file : find_frames(args.input, args.first, args.last)) {

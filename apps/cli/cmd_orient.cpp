@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
 #include "args.hpp"
@@ -61,8 +60,7 @@ OptionTable orient_options(OrientArgs& args) {
 void check_files(const OrientArgs& args) {
   check_distinct(args.inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
   if (args.output != "-" && !has_extension(args.output, ".ply"))
-    throw Error(ErrorCode::usage,
-                fmt::format("-o: {} does not end in .ply; clouds are written as .ply only", args.output));
+    throw_usage(fmt::format("-o: {} does not end in .ply; clouds are written as .ply only", args.output));
   check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
 }
@@ -95,8 +93,7 @@ int run(const OrientArgs& args) {
   const Device device = args.chosen();
   OrientTimes times;
   Cloud cloud = read_clouds(args.inputs, reading, MissingNormals::allowed);
-  if (cloud.dropped > 0)
-    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
+  warn_about_dropped(cloud.dropped);
   times.read_ms = watch.ms();
   on_interrupt(OnInterrupt::remember);
   const NormalReport report = estimate_normals(cloud, options, device, args.quiet);

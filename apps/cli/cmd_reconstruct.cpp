@@ -26,8 +26,6 @@
 namespace pointskin::cli {
 namespace {
 
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
-
 /// Everything that can be found wrong before the input is opened.
 void check_files(const ReconstructArgs& args) {
   if (args.inputs.empty()) throw_usage("no input; name one or more clouds, or - for stdin");
@@ -57,7 +55,7 @@ void warn_about_options(const ReconstructArgs& args, const Options& options) {
   warn_about_unused(args.given, options, mesh_file(args), !args.report.empty());
   warn_about_ascii(args.given, args.output);
   if (mesh_file(args).empty())
-    warn_unused(args.given, option("--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"),
+    warn_unused(args.given, {"--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"},
                 kNoMesh);
   if (options.point_normals == PointNormals::given) warn_about_unused_normals(args.given);
   warn_about_poisson_recon(args.given, args.poisson_recon_data);
@@ -77,11 +75,10 @@ Cloud read_input(const ReconstructArgs& args, Record& record) {
   const Stopwatch watch;
   Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads},
                             makes_normals(record.options) ? MissingNormals::allowed : MissingNormals::refused);
-  if (!makes_normals(record.options)) {
+  if (makes_normals(record.options))
+    warn_about_dropped(cloud.dropped);
+  else
     drop_unusable(cloud);
-  } else if (cloud.dropped > 0) {
-    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
-  }
   drop_attributes(args, cloud);
   record.read_ms = watch.ms();
   record.dropped = cloud.dropped;
@@ -241,8 +238,8 @@ int run(const ReconstructArgs& given) {
 }  // namespace
 
 Command problems_command() {
-  ReconstructArgs args;
-  args.problems = true;
+  const auto args = std::make_shared<ReconstructArgs>();
+  args->problems = true;
   return make_command({"problems", "Reconstruct, and list where the topology of the result is doubtful."},
                       reconstruct_options, run, args);
 }

@@ -8,6 +8,7 @@
 
 #include <pointskin/error.hpp>
 
+#include "args.hpp"
 #include "console.hpp"
 #include "usage_errors.hpp"
 
@@ -93,7 +94,7 @@ void settle(const std::vector<Defined>& defined) {
   for (const auto& [row, option] : defined) {
     if (option->count() == 0 || !row->binding.settle) continue;
     const std::string wrong = row->binding.settle();
-    if (!wrong.empty()) throw Error(ErrorCode::usage, option->get_name() + ": " + wrong);
+    if (!wrong.empty()) throw_usage(option->get_name() + ": " + wrong);
   }
 }
 
@@ -148,7 +149,7 @@ class Program {
   /// The help on `topic`, or on the program for none. @throws Error usage if there is no such command
   [[nodiscard]] std::string help_on(const std::string& topic) const {
     const CLI::App* const command = topic.empty() ? &app_ : command_of(app_, {topic});
-    if (command == nullptr) throw Error(ErrorCode::usage, no_such_command(app_, topic));
+    if (command == nullptr) throw_usage(no_such_command(app_, topic));
     const std::string name = app_.get_name() + (topic.empty() ? "" : " " + topic);
     return app_.get_formatter()->make_help(command, name, CLI::AppFormatMode::Normal);
   }

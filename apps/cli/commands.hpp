@@ -24,10 +24,10 @@ struct Command {
   std::function<int(const GivenOptions&)> run;  ///< @returns the exit code
 };
 
-/// A command whose arguments are `args`. @param options  the table that sets them
+/// A command with arguments of its own. @param options  the table that sets them
 template <class Args>
-Command make_command(CommandTexts texts, OptionTable (*options)(Args&), int (*run)(const Args&), Args args = {}) {
-  const auto held = std::make_shared<Args>(std::move(args));
+Command make_command(CommandTexts texts, OptionTable (*options)(Args&), int (*run)(const Args&),
+                     const std::shared_ptr<Args>& held = std::make_shared<Args>()) {
   return {std::move(texts), options(*held), [held, run](const GivenOptions& given) {
             if constexpr (requires { held->given; }) held->given = given;
             return run(*held);

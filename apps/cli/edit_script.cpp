@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
 #include "json_reader.hpp"

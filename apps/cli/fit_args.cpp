@@ -113,6 +113,15 @@ OptionGroup fit_options(FitArgs& args) {
   return group;
 }
 
+OptionRow clouds_row(std::vector<std::string>& files, OptionRules rules) {
+  return option("IN", "oriented clouds, merged; - reads stdin", &files, {"inputs", 60}, std::move(rules));
+}
+
+OptionRow output_row(std::string& file, OptionRules rules) {
+  return option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &file, {"output", 62},
+                std::move(rules));
+}
+
 OptionRow threads_row(int& threads) {
   return option("--threads N", "CPU threads, 0: all that the process may use", &threads,
                 {"threads", 31, R"({"minimum": 0, "description": "0: all"})"});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <pointskin/device.hpp>
 #include <pointskin/reconstruct.hpp>
@@ -36,6 +37,10 @@ inline constexpr std::initializer_list<const char*> kBeyondSolve = {
     "--field",        "--confidence", "--open",          "--envelope", "--offset",   "--trim",
     "--island-ratio", "--largest",    "--min-component", "--density",  "--weakness", "--keep-attributes"};
 
+/// Oriented clouds.
+OptionRow clouds_row(std::vector<std::string>& files, OptionRules rules = {.required = true});
+/// A mesh.
+OptionRow output_row(std::string& file, OptionRules rules = {});
 OptionRow threads_row(int& threads);
 /// "auto", "none" or "x,y,z": see parse_shift.
 OptionRow shift_row(std::string& shift, const std::string& when = "while working");

@@ -81,18 +81,18 @@ OptionTable simulation_report_options(FluidArgs& args) {
 void warn_about_unused(const FluidArgs& args, bool on_gpu) {
   const GivenOptions& given = args.given;
   if (args.simulation.scene.empty()) {
-    warn_unused(given, option("--frames", "--particles", "--fps", "--iterations", "--viscosity", "--vorticity"),
+    warn_unused(given, {"--frames", "--particles", "--fps", "--iterations", "--viscosity", "--vorticity"},
                 "without --simulate");
     if (!is_pattern(args.input))
       warn_unused(given, {"--at-once", "--max-memory"}, "on a single frame");
     else if (on_gpu)
       warn_unused(given, {"--at-once", "--max-memory"}, "on a GPU, which takes one frame after another");
   } else {
-    warn_unused(given, option("--shift", "--at-once", "--max-memory", "--overwrite"), "with --simulate");
+    warn_unused(given, {"--shift", "--at-once", "--max-memory", "--overwrite"}, "with --simulate");
     if (args.output.empty())
       warn_unused(given,
-                  option("--particle-radius", "--cube-size", "--smoothing-length", "--kernel", "--surface-threshold",
-                         "--mesh-smoothing-iters", "--min-component", "--no-attributes", "--no-normals"),
+                  {"--particle-radius", "--cube-size", "--smoothing-length", "--kernel", "--surface-threshold",
+                   "--mesh-smoothing-iters", "--min-component", "--no-attributes", "--no-normals"},
                   kNoMesh);
   }
   if (args.options.smoothing_iterations == 0)

@@ -30,8 +30,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
-
 void check_ranges(const SimulateArgs& args) {
   const auto check = [](const char* option, auto value, auto least, auto most) {
     if (!(value >= least && value <= most))

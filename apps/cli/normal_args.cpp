@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <pointskin/error.hpp>
-
 #include "args.hpp"
 #include "console.hpp"
 #include "progress.hpp"
@@ -48,7 +46,7 @@ NormalOptions library_options(const NormalArgs& args) {
   NormalOptions options = args.options;
   for (const std::string& text : args.sensors) {
     const std::optional<Vec3d> place = parse_vector(text);
-    if (!place) throw Error(ErrorCode::usage, fmt::format("--sensor: '{}' is not X,Y,Z", text));
+    if (!place) throw_usage(fmt::format("--sensor: '{}' is not X,Y,Z", text));
     options.sensors.push_back(*place);
   }
   validate(options);

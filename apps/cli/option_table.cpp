@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace pointskin::cli {
@@ -77,7 +78,7 @@ Json joined_schema(const std::vector<Entry>& entries) {
 }  // namespace
 
 bool OptionRow::has(const std::string& name) const {
-  return ("," + names() + ",").find("," + name + ",") != std::string::npos;
+  return fmt::format(",{},", names()).find(fmt::format(",{},", name)) != std::string::npos;
 }
 
 OptionRow& OptionGroup::row(const std::string& name) {

@@ -110,6 +110,12 @@ using OptionTable = std::vector<OptionGroup>;
 /// The `options` of a report: what all rows with a name there are now.
 nlohmann::ordered_json report_of(const OptionTable& table);
 
+/// The same of the table of a command's arguments.
+template <class Args, class Json = nlohmann::ordered_json>
+Json report_of(OptionTable (*table)(Args&), Args args) {
+  return report_of(table(args));
+}
+
 /// The JSON schema of that. @param table  before anything is parsed: a text that is empty then may be null
 nlohmann::ordered_json schema_of(const OptionTable& table);
 

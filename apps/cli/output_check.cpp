@@ -53,8 +53,7 @@ void check_extension(const std::string& path) {
   const bool known = std::any_of(kMeshExtensions.begin(), kMeshExtensions.end(),
                                  [&](const char* extension) { return has_extension(path, extension); });
   if (known) return;
-  throw Error(ErrorCode::usage,
-              fmt::format("{}: unknown output format; use .ply, .obj or .stl, or - for PLY on stdout", path));
+  throw_usage(fmt::format("{}: unknown output format; use .ply, .obj or .stl, or - for PLY on stdout", path));
 }
 
 }  // namespace
@@ -83,7 +82,7 @@ void check_mesh_output(const std::string& path) {
   }
   if (!stdout_is_open()) throw Error(ErrorCode::output_not_written, "stdout: cannot be written: it is closed");
   if (isatty(STDOUT_FILENO) == 1) {
-    throw Error(ErrorCode::usage, "stdout is a terminal, and PLY is binary; redirect it or name a file with -o");
+    throw_usage("stdout is a terminal, and PLY is binary; redirect it or name a file with -o");
   }
 }
 

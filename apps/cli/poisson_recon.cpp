@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
-
 #include "args.hpp"
 #include "console.hpp"
 
@@ -61,7 +59,7 @@ void warn_about_poisson_recon(const GivenOptions& given, const std::string& data
   for (const Ignored& option : kIgnored)
     if (given.has(option.name)) print_warning(fmt::format("{} {}", option.name, option.why));
   if (data.empty() || data == kDataAlone) return;
-  if (!parse_number(data)) throw Error(ErrorCode::usage, fmt::format("--data: '{}' is no number", data));
+  if (!parse_number(data)) throw_usage(fmt::format("--data: '{}' is no number", data));
   print_warning(
       fmt::format("--data: the factor {} has no meaning here; properties are carried as with "
                   "--keep-attributes",

@@ -9,6 +9,7 @@
 #include <pointskin/error.hpp>
 #include <pointskin/render.hpp>
 
+#include "args.hpp"
 #include "console.hpp"
 #include "output_check.hpp"
 #include "progress.hpp"
@@ -55,8 +56,7 @@ OptionGroup problem_options(ProblemPictureArgs& args) {
 
 void check_problem_pictures(const ProblemPictureArgs& args) {
   parse_up(args.up, "--up");
-  if (args.most < 1 || args.most > 999)
-    throw Error(ErrorCode::usage, fmt::format("--pictures-most: {} is not in [1, 999]", args.most));
+  if (args.most < 1 || args.most > 999) throw_usage(fmt::format("--pictures-most: {} is not in [1, 999]", args.most));
   if (args.folder.empty()) return;
   std::error_code ignored;
   fs::path place = fs::absolute(args.folder);

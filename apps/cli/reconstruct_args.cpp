@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
-
 #include "args.hpp"
 
 namespace pointskin::cli {
@@ -16,9 +14,8 @@ OptionGroup file_options(ReconstructArgs& args) {
   OptionRow ascii = ascii_row(args.ascii);
   ascii.report = {"ascii", 63, R"({"description": "PLY was written as text"})"};
   return {"Files",
-          {option("IN", "oriented clouds, merged; - reads stdin", &args.inputs, {"inputs", 60}),
-           option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &args.output, {"output", 62}),
-           report_row(args.report), ascii, overwrite_row(args.overwrite), shift_row(args.shift)}};
+          {clouds_row(args.inputs, {}), output_row(args.output), report_row(args.report), ascii,
+           overwrite_row(args.overwrite), shift_row(args.shift)}};
 }
 
 OptionGroup surface_options(ReconstructArgs& args) {
@@ -27,7 +24,7 @@ OptionGroup surface_options(ReconstructArgs& args) {
   group.row("--depth").help = "octree depth D in levels, 1 to 20, or auto; cells are cube / 2^D wide";
   group.row("--trim").help = "cut where samples end: share that counts as sparse, 0 (off) to below 1, or auto";
   // A list of problems has weakness, which is defined for the field poisson alone, and for no offset.
-  if (args.problems) group.without(option("--field", "--offset", "--weakness"));
+  if (args.problems) group.without({"--field", "--offset", "--weakness"});
   return group;
 }
 
@@ -126,10 +123,10 @@ OptionTable reconstruct_options(ReconstructArgs& args) {
 
 Options library_options(const ReconstructArgs& args) {
   if (args.given.has("--width") && !(args.width_world > 0 && std::isfinite(args.width_world))) {
-    throw Error(ErrorCode::usage, fmt::format("--width: {} is not above 0 world units", args.width_world));
+    throw_usage(fmt::format("--width: {} is not above 0 world units", args.width_world));
   }
   if (args.given.has("--repeat") && (args.repeat < 1 || args.repeat > 1'000'000)) {
-    throw Error(ErrorCode::usage, fmt::format("--repeat: {} is not in [1, 1000000]", args.repeat));
+    throw_usage(fmt::format("--repeat: {} is not in [1, 1000000]", args.repeat));
   }
   Options options = args.options;
   options.normal_estimation = library_options(args.normals);
@@ -145,8 +142,8 @@ int depth_for_width(double cube_world, double width_world) {
   int depth = 1;
   while (depth < kDeepest && std::ldexp(cube_world, -depth) > width_world) ++depth;
   if (std::ldexp(cube_world, -depth) <= width_world) return depth;
-  throw Error(ErrorCode::usage, fmt::format("--width: cells of {} need more than {} levels in a cube of {}",
-                                            width_world, kDeepest, cube_world));
+  throw_usage(
+      fmt::format("--width: cells of {} need more than {} levels in a cube of {}", width_world, kDeepest, cube_world));
 }
 
 }  // namespace pointskin::cli

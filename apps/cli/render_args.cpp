@@ -6,15 +6,11 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
-
 #include "args.hpp"
 #include "fit_args.hpp"
 
 namespace pointskin::cli {
 namespace {
-
-[[noreturn]] void refuse(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
 /// Reads "1200x900" into `options`.
 void parse_size(const std::string& text, RenderOptions& options) {
@@ -24,7 +20,7 @@ void parse_size(const std::string& text, RenderOptions& options) {
   constexpr double kMost = 16384;
   const auto good = [](double pixels) { return pixels >= 1 && pixels <= kMost && pixels == static_cast<int>(pixels); };
   if (!good(width) || !good(height))
-    refuse(fmt::format("--size: '{}' is not like 1200x900, each side in [1, {}]", text, kMost));
+    throw_usage(fmt::format("--size: '{}' is not like 1200x900, each side in [1, {}]", text, kMost));
   options.width = static_cast<int>(width);
   options.height = static_cast<int>(height);
 }
@@ -44,28 +40,30 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count) {
 
 Vec3d parse_target(const std::string& text) {
   const std::vector<double> numbers = parse_numbers(text, 3);
-  if (numbers.empty()) refuse(fmt::format("--target: '{}' is not like x,y,z", text));
+  if (numbers.empty()) throw_usage(fmt::format("--target: '{}' is not like x,y,z", text));
   return {numbers[0], numbers[1], numbers[2]};
 }
 
 ValueRange parse_range(const std::string& text) {
   const std::vector<double> numbers = parse_numbers(text, 2);
   if (numbers.empty() || !(numbers[0] < numbers[1]))
-    refuse(fmt::format("--range: '{}' is not like LOW,HIGH with LOW below HIGH", text));
+    throw_usage(fmt::format("--range: '{}' is not like LOW,HIGH with LOW below HIGH", text));
   return {numbers[0], numbers[1]};
 }
 
 void check_numbers(const RenderArgs& args) {
   const RenderOptions& options = args.options;
-  if (!std::isfinite(options.azimuth_degrees)) refuse("--azimuth: is no angle");
+  if (!std::isfinite(options.azimuth_degrees)) throw_usage("--azimuth: is no angle");
   if (!(options.elevation_degrees >= -90 && options.elevation_degrees <= 90))
-    refuse(fmt::format("--elevation: {} is not in [-90, 90] degrees", options.elevation_degrees));
-  if (!(options.zoom > 0 && options.zoom <= 1000)) refuse(fmt::format("--zoom: {} is not in (0, 1000]", options.zoom));
+    throw_usage(fmt::format("--elevation: {} is not in [-90, 90] degrees", options.elevation_degrees));
+  if (!(options.zoom > 0 && options.zoom <= 1000))
+    throw_usage(fmt::format("--zoom: {} is not in (0, 1000]", options.zoom));
   if (options.field_of_view_degrees && !(*options.field_of_view_degrees >= 1 && *options.field_of_view_degrees <= 170))
-    refuse(fmt::format("--fov: {} is not in [1, 170] degrees", *options.field_of_view_degrees));
+    throw_usage(fmt::format("--fov: {} is not in [1, 170] degrees", *options.field_of_view_degrees));
   if (!(options.point_size >= 0 && options.point_size <= 1000))
-    refuse(fmt::format("--point-size: {} is not in [0, 1000] pixels", options.point_size));
-  if (options.colour_by.empty() && !args.range.empty()) refuse("--range: needs --colour-by, whose values it is for");
+    throw_usage(fmt::format("--point-size: {} is not in [0, 1000] pixels", options.point_size));
+  if (options.colour_by.empty() && !args.range.empty())
+    throw_usage("--range: needs --colour-by, whose values it is for");
 }
 
 OptionGroup file_options(RenderArgs& args) {
@@ -137,7 +135,7 @@ UpAxis parse_up(const std::string& text, const char* option) {
   if (axis == "x") return minus ? UpAxis::minus_x : UpAxis::x;
   if (axis == "y") return minus ? UpAxis::minus_y : UpAxis::y;
   if (axis == "z") return minus ? UpAxis::minus_z : UpAxis::z;
-  refuse(fmt::format("{}: '{}' is not x, y, z, -x, -y or -z", option, text));
+  throw_usage(fmt::format("{}: '{}' is not x, y, z, -x, -y or -z", option, text));
 }
 
 OptionTable render_options(RenderArgs& args) {

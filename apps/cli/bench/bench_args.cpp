@@ -84,8 +84,7 @@ std::vector<int> parse_depths(const std::string& text) {
   for (const std::string& part : parts(text)) {
     const double depth = parse_number(part).value_or(0);
     if (!(depth >= 1 && depth <= 20) || depth != static_cast<int>(depth)) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("--depths: '{}' is no depth; whole numbers in [1, 20], such as 8,9,10", part));
+      throw_usage(fmt::format("--depths: '{}' is no depth; whole numbers in [1, 20], such as 8,9,10", part));
     }
     if (std::find(depths.begin(), depths.end(), static_cast<int>(depth)) == depths.end()) {
       depths.push_back(static_cast<int>(depth));
@@ -118,10 +117,10 @@ std::vector<std::string> parse_peer(const std::string& command) {
                        [&](const std::string& word) { return word.find(name) != std::string::npos; });
   };
   if (!names("{in}") || !names("{out}")) {
-    throw Error(ErrorCode::usage, "--peer: the command must say where {in} and {out} go");
+    throw_usage("--peer: the command must say where {in} and {out} go");
   }
   if (!is_executable(words[0])) {
-    throw Error(ErrorCode::usage, fmt::format("--peer: there is no program {} to run", words[0]));
+    throw_usage(fmt::format("--peer: there is no program {} to run", words[0]));
   }
   return words;
 }

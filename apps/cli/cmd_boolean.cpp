@@ -1,7 +1,5 @@
 // pointskin boolean: the union, intersection or difference of two solids.
-#include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <variant>
 #include <vector>
 

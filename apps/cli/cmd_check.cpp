@@ -1,5 +1,4 @@
 // pointskin check: is a mesh watertight, and does it run through itself?
-#include <memory>
 #include <optional>
 #include <string>
 

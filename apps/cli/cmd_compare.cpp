@@ -1,5 +1,4 @@
 // pointskin compare: how far apart two surfaces are, meshes or clouds, and where.
-#include <memory>
 #include <string>
 #include <utility>
 #include <variant>

@@ -1,5 +1,4 @@
 // pointskin convert: a mesh or cloud in another format.
-#include <memory>
 #include <string>
 #include <variant>
 

@@ -1,6 +1,4 @@
 // pointskin deform: a cloud bent by handles and lattices, frame after frame.
-#include <algorithm>
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,4 @@
 // pointskin edit: a cloud and a script of strokes, removals and copied parts in, mesh and what every step did out.
-#include <memory>
 
 #include <fmt/format.h>
 

@@ -193,7 +193,8 @@ class Sequence {
 
 Json frame_json(const FluidFrameRecord& frame) {
   const FluidReport& run = frame.run;
-  const MeshReport& mesh = frame.mesh;
+  Json mesh = to_json(frame.mesh);
+  mesh["volume"] = frame.mesh.volume;
   return {{"input", frame.input.path},
           {"output", frame.output},
           {"particles", frame.particles},
@@ -202,14 +203,7 @@ Json frame_json(const FluidFrameRecord& frame) {
           {"corners", {{"coarse", run.coarse_corners}, {"fine", run.fine_corners}}},
           {"rounds", run.rounds},
           {"removed_components", run.removed_components},
-          {"mesh",
-           {{"vertices", mesh.vertices},
-            {"triangles", mesh.triangles},
-            {"closed", mesh.closed()},
-            {"manifold", mesh.manifold()},
-            {"components", mesh.components},
-            {"euler", mesh.euler},
-            {"volume", mesh.volume}}},
+          {"mesh", mesh},
           {"ms",
            {{"read", frame.read_ms},
             {"upload", run.upload_ms},

@@ -1,6 +1,5 @@
 // pointskin info: what a file holds.
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <variant>
 #include <vector>

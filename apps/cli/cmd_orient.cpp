@@ -1,5 +1,4 @@
 // pointskin orient: normals for clouds that have none, or wrong ones.
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -1,8 +1,6 @@
 // pointskin render: a picture of a mesh or a cloud, or of every frame of a sequence.
 #include <algorithm>
-#include <memory>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 

@@ -1,7 +1,5 @@
 #include "report.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "console.hpp"

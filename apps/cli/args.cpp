@@ -39,6 +39,8 @@ int power_of(const std::string& suffix) {
 
 }  // namespace
 
+void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
+
 std::optional<double> parse_number(const std::string& text) {
   std::string_view rest = text;
   const std::optional<double> number = take_number(rest);
@@ -51,8 +53,7 @@ std::int64_t parse_bytes(const std::string& text, const char* option) {
   const int power = power_of(lower_case(std::string(rest)));
   const double bytes = number.value_or(0) * std::pow(1024.0, std::max(power, 0));
   if (!number || power < 0 || !(bytes >= 1) || !(bytes < 9e18)) {
-    throw Error(
-        ErrorCode::usage,
+    throw_usage(
         fmt::format("{}: '{}' is no amount of memory; write for example 8G, 512M or a number of bytes", option, text));
   }
   return static_cast<std::int64_t>(bytes);
@@ -75,7 +76,7 @@ std::optional<Vec3d> parse_shift(const std::string& text) {
   if (text == "auto") return std::nullopt;
   if (text == "none") return Vec3d{0, 0, 0};
   const std::optional<Vec3d> shift = parse_vector(text);
-  if (!shift) throw Error(ErrorCode::usage, "--shift: " + not_one_of(text, {"auto", "none", "x,y,z"}));
+  if (!shift) throw_usage("--shift: " + not_one_of(text, {"auto", "none", "x,y,z"}));
   return shift;
 }
 
@@ -95,7 +96,7 @@ std::function<std::string(const std::string&)> is_one_of(const std::vector<std::
 void check_threads(int threads) {
   constexpr int kMost = 4096;
   if (threads < 0 || threads > kMost) {
-    throw Error(ErrorCode::usage, fmt::format("--threads: {} is not in [0, {}]; 0 means all", threads, kMost));
+    throw_usage(fmt::format("--threads: {} is not in [0, {}]; 0 means all", threads, kMost));
   }
 }
 
@@ -105,7 +106,7 @@ Device parse_device(const std::string& text, int threads, const char* option, co
     return Device::parse(text, threads);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::usage) throw;
-    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not {}", option, text, words));
+    throw_usage(fmt::format("{}: '{}' is not {}", option, text, words));
   }
 }
 

@@ -12,6 +12,9 @@
 
 namespace pointskin::cli {
 
+/// @throws Error usage, with this story
+[[noreturn]] void throw_usage(const std::string& story);
+
 /// `text` as a finite number; unset if it is anything else. Does not depend on the locale.
 std::optional<double> parse_number(const std::string& text);
 

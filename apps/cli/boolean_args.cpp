@@ -2,79 +2,62 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
-
-#include "commands.hpp"
+#include "args.hpp"
 
 namespace pointskin::cli {
 namespace {
 
-void define_files(CLI::App& command, BooleanArgs& args) {
-  const std::string group = "Files";
-  command.add_option("A", args.a, "oriented cloud or closed mesh; - reads stdin")->required();
-  command.add_option("B", args.b, "oriented cloud or closed mesh; - reads stdin")->required();
-  command
-      .add_option("--op", args.op,
-                  "union, intersection, difference (A without B) or symmetric-difference (in exactly one)")
-      ->type_name("OP")
-      ->required();
-  command.add_option("-o,--output", args.output, "mesh: .ply, .obj or .stl; - writes PLY to stdout")
-      ->type_name("OUT")
-      ->group(group)
-      ->required();
-  command.add_option("--cloud", args.cloud, "also write the oriented points of the result, as PLY")
-      ->type_name("FILE")
-      ->group(group)
-      ->check(needs_a_name);
-  command.add_option("--report", args.report, "write what was done as JSON")
-      ->type_name("FILE")
-      ->group(group)
-      ->check(needs_a_name);
-  add_overwrite_option(command, args.overwrite);
-  command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
-      ->type_name("S")
-      ->group(group)
-      ->capture_default_str();
+OptionGroup file_options(BooleanArgs& args) {
+  return {"Files",
+          {output_row(args.output, {.required = true}),
+           option("--cloud FILE", "also write the oriented points of the result, as PLY", &args.cloud, {},
+                  {.check = needs_a_name}),
+           report_row(args.report), overwrite_row(args.overwrite), shift_row(args.shift)}};
 }
 
-void define_surface(CLI::App& command, BooleanArgs& args) {
-  add_surface_value(command, "--creases", args.creases, "where surfaces cross: sampled, or none")->type_name("C");
-  add_surface_value(command, "--coincidence", args.booleans.coincidence_cells,
-                    "surfaces that run alike coincide up to this distance, cells, 0 to 100")
-      ->type_name("N");
-  define_solve_options(command, args.solve);
+OptionGroup crease_options(BooleanArgs& args) {
+  BooleanOptions& o = args.booleans;
+  return {
+      kSurfaceGroup,
+      {option("--creases C", "where surfaces cross: sampled, or none",
+              one_of<Creases>(o.creases, {{"none", Creases::none}, {"sampled", Creases::sampled}}), {"creases", 24}),
+       option("--coincidence N", "surfaces that run alike coincide up to this distance, cells, 0 to 100",
+              &o.coincidence_cells, {"coincidence", 25, R"({"minimum": 0, "description": "cells"})"})}};
 }
 
-Creases creases_of(const std::string& word) {
-  if (word == "none") return Creases::none;
-  if (word == "sampled") return Creases::sampled;
-  throw Error(ErrorCode::usage, fmt::format("--creases: '{}' is not none or sampled", word));
+Binding operation_of(BooleanOp& op) {
+  return one_of<BooleanOp>(op, {{"union", BooleanOp::unite},
+                                {"intersection", BooleanOp::intersect},
+                                {"difference", BooleanOp::subtract},
+                                {"symmetric-difference", BooleanOp::symmetric_difference}});
 }
 
 }  // namespace
 
-void define_boolean_options(CLI::App& command, BooleanArgs& args) {
-  define_files(command, args);
-  define_surface(command, args);
-  define_device_options(command, args);
-  command.add_flag("-q,--quiet", args.quiet, "errors and warnings only")->group("Messages");
-}
+std::string word_of(BooleanOp op) { return std::get<std::string>(operation_of(op).value()); }
 
-BooleanOp operation_of(const std::string& word) {
-  if (word == "union") return BooleanOp::unite;
-  if (word == "intersection") return BooleanOp::intersect;
-  if (word == "difference") return BooleanOp::subtract;
-  if (word == "symmetric-difference") return BooleanOp::symmetric_difference;
-  throw Error(ErrorCode::usage,
-              fmt::format("--op: '{}' is not union, intersection, difference or symmetric-difference", word));
+OptionTable boolean_options(BooleanArgs& args) {
+  OptionGroup surface = fit_options(args.fit);
+  surface.row("--envelope").report = {};
+  surface.without(kBeyondSolve);
+  return {{"Options",
+           {option("A", "oriented cloud or closed mesh; - reads stdin", &args.a, {}, {.required = true}),
+            option("B", "oriented cloud or closed mesh; - reads stdin", &args.b, {}, {.required = true}),
+            option("--op OP", "union, intersection, difference (A without B) or symmetric-difference (in exactly one)",
+                   operation_of(args.op), {}, {.required = true, .no_default = true})}},
+          file_options(args).unreported(),
+          crease_options(args),
+          surface,
+          device_options(args).unreported(),
+          quiet_option(args.quiet)};
 }
 
 BooleanOptions library_options(const BooleanArgs& args) {
   BooleanOptions options = args.booleans;
-  options.creases = creases_of(args.creases);
-  options.reconstruction = solve_options(args.solve);
+  options.reconstruction = args.fit.options;
+  validate(options.reconstruction);
   if (!(options.coincidence_cells >= 0 && options.coincidence_cells <= 100))
-    throw Error(ErrorCode::usage, fmt::format("--coincidence: {} is not in [0, 100]", options.coincidence_cells));
+    throw_usage(fmt::format("--coincidence: {} is not in [0, 100]", options.coincidence_cells));
   return options;
 }
 

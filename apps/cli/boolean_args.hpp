@@ -3,8 +3,6 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include <pointskin/boolean.hpp>
 
 #include "fit_args.hpp"
@@ -14,23 +12,21 @@ namespace pointskin::cli {
 
 struct BooleanArgs : DeviceArgs {
   std::string a, b;
-  std::string op;
+  BooleanOp op = BooleanOp::unite;
   std::string output;
   std::string cloud;   ///< empty: none
   std::string report;  ///< empty: none
-  std::string creases = "sampled";
   std::string shift = "auto";
   BooleanOptions booleans;  ///< but for the reconstruction
-  SolveArgs solve;
+  FitArgs fit;
   bool overwrite = false, quiet = false;
   GivenOptions given;
 };
 
-/// Defines the options on `command`, bound to `args`.
-void define_boolean_options(CLI::App& command, BooleanArgs& args);
+/// The word that means an operation.
+std::string word_of(BooleanOp op);
 
-/// @throws Error usage for a word that is no operation
-BooleanOp operation_of(const std::string& word);
+OptionTable boolean_options(BooleanArgs& args);
 
 /// Options as the library wants them.
 /// @throws Error usage if a value is out of range

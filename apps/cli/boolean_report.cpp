@@ -10,15 +10,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* word_of(Creases creases) { return creases == Creases::none ? "none" : "sampled"; }
-
-Json options_json(const BooleanOptions& options) {
-  Json json = to_json(options.reconstruction);
-  json["creases"] = word_of(options.creases);
-  json["coincidence"] = options.coincidence_cells;
-  return json;
-}
-
 double fit_ms(const RunReport& run) { return run.octree_ms + run.splat_ms + run.solve_ms; }
 
 Json part_json(const BooleanPart& part, bool is_mesh, std::int64_t dropped_on_reading) {
@@ -56,7 +47,7 @@ Json to_json(const BooleanRecord& record) {
   json["device"] = to_json(record.device);
   json["op"] = record.op;
   json["files"] = record.files;
-  json["options"] = options_json(record.options);
+  json["options"] = record.shown_options;
   json["a"] = part_json(run.a, record.a_is_mesh, record.a_dropped);
   json["b"] = part_json(run.b, record.b_is_mesh, record.b_dropped);
   json["added"] = run.added;

@@ -16,7 +16,7 @@ namespace pointskin::cli {
 struct BooleanRecord {
   Device device;
   std::string op;  ///< as on the command line
-  nlohmann::ordered_json files;
+  nlohmann::ordered_json files, shown_options;
   BooleanOptions options;
   BooleanReport run;
   MeshReport mesh;

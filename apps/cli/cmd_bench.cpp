@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <system_error>
 
@@ -185,11 +184,8 @@ int run(const BenchArgs& args) {
 
 }  // namespace
 
-void add_bench(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "bench", "Measure times and memory, also of another program.");
-  auto args = std::make_shared<BenchArgs>();
-  define_bench_options(*command, *args);
-  finish_command(*command, job, args, run);
+Command bench_command() {
+  return make_command({"bench", "Measure times and memory, also of another program."}, bench_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -1,7 +1,5 @@
 // pointskin boolean: the union, intersection or difference of two solids.
-#include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <variant>
 #include <vector>
 
@@ -72,7 +70,7 @@ void warn_about_strays(const char* name, const BooleanPart& part) {
                               name, part.strays));
 }
 
-BooleanResult compute(const BooleanArgs& args, const Solid& a, const Solid& b, BooleanOp op, BooleanRecord& record) {
+BooleanResult compute(const BooleanArgs& args, const Solid& a, const Solid& b, BooleanRecord& record) {
   Booleans booleans(record.device);
   ProgressLine line(!args.quiet && stderr_is_terminal());
   BooleanOptions options = record.options;
@@ -80,7 +78,7 @@ BooleanResult compute(const BooleanArgs& args, const Solid& a, const Solid& b, B
     line.update(progress);
     return !interrupted();
   };
-  BooleanResult result = booleans.combine(operand_of(a), operand_of(b), op, options);
+  BooleanResult result = booleans.combine(operand_of(a), operand_of(b), args.op, options);
   line.clear();
   record.run = result.report;
   warn_about_strays("A", record.run.a);
@@ -100,8 +98,6 @@ int run(const BooleanArgs& args) {
   const Stopwatch watch;
   BooleanRecord record;
   record.options = library_options(args);
-  record.op = args.op;
-  const BooleanOp op = operation_of(args.op);
   parse_shift(args.shift);
   check_files(args);
   record.device = args.chosen();
@@ -114,13 +110,15 @@ int run(const BooleanArgs& args) {
   record.read_ms = watch.ms();
 
   on_interrupt(OnInterrupt::remember);
-  const BooleanResult result = compute(args, a, b, op, record);
+  const BooleanResult result = compute(args, a, b, record);
   write_outputs(args, result, record);
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
   record.mesh.triangles = static_cast<std::int64_t>(result.mesh.triangles.size());
   if (!args.quiet) record.shape = shape_words(result.mesh, args.threads);
   if (!args.report.empty()) {
+    record.op = word_of(args.op);
+    record.shown_options = report_of(boolean_options, args);
     record.files = {{"a", args.a}, {"b", args.b}, {"output", args.output}, {"cloud", or_null(args.cloud)}};
     record.mesh = measure(result.mesh, args.threads);
     record.shape = shape_words(record.mesh);
@@ -132,12 +130,9 @@ int run(const BooleanArgs& args) {
 
 }  // namespace
 
-void add_boolean(CLI::App& program, Job& job) {
-  CLI::App* command =
-      add_command(program, "boolean", "Unite, intersect or subtract two solids given by points or meshes.");
-  auto args = std::make_shared<BooleanArgs>();
-  define_boolean_options(*command, *args);
-  finish_command(*command, job, args, run);
+Command boolean_command() {
+  return make_command({"boolean", "Unite, intersect or subtract two solids given by points or meshes."},
+                      boolean_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -1,5 +1,4 @@
 // pointskin check: is a mesh watertight, and does it run through itself?
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -12,6 +11,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "fit_args.hpp"
 #include "json_text.hpp"
 
 namespace pointskin::cli {
@@ -124,20 +124,21 @@ constexpr char kFooter[] =
     "that they share by number. Exact, also for triangles that touch, lie in one plane or have no area. A mesh of\n"
     "`reconstruct` crosses itself in single cells of three rare kinds only; an envelope and smoothing may fold it.";
 
+OptionTable check_options(CheckArgs& args) {
+  return {{"Check",
+           {option("MESH", "mesh: PLY, OBJ, STL or OFF; - reads PLY from stdin", &args.file, {}, {.required = true}),
+            option("--self-intersections",
+                   "also find pairs of triangles that meet beside what they share; 5 if there are any",
+                   &args.self_intersections)}},
+          {"Output", {json_row(args.json)}},
+          {"Limits", {threads_row(args.threads)}}};
+}
+
 }  // namespace
 
-void add_check(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "check", "Tell whether a mesh is watertight: exit code 0, or 5 if not.");
-  auto args = std::make_shared<CheckArgs>();
-  command->footer(kFooter);
-  command->add_option("MESH", args->file, "mesh: PLY, OBJ, STL or OFF; - reads PLY from stdin")->required();
-  command
-      ->add_flag("--self-intersections", args->self_intersections,
-                 "also find pairs of triangles that meet beside what they share; 5 if there are any")
-      ->group("Check");
-  command->add_flag("--json", args->json, "print JSON")->group("Output");
-  add_threads_option(*command, args->threads, "Limits");
-  finish_command(*command, job, args, run);
+Command check_command() {
+  return make_command({"check", "Tell whether a mesh is watertight: exit code 0, or 5 if not.", kFooter}, check_options,
+                      run);
 }
 
 }  // namespace pointskin::cli

@@ -1,5 +1,4 @@
 // pointskin compare: how far apart two surfaces are, meshes or clouds, and where.
-#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -15,6 +14,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
+#include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
@@ -125,15 +125,14 @@ std::string human_text(const CompareArgs& args, const Comparison& comparison) {
 /// Everything that can be found wrong before the inputs are opened.
 void check(const CompareArgs& args) {
   check_threads(args.options.threads);
-  if (args.options.samples < 1) throw Error(ErrorCode::usage, "--samples: must be at least 1");
-  if (!(args.options.tau > 0)) throw Error(ErrorCode::usage, "--tau: must be above 0");
+  if (args.options.samples < 1) throw_usage("--samples: must be at least 1");
+  if (!(args.options.tau > 0)) throw_usage("--tau: must be above 0");
   check_distinct({args.a, args.b}, {{"compare", "-"}, {"--heat", args.heat}}, args.overwrite);
-  if (args.with_sign && args.heat.empty())
-    throw Error(ErrorCode::usage, "--signed: changes what --heat writes, which is not given");
+  if (args.with_sign && args.heat.empty()) throw_usage("--signed: changes what --heat writes, which is not given");
   if (args.heat.empty()) return;
   const FormatInfo& full = file_formats().front();  // holds clouds, meshes and their properties
   if (format_of(args.heat) != &full)
-    throw Error(ErrorCode::usage, fmt::format("--heat: {} does not end in {}", args.heat, full.extensions.front()));
+    throw_usage(fmt::format("--heat: {} does not end in {}", args.heat, full.extensions.front()));
   check_replaceable(args.heat);
 }
 
@@ -141,8 +140,7 @@ Content read(const std::string& file, const CompareArgs& args) {
   Content content = read_cloud_or_mesh(file, {.shift = std::nullopt, .threads = args.options.threads});
   const auto* cloud = std::get_if<Cloud>(&content);
   const std::string name = file == "-" ? "stdin" : file;
-  if (cloud != nullptr && cloud->dropped > 0)
-    print_warning(fmt::format("{}: {} points were dropped: a coordinate is not finite", name, cloud->dropped));
+  if (cloud != nullptr) warn_about_dropped(cloud->dropped, name + ": ");
   if (cloud != nullptr && cloud->positions.empty())
     throw Error(ErrorCode::invalid_input, fmt::format("{}: holds no points with finite coordinates", name));
   return content;
@@ -189,42 +187,26 @@ constexpr char kFooter[] =
     "all\n"
     "else a cloud. --heat measures all vertices or points of A, not samples.";
 
-void add_measure_options(CLI::App& command, CompareArgs& args) {
-  command.add_option("--tau", args.options.tau, "F-score threshold, as a fraction of B's diagonal")
-      ->type_name("F")
-      ->group("Measure")
-      ->capture_default_str();
-  command.add_option("--samples", args.options.samples, "samples of each mesh, points of each cloud at most")
-      ->type_name("N")
-      ->group("Measure")
-      ->capture_default_str();
-}
-
-void add_output_options(CLI::App& command, CompareArgs& args) {
-  command.add_flag("--json", args.json, "print JSON")->group("Output");
-  command.add_option("--heat", args.heat, "also write A with the property `distance` from B, in world units: .ply")
-      ->type_name("FILE")
-      ->group("Output");
-  command
-      .add_flag("--signed", args.with_sign,
-                "with --heat: `signed_distance` instead, above 0 outside of B, which must be watertight")
-      ->group("Output");
-  add_overwrite_option(command, args.overwrite);
+OptionTable compare_options(CompareArgs& args) {
+  return {{"Measure",
+           {option("A", "mesh or cloud; - reads stdin", &args.a, {}, {.required = true}),
+            option("B", "the reference: mesh or cloud", &args.b, {}, {.required = true}),
+            option("--tau F", "F-score threshold, as a fraction of B's diagonal", &args.options.tau),
+            option("--samples N", "samples of each mesh, points of each cloud at most", &args.options.samples)}},
+          {"Output",
+           {json_row(args.json),
+            option("--heat FILE", "also write A with the property `distance` from B, in world units: .ply", &args.heat),
+            option("--signed", "with --heat: `signed_distance` instead, above 0 outside of B, which must be watertight",
+                   &args.with_sign)}},
+          {"Files", {overwrite_row(args.overwrite)}},
+          {"Limits", {threads_row(args.options.threads)}}};
 }
 
 }  // namespace
 
-void add_compare(CLI::App& program, Job& job) {
-  CLI::App* command =
-      add_command(program, "compare", "Measure how far a mesh or cloud is from a reference, both ways.");
-  auto args = std::make_shared<CompareArgs>();
-  command->footer(kFooter);
-  command->add_option("A", args->a, "mesh or cloud; - reads stdin")->required();
-  command->add_option("B", args->b, "the reference: mesh or cloud")->required();
-  add_measure_options(*command, *args);
-  add_output_options(*command, *args);
-  add_threads_option(*command, args->options.threads, "Limits");
-  finish_command(*command, job, args, run);
+Command compare_command() {
+  return make_command({"compare", "Measure how far a mesh or cloud is from a reference, both ways.", kFooter},
+                      compare_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -1,17 +1,16 @@
 // pointskin convert: a mesh or cloud in another format.
-#include <memory>
 #include <string>
 #include <variant>
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
+#include "fit_args.hpp"
 #include "input.hpp"
 #include "output_check.hpp"
 #include "signals.hpp"
@@ -38,8 +37,7 @@ std::string write(const ConvertArgs& args, const Mesh& mesh) {
 
 std::string write(const ConvertArgs& args, const Cloud& cloud) {
   check_cloud_name(args.output, "{} holds a cloud, and clouds are written as {} only", args.input);
-  if (cloud.dropped > 0)
-    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
+  warn_about_dropped(cloud.dropped);
   write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads});
   return fmt::format("{} points", cloud.size());
 }
@@ -60,23 +58,22 @@ int run(const ConvertArgs& args) {
   return 0;
 }
 
+OptionTable convert_options(ConvertArgs& args) {
+  return {{"Input",
+           {option("IN", "mesh: PLY, OBJ, STL, OFF; cloud: PLY, XYZ, PTS, ASC, TXT, CSV; - is stdin", &args.input, {},
+                   {.required = true}),
+            option("OUT", "mesh: .ply, .obj, .stl; cloud: .ply; - writes PLY to stdout", &args.output, {},
+                   {.required = true}),
+            shift_row(args.shift)}},
+          {"Files", {ascii_row(args.ascii), overwrite_row(args.overwrite)}},
+          {"Limits", {threads_row(args.threads)}},
+          quiet_option(args.quiet)};
+}
+
 }  // namespace
 
-void add_convert(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "convert", "Write a mesh in another format, or a cloud as PLY.");
-  auto args = std::make_shared<ConvertArgs>();
-  command->add_option("IN", args->input, "mesh: PLY, OBJ, STL, OFF; cloud: PLY, XYZ, PTS, ASC, TXT, CSV; - is stdin")
-      ->required();
-  command->add_option("OUT", args->output, "mesh: .ply, .obj, .stl; cloud: .ply; - writes PLY to stdout")->required();
-  command->add_option("--shift", args->shift, "offset subtracted while working: auto, none or x,y,z in world units")
-      ->type_name("S")
-      ->group("Input")
-      ->capture_default_str();
-  add_ascii_option(*command, args->ascii);
-  add_overwrite_option(*command, args->overwrite);
-  add_threads_option(*command, args->threads, "Limits");
-  command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
-  finish_command(*command, job, args, run);
+Command convert_command() {
+  return make_command({"convert", "Write a mesh in another format, or a cloud as PLY."}, convert_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -1,6 +1,4 @@
 // pointskin deform: a cloud bent by handles and lattices, frame after frame.
-#include <algorithm>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,14 +38,30 @@ struct DeformArgs : FitArgs, DeviceArgs {
   std::string script, output, cloud, report;  ///< empty: none
   std::string shift = "auto";
   int frames = 1;
-  bool frames_given = false, overwrite = false, quiet = false;
+  bool overwrite = false, quiet = false;
   GivenOptions given;
 };
 
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
+OptionGroup file_options(DeformArgs& args) {
+  return {
+      "Files",
+      {clouds_row(args.inputs),
+       option("--script FILE", "the deformation as JSON; - reads stdin", &args.script, {"script", 61, kNeverNull},
+              {.required = true}),
+       output_row(args.output),
+       option("--cloud OUT", "deformed points: .ply, - writes to stdout", &args.cloud, {"cloud", 63}),
+       option("--report FILE", "write what was done as JSON; also measures how far apart samples are", &args.report),
+       overwrite_row(args.overwrite), shift_row(args.shift),
+       option("--frames N", "N frames from the rest pose to the deformation; {} in OUT: number", &args.frames,
+              {"frames", 50, kFromOne}, {.no_default = true})}};
+}
+
+OptionTable deform_options(DeformArgs& args) {
+  return {file_options(args), fit_options(args), device_options(args), quiet_option(args.quiet)};
+}
 
 std::string file_of(const DeformArgs& args, const std::string& pattern, int frame) {
-  return args.frames_given ? frame_file(pattern, frame, args.frames) : pattern;
+  return args.given.has("--frames") ? frame_file(pattern, frame, args.frames) : pattern;
 }
 
 /// With --frames, a file a frame.
@@ -58,8 +72,8 @@ void check_names(const DeformArgs& args) {
   const std::vector<OutputFile> patterns = {{"-o", args.output}, {"--cloud", args.cloud}};
   for (const OutputFile& pattern : patterns) {
     for (int frame = 0; frame < args.frames && !pattern.file.empty(); ++frame)
-      plan.outputs.push_back(
-          {pattern.option, file_of(args, pattern.file, frame), pattern.kind, args.frames_given ? frame : kNoFrame});
+      plan.outputs.push_back({pattern.option, file_of(args, pattern.file, frame), pattern.kind,
+                              args.given.has("--frames") ? frame : kNoFrame});
   }
   check_files(plan);
 }
@@ -67,9 +81,9 @@ void check_names(const DeformArgs& args) {
 /// Everything that can be found wrong before the input is opened.
 void check_outputs(const DeformArgs& args) {
   if (args.output.empty() && args.cloud.empty()) throw_usage("no output; name a mesh with -o or a cloud with --cloud");
-  if (args.frames_given && (args.frames < 2 || args.frames > 100'000))
+  if (args.given.has("--frames") && (args.frames < 2 || args.frames > 100'000))
     throw_usage(fmt::format("--frames: {} is not in [2, 100000]", args.frames));
-  if (args.frames_given) {
+  if (args.given.has("--frames")) {
     check_pattern(args.output, "-o", "--frames");
     check_pattern(args.cloud, "--cloud", "--frames");
   }
@@ -110,7 +124,7 @@ class Frames {
  private:
   void run_one(int frame) {
     throw_if_interrupted();
-    const double share = args_.frames_given ? static_cast<double>(frame) / (args_.frames - 1) : 1;
+    const double share = args_.given.has("--frames") ? static_cast<double>(frame) / (args_.frames - 1) : 1;
     const Stopwatch watch;
     deformer_.deform(scaled(deformation_, share));
     if (!args_.output.empty()) deformer_.reconstruct(mesh_);
@@ -119,7 +133,7 @@ class Frames {
     throw_if_interrupted();
     if (!args_.output.empty()) write_mesh(file_of(args_, args_.output, frame), mesh_, args_.threads);
     if (!args_.cloud.empty()) write_cloud(file_of(args_, args_.cloud, frame), deformer_.cloud(), args_.threads);
-    if (args_.frames_given) frame_was_written();
+    if (args_.given.has("--frames")) frame_was_written();
     if (!args_.report.empty()) json_.push_back(describe(share, frame_ms_.back(), writing.ms()));
   }
 
@@ -146,20 +160,6 @@ class Frames {
   std::vector<double> frame_ms_;
   Json json_ = Json::array();
 };
-
-Json options_json(const DeformArgs& args, const Options& options) {
-  Json json = to_json(options);
-  json.update({{"device", args.device},
-               {"threads", args.threads},
-               {"shift", args.shift},
-               {"envelope", or_null(args.envelope)},
-               {"frames", args.frames},
-               {"inputs", args.inputs},
-               {"script", args.script},
-               {"output", or_null(args.output)},
-               {"cloud", or_null(args.cloud)}});
-  return json;
-}
 
 /// Options that come to nothing, and parts of the script.
 void warn_about_unused(const DeformArgs& args, const Options& options, const Deformation& deformation,
@@ -189,7 +189,8 @@ std::string summary(const DeformArgs& args, const DeformReport& report, const Fr
 }
 
 int run(const DeformArgs& args) {
-  Options options = fit_options(args);
+  Options options = args.options;
+  validate(options);
   parse_shift(args.shift);
   check_outputs(args);
   const Device device = args.chosen();
@@ -213,7 +214,7 @@ int run(const DeformArgs& args) {
                    {"used", deformer.report().rest_points},
                    {"dropped", cloud.dropped},
                    {"strays", at_rest.strays}};
-  json["options"] = options_json(args, options);
+  json["options"] = report_of(deform_options, args);
   cloud = Cloud();
 
   Frames frames(args, deformer, deformation);
@@ -228,35 +229,10 @@ int run(const DeformArgs& args) {
   return 0;
 }
 
-void define_files(CLI::App& command, DeformArgs& args) {
-  const std::string group = "Files";
-  const auto file = [&](const char* name, std::string& target, const char* type, const char* description) {
-    return command.add_option(name, target, description)->type_name(type)->group(group);
-  };
-  command.add_option("IN", args.inputs, "oriented clouds, merged; - reads stdin")->required();
-  file("--script", args.script, "FILE", "the deformation as JSON; - reads stdin")->required();
-  file("-o,--output", args.output, "OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout");
-  file("--cloud", args.cloud, "OUT", "deformed points: .ply, - writes to stdout");
-  file("--report", args.report, "FILE", "write what was done as JSON; also measures how far apart samples are");
-  add_overwrite_option(command, args.overwrite);
-  file("--shift", args.shift, "S", "offset subtracted while working: auto, none or x,y,z in world units")
-      ->capture_default_str();
-  command.add_option("--frames", args.frames, "N frames from the rest pose to the deformation; {} in OUT: number")
-      ->type_name("N")
-      ->group(group)
-      ->each([&args](const std::string&) { args.frames_given = true; });
-}
-
 }  // namespace
 
-void add_deform(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "deform", "Bend a cloud by handles and lattices, and fit meshes to it.");
-  auto args = std::make_shared<DeformArgs>();
-  define_files(*command, *args);
-  define_fit_options(*command, *args);
-  define_device_options(*command, *args);
-  command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
-  finish_command(*command, job, args, run);
+Command deform_command() {
+  return make_command({"deform", "Bend a cloud by handles and lattices, and fit meshes to it."}, deform_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -1,5 +1,4 @@
 // pointskin edit: a cloud and a script of strokes, removals and copied parts in, mesh and what every step did out.
-#include <memory>
 
 #include <fmt/format.h>
 
@@ -33,9 +32,33 @@ struct EditArgs : FitArgs, DeviceArgs {
   std::string script;
   std::string output, save, cloud, report;  ///< empty: none
   std::string shift = "auto";
-  bool overwrite = false, cold = false, quiet = false;
+  bool overwrite = false, warm_start = true, quiet = false;
   GivenOptions given;
 };
+
+OptionGroup file_options(EditArgs& args) {
+  const OptionRules named = {.check = needs_a_name};
+  return {"Files",
+          {clouds_row(args.inputs),
+           option("--script FILE", "operations, as JSON", &args.script, {"script", 61, kNeverNull},
+                  {.required = true, .check = needs_a_name}),
+           output_row(args.output, named),
+           option("--cloud FILE", "write the edited points, with the property added, as PLY", &args.cloud,
+                  {"cloud", 63}, named),
+           option("--save FILE", "write the operations that are done, as a script", &args.save, {"save", 64}, named),
+           report_row(args.report, "write what every step did as JSON"), overwrite_row(args.overwrite),
+           shift_row(args.shift)}};
+}
+
+OptionTable edit_options(EditArgs& args) {
+  return {file_options(args),
+          fit_options(args).without({"--offset"}),  // a session has none
+          device_options(args),
+          {kSurfaceGroup,
+           {option("--cold", "solve every surface anew, instead of from the one before", negated(args.warm_start),
+                   {"warm_start", 24})}},
+          quiet_option(args.quiet)};
+}
 
 /// @param parts  files that the script names
 void check_names(const EditArgs& args, const std::vector<std::string>& parts) {
@@ -76,21 +99,6 @@ Json step_json(const StepReport& step) {
           {"ms", {{"edit", step.edit_ms}, {"reconstruct", step.reconstruct_ms}, {"total", step.total_ms}}}};
 }
 
-Json options_json(const EditArgs& args, const EditOptions& options) {
-  Json json = to_json(options.reconstruction);
-  json.update({{"warm_start", options.warm_start},
-               {"device", args.device},
-               {"threads", args.threads},
-               {"shift", args.shift},
-               {"envelope", or_null(args.envelope)},
-               {"inputs", args.inputs},
-               {"script", args.script},
-               {"output", or_null(args.output)},
-               {"cloud", or_null(args.cloud)},
-               {"save", or_null(args.save)}});
-  return json;
-}
-
 /// What every step did, and the mesh in the end.
 void describe(const EditSession& session, const EditArgs& args, Json& json) {
   Json steps = Json::array();
@@ -121,10 +129,8 @@ void run_script(const EditScript& script, const EditArgs& args, EditSession& ses
     const ScriptStep step = script.step(i, camera_of_picture);
     try {
       if (step.kind == ScriptStep::Kind::apply) session.apply(step.operation);
-      if (step.kind == ScriptStep::Kind::undo && !session.undo())
-        throw Error(ErrorCode::usage, "there is nothing to undo");
-      if (step.kind == ScriptStep::Kind::redo && !session.redo())
-        throw Error(ErrorCode::usage, "there is nothing to redo");
+      if (step.kind == ScriptStep::Kind::undo && !session.undo()) throw_usage("there is nothing to undo");
+      if (step.kind == ScriptStep::Kind::redo && !session.redo()) throw_usage("there is nothing to redo");
     } catch (const Error& error) {
       throw error.while_doing(fmt::format("running operations[{}] of {}", i, args.script));
     }
@@ -164,8 +170,9 @@ std::string summary(const EditSession& session, const EditArgs& args, double tot
 int run(const EditArgs& args) {
   const Stopwatch watch;
   EditOptions options;
-  options.reconstruction = fit_options(args);
-  options.warm_start = !args.cold;
+  options.reconstruction = args.options;
+  validate(options.reconstruction);
+  options.warm_start = args.warm_start;
   parse_shift(args.shift);
   check_outputs(args);
   const Device device = args.chosen();
@@ -176,7 +183,7 @@ int run(const EditArgs& args) {
   Cloud base = read_base(args, options.reconstruction);
   Json json = {{"version", 1}, {"command", "edit"}, {"device", to_json(device)}};
   json["input"] = {{"points", base.size() + base.dropped}, {"dropped", base.dropped}};
-  json["options"] = options_json(args, options);
+  json["options"] = report_of(edit_options, args);
   json["ms"]["read"] = watch.ms();
 
   on_interrupt(OnInterrupt::remember);
@@ -199,37 +206,10 @@ int run(const EditArgs& args) {
   return 0;
 }
 
-void define_files(CLI::App& command, EditArgs& args) {
-  const std::string group = "Files";
-  const auto file = [&](const char* name, std::string& target, const char* type, const char* description) {
-    return command.add_option(name, target, description)->type_name(type)->group(group)->check(needs_a_name);
-  };
-  command.add_option("IN", args.inputs, "oriented clouds, merged; - reads stdin")->required();
-  file("--script", args.script, "FILE", "operations, as JSON")->required();
-  file("-o,--output", args.output, "OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout");
-  file("--cloud", args.cloud, "FILE", "write the edited points, with the property added, as PLY");
-  file("--save", args.save, "FILE", "write the operations that are done, as a script");
-  file("--report", args.report, "FILE", "write what every step did as JSON");
-  add_overwrite_option(command, args.overwrite);
-  command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
-      ->type_name("S")
-      ->group(group)
-      ->capture_default_str();
-}
-
 }  // namespace
 
-void add_edit(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "edit", "Guide, repair and extend a surface by a script of operations.");
-  auto args = std::make_shared<EditArgs>();
-  define_files(*command, *args);
-  define_fit_options(*command, *args);
-  command->remove_option(command->get_option("--offset"));  // a session has none
-  define_device_options(*command, *args);
-  command->add_flag("--cold", args->cold, "solve every surface anew, instead of from the one before")
-      ->group(kSurfaceGroup);
-  command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
-  finish_command(*command, job, args, run);
+Command edit_command() {
+  return make_command({"edit", "Guide, repair and extend a surface by a script of operations."}, edit_options, run);
 }
 
 }  // namespace pointskin::cli

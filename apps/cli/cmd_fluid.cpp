@@ -193,7 +193,8 @@ class Sequence {
 
 Json frame_json(const FluidFrameRecord& frame) {
   const FluidReport& run = frame.run;
-  const MeshReport& mesh = frame.mesh;
+  Json mesh = to_json(frame.mesh);
+  mesh["volume"] = frame.mesh.volume;
   return {{"input", frame.input.path},
           {"output", frame.output},
           {"particles", frame.particles},
@@ -202,14 +203,7 @@ Json frame_json(const FluidFrameRecord& frame) {
           {"corners", {{"coarse", run.coarse_corners}, {"fine", run.fine_corners}}},
           {"rounds", run.rounds},
           {"removed_components", run.removed_components},
-          {"mesh",
-           {{"vertices", mesh.vertices},
-            {"triangles", mesh.triangles},
-            {"closed", mesh.closed()},
-            {"manifold", mesh.manifold()},
-            {"components", mesh.components},
-            {"euler", mesh.euler},
-            {"volume", mesh.volume}}},
+          {"mesh", mesh},
           {"ms",
            {{"read", frame.read_ms},
             {"upload", run.upload_ms},
@@ -223,32 +217,11 @@ Json frame_json(const FluidFrameRecord& frame) {
             {"total", frame.total_ms}}}};
 }
 
-Json options_json(const FluidArgs& args, const FluidOptions& options) {
-  const auto or_null = [](const std::optional<std::int64_t>& n) { return n ? Json(*n) : Json(nullptr); };
-  return {{"particle_radius", options.particle_radius},
-          {"kernel", args.kernel},
-          {"smoothing_length", options.smoothing_length},
-          {"cube_size", options.cube_size},
-          {"surface_threshold", options.surface_threshold == 0 ? Json("default") : Json(options.surface_threshold)},
-          {"smoothing_iterations", options.smoothing_iterations},
-          {"smoothing_weights", options.smoothing_weights},
-          {"min_component", options.min_component},
-          {"normals", options.normals},
-          {"attributes", options.attributes},
-          {"device", args.device},
-          {"threads", args.threads},
-          {"shift", args.shift},
-          {"first", or_null(args.first)},
-          {"last", or_null(args.last)},
-          {"input", args.input},
-          {"output", args.output}};
-}
-
-void write_report(const FluidArgs& args, const FluidOptions& options, const Device& device,
-                  const std::vector<FluidFrameRecord>& frames, int at_once, double total_ms) {
+void write_report(const FluidArgs& args, const Device& device, const std::vector<FluidFrameRecord>& frames, int at_once,
+                  double total_ms) {
   Json json = {{"version", 1}, {"command", "fluid"}};
   json["device"] = to_json(device);
-  json["options"] = options_json(args, options);
+  json["options"] = report_of(fluid_options, args);
   json["at_once"] = at_once;
   json["frames"] = Json::array();
   std::int64_t peak = 0;
@@ -265,17 +238,17 @@ void write_report(const FluidArgs& args, const FluidOptions& options, const Devi
 
 /// What CLI11 cannot know: which of the options belong together.
 void check_given(const FluidArgs& args) {
-  const auto refuse = [](const std::string& story) { throw Error(ErrorCode::usage, story); };
   const bool simulates = !args.simulation.scene.empty();
   if (simulates && !args.input.empty())
-    refuse(args.input + " is not read because of --simulate; leave one of them out");
-  if (simulates && (args.first || args.last)) refuse("--first and --last belong to sequences of files; use --frames");
+    throw_usage(args.input + " is not read because of --simulate; leave one of them out");
+  if (simulates && (args.first || args.last))
+    throw_usage("--first and --last belong to sequences of files; use --frames");
   if (simulates) return;
-  if (args.input.empty()) refuse("IN is required: particles of a frame, or --simulate SCENE");
-  if (args.output.empty()) refuse("--output is required");
+  if (args.input.empty()) throw_usage("IN is required: particles of a frame, or --simulate SCENE");
+  if (args.output.empty()) throw_usage("--output is required");
   if (args.options.particle_radius == 0)
-    refuse("particle_radius is required and must be positive: --particle-radius R");
-  if (!args.simulation.particles_out.empty()) refuse("--particles-out needs --simulate");
+    throw_usage("particle_radius is required and must be positive: --particle-radius R");
+  if (!args.simulation.particles_out.empty()) throw_usage("--particles-out needs --simulate");
 }
 
 int run(const FluidArgs& args) {
@@ -284,11 +257,12 @@ int run(const FluidArgs& args) {
   const FluidOptions options = library_options(args);
   if (!args.simulation.scene.empty())
     return run_simulation(args.simulation, {args.output, args.report, args, args.quiet, options,
-                                            [&args](bool on_gpu) { warn_about_unused(args, on_gpu); }});
+                                            [&args](bool on_gpu) { warn_about_unused(args, on_gpu); },
+                                            report_of(simulation_report_options, args)});
   parse_shift(args.shift);
   if (!args.max_memory.empty()) parse_bytes(args.max_memory, "--max-memory");
   if (args.at_once < 0 || args.at_once > 4096)
-    throw Error(ErrorCode::usage, fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
+    throw_usage(fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
   const Device device = args.chosen();
   std::vector<FluidFrameRecord> frames;
   for (FrameFile& file : find_frames(args.input, args.first, args.last)) {
@@ -304,7 +278,7 @@ int run(const FluidArgs& args) {
   Sequence sequence(args, options, device, frames);
   sequence.run();
   const double total_ms = start.ms();
-  if (!args.report.empty()) write_report(args, options, device, frames, sequence.at_once(), total_ms);
+  if (!args.report.empty()) write_report(args, device, frames, sequence.at_once(), total_ms);
   if (args.quiet) return 0;
   std::vector<double> surface_ms;
   for (const FluidFrameRecord& frame : frames) surface_ms.push_back(frame.surface_ms);
@@ -319,11 +293,8 @@ int run(const FluidArgs& args) {
 
 }  // namespace
 
-void add_fluid(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "fluid", "Make closed meshes of a simulation's particles.");
-  auto args = std::make_shared<FluidArgs>();
-  define_fluid_options(*command, *args);
-  finish_command(*command, job, args, run);
+Command fluid_command() {
+  return make_command({"fluid", "Make closed meshes of a simulation's particles."}, fluid_options, run);
 }
 
 }  // namespace pointskin::cli

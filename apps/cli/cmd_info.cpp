@@ -1,6 +1,5 @@
 // pointskin info: what a file holds.
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "spacing.hpp"
@@ -146,20 +146,17 @@ constexpr char kFooter[] =
     "distance to the nearest neighbour, in world units), and the depth that suits `reconstruct`: from the spacing of\n"
     "points along the surface, their noise across it, and the memory of this machine.";
 
+OptionTable info_options(InfoArgs& args) {
+  return {{"Output",
+           {option("FILE", "cloud or mesh; - reads stdin", &args.file, {}, {.required = true}), json_row(args.json)}},
+          {"Input", {shift_row(args.shift, "on reading")}},
+          {"Limits", {threads_row(args.threads)}}};
+}
+
 }  // namespace
 
-void add_info(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "info", "Print what a cloud or mesh file holds.");
-  auto args = std::make_shared<InfoArgs>();
-  command->footer(kFooter);
-  command->add_option("FILE", args->file, "cloud or mesh; - reads stdin")->required();
-  command->add_flag("--json", args->json, "print JSON")->group("Output");
-  command->add_option("--shift", args->shift, "offset subtracted on reading: auto, none or x,y,z in world units")
-      ->type_name("S")
-      ->group("Input")
-      ->capture_default_str();
-  add_threads_option(*command, args->threads, "Limits");
-  finish_command(*command, job, args, run);
+Command info_command() {
+  return make_command({"info", "Print what a cloud or mesh file holds.", kFooter}, info_options, run);
 }
 
 }  // namespace pointskin::cli

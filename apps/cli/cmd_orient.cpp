@@ -1,11 +1,9 @@
 // pointskin orient: normals for clouds that have none, or wrong ones.
-#include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
 #include "args.hpp"
@@ -32,9 +30,31 @@ struct OrientArgs : DeviceArgs {
   std::vector<std::string> inputs;
   std::string output, report;
   std::string shift = "auto";
-  bool no_confidence = false, ascii = false, overwrite = false, quiet = false;
+  bool ascii = false, overwrite = false, quiet = false;
   GivenOptions given;
 };
+
+OptionGroup file_options(OrientArgs& args) {
+  return {"Files",
+          {option("IN", "clouds, merged; - reads stdin", &args.inputs, {}, {.required = true}),
+           option("-o,--output OUT", "cloud: .ply; - writes PLY to stdout", &args.output, {},
+                  {.required = true, .check = needs_a_name}),
+           report_row(args.report), ascii_row(args.ascii), overwrite_row(args.overwrite), shift_row(args.shift)}};
+}
+
+OptionTable orient_options(OrientArgs& args) {
+  OptionGroup normals = normal_options(args.normals);
+  normals.row("").spelling = "--method METHOD";
+  normals.rows.front().help = "auto (what fits the input), sensor, propagate, iterate or repair";
+  NormalOptions& o = args.normals.options;
+  return {file_options(args).unreported(),
+          normals,
+          {kNormalGroup,
+           {option("--curvature", "add the property curvature, mean, 1 / world unit", &o.curvature),
+            option("--no-confidence", "leave the property confidence out", negated(o.confidence))}},
+          device_options(args).unreported(),
+          quiet_option(args.quiet)};
+}
 
 void check_files(const OrientArgs& args) {
   check_distinct(args.inputs, {{"-o", args.output}, {"--report", args.report, OutputKind::report}}, args.overwrite);
@@ -53,7 +73,9 @@ nlohmann::ordered_json report_json(const OrientArgs& args, const NormalOptions& 
   json["device"] = to_json(device);
   json["files"] = {{"inputs", args.inputs}, {"output", args.output}};
   json["input"] = {{"points", cloud.size() + cloud.dropped}, {"dropped", cloud.dropped}};
-  json["options"] = to_json(options);
+  OrientArgs shown = args;
+  shown.normals.options = options;
+  json["options"] = report_of(orient_options(shown));
   json["warnings"] = printed_warnings();
   json["normals"] = to_json(report);
   json["ms"] = {{"read", times.read_ms}, {"write", times.write_ms}, {"total", times.total_ms}};
@@ -63,15 +85,13 @@ nlohmann::ordered_json report_json(const OrientArgs& args, const NormalOptions& 
 
 int run(const OrientArgs& args) {
   const Stopwatch watch;
-  NormalOptions options = normal_options(args.normals, "--method");
-  options.confidence = !args.no_confidence;
+  const NormalOptions options = library_options(args.normals);
   const ReadOptions reading{.shift = parse_shift(args.shift), .threads = args.threads};
   check_files(args);
   const Device device = args.chosen();
   OrientTimes times;
   Cloud cloud = read_clouds(args.inputs, reading, MissingNormals::allowed);
-  if (cloud.dropped > 0)
-    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
+  warn_about_dropped(cloud.dropped);
   times.read_ms = watch.ms();
   on_interrupt(OnInterrupt::remember);
   const NormalReport report = estimate_normals(cloud, options, device, args.quiet);
@@ -91,37 +111,8 @@ int run(const OrientArgs& args) {
 
 }  // namespace
 
-void add_orient(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "orient", "Give a cloud normals, or correct those that it has.");
-  auto args = std::make_shared<OrientArgs>();
-  command->add_option("IN", args->inputs, "clouds, merged; - reads stdin")->required();
-  command->add_option("-o,--output", args->output, "cloud: .ply; - writes PLY to stdout")
-      ->type_name("OUT")
-      ->group("Files")
-      ->required()
-      ->check(needs_a_name);
-  command->add_option("--report", args->report, "write what was done as JSON")
-      ->type_name("FILE")
-      ->group("Files")
-      ->check(needs_a_name);
-  add_ascii_option(*command, args->ascii);
-  add_overwrite_option(*command, args->overwrite);
-  command->add_option("--shift", args->shift, "offset subtracted while working: auto, none or x,y,z in world units")
-      ->type_name("S")
-      ->group("Files")
-      ->capture_default_str();
-  command
-      ->add_option("--method", args->normals.method, "auto (what fits the input), sensor, propagate, iterate or repair")
-      ->type_name("METHOD")
-      ->group(kNormalGroup)
-      ->capture_default_str();
-  define_normal_options(*command, args->normals);
-  command->add_flag("--curvature", args->normals.options.curvature, "add the property curvature, mean, 1 / world unit")
-      ->group(kNormalGroup);
-  command->add_flag("--no-confidence", args->no_confidence, "leave the property confidence out")->group(kNormalGroup);
-  define_device_options(*command, *args);
-  command->add_flag("-q,--quiet", args->quiet, "errors and warnings only")->group("Messages");
-  finish_command(*command, job, args, run);
+Command orient_command() {
+  return make_command({"orient", "Give a cloud normals, or correct those that it has."}, orient_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -16,8 +16,8 @@
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "reconstruct_args.hpp"
-#include "resident_runs.hpp"
 #include "report.hpp"
+#include "resident_runs.hpp"
 #include "run_memory.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
@@ -27,12 +27,10 @@
 namespace pointskin::cli {
 namespace {
 
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
-
 /// Everything that can be found wrong before the input is opened.
 void check_files(const ReconstructArgs& args) {
   if (args.inputs.empty()) throw_usage("no input; name one or more clouds, or - for stdin");
-  if (args.output.empty() && !args.dry_run && !args.repeat_given && !args.problems)
+  if (args.output.empty() && !args.dry_run && !args.given.has("--repeat") && !args.problems)
     throw_usage("no output; name it with -o");
   std::vector<std::string> inputs = args.inputs;
   if (!args.envelope.empty()) inputs.push_back(args.envelope);
@@ -49,24 +47,25 @@ bool makes_normals(const Options& options) {
 
 /// Where the mesh goes, as far as it matters to properties of it: runs that are only timed make one, too.
 std::string mesh_file(const ReconstructArgs& args) {
-  return args.output.empty() && (args.dry_run || args.repeat_given) ? "-" : args.output;
+  return args.output.empty() && (args.dry_run || args.given.has("--repeat")) ? "-" : args.output;
 }
 
 void warn_about_options(const ReconstructArgs& args, const Options& options) {
-  if (args.depth_given && args.width_given) print_warning("--depth is ignored because --width chooses the depth");
+  if (args.given.has("--depth") && args.given.has("--width"))
+    print_warning("--depth is ignored because --width chooses the depth");
   warn_about_unused(args.given, options, mesh_file(args), !args.report.empty());
   warn_about_ascii(args.given, args.output);
   if (mesh_file(args).empty())
     warn_unused(args.given, {"--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"},
                 kNoMesh);
   if (options.point_normals == PointNormals::given) warn_about_unused_normals(args.given);
-  warn_about_poisson_recon(args.given, args.poisson_recon);
+  warn_about_poisson_recon(args.given, args.poisson_recon_data);
 }
 
 /// Only what becomes part of the mesh, or says where points were seen from.
 void drop_attributes(const ReconstructArgs& args, Cloud& cloud) {
-  const bool all = args.options.attributes || !args.poisson_recon.data.empty();
-  const bool tells_views = args.normals_policy != "given" && has_view_attributes(cloud);
+  const bool all = args.options.attributes || !args.poisson_recon_data.empty();
+  const bool tells_views = args.options.point_normals != PointNormals::given && has_view_attributes(cloud);
   if (!all && !args.colors && !tells_views) cloud.attributes.clear();
   if (!all && args.colors && !keep_colours_only(cloud))
     print_warning("--colors: the points have no red, green or blue");
@@ -77,11 +76,10 @@ Cloud read_input(const ReconstructArgs& args, Record& record) {
   const Stopwatch watch;
   Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads},
                             makes_normals(record.options) ? MissingNormals::allowed : MissingNormals::refused);
-  if (!makes_normals(record.options)) {
+  if (makes_normals(record.options))
+    warn_about_dropped(cloud.dropped);
+  else
     drop_unusable(cloud);
-  } else if (cloud.dropped > 0) {
-    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", cloud.dropped));
-  }
   drop_attributes(args, cloud);
   record.read_ms = watch.ms();
   record.dropped = cloud.dropped;
@@ -109,26 +107,24 @@ void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Recor
   write_stdout(text + "\n");
 }
 
-/// The options of the report that the library does not know.
-nlohmann::ordered_json other_options(const ReconstructArgs& args, const Options& options) {
-  nlohmann::ordered_json json = {{"device", args.device}, {"threads", args.threads}, {"shift", args.shift}};
-  json["envelope"] = or_null(args.envelope);
-  if (makes_normals(options)) json["estimate_normals"] = to_json(options.normal_estimation);
-  json["repeat"] = args.repeat;
-  if (args.problems) json.update(to_json(args.pictures));
-  json["inputs"] = args.inputs;
-  json["output"] = or_null(args.output);
-  json["ascii"] = args.ascii;
+/// The options of the report, after the run.
+nlohmann::ordered_json shown_options(const ReconstructArgs& args, const Record& record) {
+  ReconstructArgs shown = args;
+  shown.options = record.options;
+  if (record.options.trim == Options::kAutomaticTrim) shown.options.trim = record.run.trim.quantile;
+  shown.normals.options = record.options.normal_estimation;
+  nlohmann::ordered_json json = report_of(reconstruct_options(shown));
+  if (!makes_normals(record.options)) json.erase("estimate_normals");
   return json;
 }
 
 /// The depth is what was asked for: nothing needs to be said of it.
-bool chose_depth(const ReconstructArgs& args) { return args.depth_given || args.width_given; }
+bool chose_depth(const ReconstructArgs& args) { return args.given.has("--depth") || args.given.has("--width"); }
 
 /// Options of the normals, where the run kept those that were given or made its own in another way.
 void warn_about_unused_normals(const ReconstructArgs& args, const RunReport& run) {
   if (run.normals) return warn_about_unused_normals(args.given, run.normals->method);
-  if (args.normals_policy != "given") warn_about_unused_normals(args.given);
+  if (args.options.point_normals != PointNormals::given) warn_about_unused_normals(args.given);
 }
 
 /// Runs the reconstruction, with progress, and the repeated runs, without.
@@ -185,11 +181,10 @@ int choose_depth(const ReconstructArgs& args, const Cloud& cloud, const RunMemor
 /// Settles what depends on the points.
 void settle_options(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& memory, Record& record) {
   Options& options = record.options;
-  if (args.width_given)
+  if (args.given.has("--width"))
     options.depth = depth_for_width(cube_world(cloud, options, args.threads), args.width_world);
   else if (options.depth == Options::kAutomaticDepth)
     options.depth = choose_depth(args, cloud, memory, record);
-  record.other_options = other_options(args, options);
 }
 
 int run(const ReconstructArgs& given) {
@@ -232,6 +227,7 @@ int run(const ReconstructArgs& given) {
   record.mesh.triangles = static_cast<std::int64_t>(mesh.triangles.size());
   if (!args.report.empty()) record.mesh = measure(mesh, args.threads);
   if (!args.quiet) record.shape = args.report.empty() ? shape_words(mesh, args.threads) : shape_words(record.mesh);
+  if (!args.report.empty()) record.shown_options = shown_options(args, record);
   if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(record)));
   if (args.problems && args.output == "-") print_note(problem_table(record.problems));
   if (args.problems && args.output != "-") write_stdout(problem_table(record.problems) + "\n");
@@ -242,21 +238,15 @@ int run(const ReconstructArgs& given) {
 
 }  // namespace
 
-void add_problems(CLI::App& program, Job& job) {
-  CLI::App* command =
-      add_command(program, "problems", "Reconstruct, and list where the topology of the result is doubtful.");
-  auto args = std::make_shared<ReconstructArgs>();
+Command problems_command() {
+  const auto args = std::make_shared<ReconstructArgs>();
   args->problems = true;
-  define_reconstruct_options(*command, *args);
-  define_problem_options(*command, args->pictures);
-  finish_command(*command, job, args, run);
+  return make_command({"problems", "Reconstruct, and list where the topology of the result is doubtful."},
+                      reconstruct_options, run, args);
 }
 
-void add_reconstruct(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "reconstruct", "Fit a watertight mesh to oriented points.");
-  auto args = std::make_shared<ReconstructArgs>();
-  define_reconstruct_options(*command, *args);
-  finish_command(*command, job, args, run);
+Command reconstruct_command() {
+  return make_command({"reconstruct", "Fit a watertight mesh to oriented points."}, reconstruct_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -1,8 +1,6 @@
 // pointskin render: a picture of a mesh or a cloud, or of every frame of a sequence.
 #include <algorithm>
-#include <memory>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,8 +33,7 @@ struct PictureFile {
 
 std::vector<PictureFile> pictures_of(const RenderArgs& args) {
   check_patterns(args.input, args.picture, "-o");
-  if (extension_of(args.picture) != ".png")
-    throw Error(ErrorCode::usage, fmt::format("{}: pictures are written as .png", args.picture));
+  if (extension_of(args.picture) != ".png") throw_usage(fmt::format("{}: pictures are written as .png", args.picture));
   if (!is_pattern(args.input)) check_replaceable(args.picture);  // before the input is looked for
   std::vector<PictureFile> pictures;
   FilePlan plan{{}, {}, args.overwrite};
@@ -54,10 +51,9 @@ CloudOrMesh read(const std::string& path, const RenderArgs& args) {
   const std::string name = path == "-" ? "stdin" : path;
   if (const Cloud* cloud = std::get_if<Cloud>(&what)) {
     check_not_empty(*cloud, name);
-    if (args.options.wireframe)
-      throw Error(ErrorCode::usage, fmt::format("--wireframe: {} holds points, which have no edges", name));
+    if (args.options.wireframe) throw_usage(fmt::format("--wireframe: {} holds points, which have no edges", name));
   } else if (args.options.point_size > 0) {
-    throw Error(ErrorCode::usage, fmt::format("--point-size: {} is a mesh; it is for points", name));
+    throw_usage(fmt::format("--point-size: {} is a mesh; it is for points", name));
   }
   return what;
 }
@@ -98,8 +94,7 @@ std::string backs_text(const Shown& shown) {
 }
 
 void warn(const Shown& shown) {
-  if (shown.dropped > 0)
-    print_warning(fmt::format("{} points were dropped: a coordinate is not finite", shown.dropped));
+  warn_about_dropped(shown.dropped);
   if (shown.strays > 0)
     print_warning(fmt::format("{} stray points far from all others do not count for the camera", shown.strays));
   if (shown.with_backs > 0) print_warning(backs_text(shown));
@@ -185,11 +180,8 @@ int run(const RenderArgs& args) {
 
 }  // namespace
 
-void add_render(CLI::App& program, Job& job) {
-  CLI::App* command = add_command(program, "render", "Draw a picture of a mesh or a cloud.");
-  auto args = std::make_shared<RenderArgs>();
-  define_render_options(*command, *args);
-  finish_command(*command, job, args, run);
+Command render_command() {
+  return make_command({"render", "Draw a picture of a mesh or a cloud."}, render_options, run);
 }
 
 }  // namespace pointskin::cli

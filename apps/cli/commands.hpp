@@ -4,55 +4,51 @@
 #include <functional>
 #include <memory>
 #include <string>
-
-#include <CLI/CLI.hpp>
+#include <utility>
+#include <vector>
 
 #include "given_options.hpp"
+#include "option_table.hpp"
 
 namespace pointskin::cli {
 
-/// What the chosen command does once the whole command line has been understood. @returns the exit code
-using Job = std::function<int()>;
+/// What a command is called, and what --help says before and after its options.
+struct CommandTexts {
+  std::string name, description, footer{};
+};
 
-void add_reconstruct(CLI::App& program, Job& job);
-void add_info(CLI::App& program, Job& job);
-void add_check(CLI::App& program, Job& job);
-void add_compare(CLI::App& program, Job& job);
-void add_convert(CLI::App& program, Job& job);
-void add_deform(CLI::App& program, Job& job);
-void add_fluid(CLI::App& program, Job& job);
-void add_orient(CLI::App& program, Job& job);
-void add_problems(CLI::App& program, Job& job);
-void add_render(CLI::App& program, Job& job);
-void add_boolean(CLI::App& program, Job& job);
-void add_bench(CLI::App& program, Job& job);
-void add_edit(CLI::App& program, Job& job);
-void add_help(CLI::App& program, Job& job);
-void add_version(CLI::App& program, Job& job);
+/// A command of the program. Its table sets variables that `run` works with.
+struct Command {
+  CommandTexts texts;
+  OptionTable options;
+  std::function<int(const GivenOptions&)> run;  ///< @returns the exit code
+};
 
-/// "pointskin 0.1.0".
-std::string version_text();
-
-/// Adds the command `name` to `program`.
-CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& description);
-
-/// Adds `--threads N` bound to `threads`, in the group `group`.
-void add_threads_option(CLI::App& command, int& threads, const std::string& group);
-
-/// Adds `--ascii` bound to `ascii`.
-void add_ascii_option(CLI::App& command, bool& ascii);
-
-/// Adds `--overwrite` bound to `overwrite`: see FilePlan.
-void add_overwrite_option(CLI::App& command, bool& overwrite);
-
-/// Ends the definition of a command: what it does, and its --help (last in the list).
+/// A command with arguments of its own. @param options  the table that sets them
 template <class Args>
-void finish_command(CLI::App& command, Job& job, std::shared_ptr<Args> args, int (*run)(const Args&)) {
-  command.set_help_flag("-h,--help", "print this help")->group("Help");
-  command.callback([&command, &job, args, run] {
-    if constexpr (requires { args->given; }) args->given = GivenOptions(command);
-    job = [args, run] { return run(*args); };
-  });
+Command make_command(CommandTexts texts, OptionTable (*options)(Args&), int (*run)(const Args&),
+                     const std::shared_ptr<Args>& held = std::make_shared<Args>()) {
+  return {std::move(texts), options(*held), [held, run](const GivenOptions& given) {
+            if constexpr (requires { held->given; }) held->given = given;
+            return run(*held);
+          }};
 }
+
+/// In the order of --help, but for `help` and `version`, which the command line has itself.
+std::vector<Command> all_commands();
+
+Command reconstruct_command();
+Command edit_command();
+Command info_command();
+Command check_command();
+Command compare_command();
+Command convert_command();
+Command deform_command();
+Command fluid_command();
+Command orient_command();
+Command problems_command();
+Command render_command();
+Command boolean_command();
+Command bench_command();
 
 }  // namespace pointskin::cli

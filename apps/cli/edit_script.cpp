@@ -5,9 +5,6 @@
 #include <filesystem>
 #include <numbers>
 
-#include <fmt/format.h>
-
-#include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
 #include "json_reader.hpp"

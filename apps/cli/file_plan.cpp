@@ -8,16 +8,13 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
-
+#include "args.hpp"
 #include "file_identity.hpp"
 
 namespace pointskin::cli {
 namespace {
 
 using Kind = FileIdentity::Kind;
-
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
 void check_stdin(const std::vector<InputFile>& inputs) {
   const auto is_stdin = [](const InputFile& input) { return input.file == "-"; };

@@ -4,56 +4,94 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
-
-#include "args.hpp"
-#include "commands.hpp"
-
 namespace pointskin::cli {
 namespace {
 
-bool confidence_of(const std::string& exponent) {
-  if (exponent == "true" || exponent == "false") return exponent == "true";
-  const double value = parse_number(exponent).value_or(-1);
-  if (value == 0 || value == 1) return value == 1;
-  throw Error(ErrorCode::usage,
-              fmt::format("--confidence: {} is not 0 or 1; other exponents are not supported", exponent));
+/// PoissonRecon's exponent of the normals' length.
+Binding zero_or_one(bool& value) {
+  const auto settle = [&value](const std::string& text) {
+    const double number = text == "true" ? 1 : text == "false" ? 0 : parse_number(text).value_or(-1);
+    value = number == 1;
+    return number == 0 || number == 1 ? "" : text + " is not 0 or 1; other exponents are not supported";
+  };
+  return text_for("0", settle, [&value] { return value; });
 }
 
-Boundary boundary_of(const std::string& name) {
-  if (name == "dirichlet") return Boundary::dirichlet;
-  if (name == "free" || name == "neumann") return Boundary::free;
-  throw Error(ErrorCode::usage, fmt::format("--boundary: '{}' is not free, dirichlet or neumann", name));
+Binding depth_or_auto(int& depth) {
+  const auto settle = [&depth](const std::string& text) {
+    const double value = text == "auto" ? Options::kAutomaticDepth : parse_number(text).value_or(-1);
+    const bool good = text == "auto" || (value >= 1 && value <= 20 && value == std::floor(value));
+    if (good) depth = static_cast<int>(value);
+    return good ? "" : fmt::format("'{}' is not a whole number from 1 to 20 or auto", text);
+  };
+  return text_for(std::to_string(depth), settle, [&depth] { return std::int64_t{depth}; });
 }
 
-/// "auto", or a whole number.
-int depth_of(const std::string& text) {
-  if (text == "auto") return Options::kAutomaticDepth;
-  const double value = parse_number(text).value_or(-1);
-  if (value >= 1 && value <= 20 && value == std::floor(value)) return static_cast<int>(value);
-  throw Error(ErrorCode::usage, fmt::format("--depth: '{}' is not a whole number from 1 to 20 or auto", text));
+Binding share_or_auto(double& share) {
+  const auto settle = [&share](const std::string& text) {
+    const double value = text == "auto" ? Options::kAutomaticTrim : parse_number(text).value_or(-1);
+    const bool good = text == "auto" || (value >= 0 && value < 1);
+    if (good) share = value;
+    return good ? "" : fmt::format("'{}' is not a number from 0 to below 1 or auto", text);
+  };
+  return text_for(fmt::format("{}", share), settle, [&share] { return share; });
 }
 
-/// "auto", or a share.
-double trim_of(const std::string& text) {
-  if (text == "auto") return Options::kAutomaticTrim;
-  const double value = parse_number(text).value_or(-1);
-  if (value >= 0 && value < 1) return value;
-  throw Error(ErrorCode::usage, fmt::format("--trim: '{}' is not a number from 0 to below 1 or auto", text));
+/// How a field is solved for.
+std::vector<OptionRow> solve_rows(Options& o) {
+  return {option("--depth D", "octree depth D in levels, 1 to 20; cells are cube / 2^D wide", depth_or_auto(o.depth),
+                 {"depth", 1, kFromOne}),
+          option("--screening W", "weight of the points, no unit, >= 0; 0: unscreened", &o.screening,
+                 {"screening", 3, kFromZero}),
+          option("--iterations N", "relaxations per level, 1 to 1000", &o.iterations, {"iterations", 4, kFromOne}),
+          option("--scale F", "working cube / bounding cube of the points, 1 to 100", &o.scale, {"scale", 5, kFromOne}),
+          option("--samples-per-node N", "points a cell should hold, 0 to 100", &o.samples_per_node,
+                 {"samples_per_node", 6, kFromZero}),
+          option("--fixed-screening", "weigh all points alike, however much they scatter", &o.fixed_screening,
+                 {"fixed_screening", 8}),
+          option("--linear-fit", "place vertices by linear interpolation (also =on, =off)", &o.linear_fit,
+                 {"linear_fit", 9}),
+          option("--boundary B", "field on the cube's faces: free (also called neumann), or dirichlet: 0",
+                 one_of<Boundary>(
+                     o.boundary,
+                     {{"free", Boundary::free}, {"dirichlet", Boundary::dirichlet}, {"neumann", Boundary::free}}),
+                 {"boundary", 15}),
+          option("--keep-strays", "use stray points, too, and make the cube for all points", &o.keep_strays,
+                 {"keep_strays", 21}),
+          option("--no-normals", "leave vertex normals out of the mesh", negated(o.normals), {"normals", 13})};
 }
 
-FieldKind field_of(const std::string& name) {
-  if (name == "poisson") return FieldKind::poisson;
-  if (name == "distance") return FieldKind::distance;
-  throw Error(ErrorCode::usage, fmt::format("--field: '{}' is not poisson or distance", name));
-}
-
-Options with_words(const SolveArgs& args) {
-  Options options = args.options;
-  options.depth = depth_of(args.depth);
-  options.normals = !args.no_normals;
-  options.boundary = boundary_of(args.boundary);
-  return options;
+/// What is done with the field then.
+std::vector<OptionRow> mesh_rows(FitArgs& args) {
+  Options& o = args.options;
+  return {
+      option("--field F", "poisson (a field solved for), or distance (to the points' tangent planes)",
+             one_of<FieldKind>(o.field, {{"poisson", FieldKind::poisson}, {"distance", FieldKind::distance}}),
+             {"field", 2}),
+      option("--confidence", "the length of a normal is the weight of its point", zero_or_one(o.confidence),
+             {"confidence", 7}),
+      option("--open", "leave the surface open at the cube's faces, instead of closed",
+             turned(o.domain_faces, DomainFaces::open), {"open", 14}),
+      option("--envelope MESH", "closed mesh that the surface stays inside of [default none]", &args.envelope,
+             {"envelope", 33}, {.check = needs_a_name}),
+      option("--offset D", "distance of the mesh from the surface, world units, > 0 outwards", &o.offset,
+             {"offset", 16, R"({"description": "world units, > 0 outwards; 0: off"})"}),
+      option("--trim Q", "cut where samples end: share that counts as sparse, 0 (off) to below 1",
+             share_or_auto(o.trim), {"trim", 17, R"({"minimum": 0, "exclusiveMaximum": 1,
+          "description": "0: off, also where auto found nothing to cut"})"}),
+      option("--island-ratio R", "trim: smallest piece, share of the area, 0 to below 1", &o.island_ratio,
+             {"island_ratio", 18, R"({"minimum": 0, "exclusiveMaximum": 1})"}),
+      option("--largest", "keep only the connected piece with the largest area", &o.largest, {"largest", 19}),
+      option("--min-component N|RATIO",
+             "leave out smaller pieces: triangles, or below 1 the share of the area; 0: none", &o.min_component,
+             {"min_component", 20,
+              R"({"minimum": 0, "description": "triangles, or below 1 a share of the area; 0: none"})"}),
+      option("--density", "add the property density, points per world unit^2", &o.density, {"density", 10}),
+      option("--weakness", "add the property weakness, 0 to 1: how doubtful the topology is", &o.weakness,
+             {"weakness", 11}),
+      option("--keep-attributes", "carry colours and every other property of the points to the vertices", &o.attributes,
+             {"attributes", 12}),
+      option("", "", &o.max_memory_bytes, {"max_memory_bytes", 22, R"({"minimum": 0, "description": "0: no limit"})"})};
 }
 
 }  // namespace
@@ -61,91 +99,53 @@ Options with_words(const SolveArgs& args) {
 Device DeviceArgs::chosen() const { return parse_device(device, threads); }
 
 std::string needs_a_name(const std::string& file) { return file.empty() ? "needs the name of a file" : ""; }
+std::string needs_a_value(const std::string& text) { return text.empty() ? "needs a value" : ""; }
 
-void define_device_options(CLI::App& command, DeviceArgs& args) {
-  command.add_option("--device", args.device, "auto, cpu, cuda or cuda:N")
-      ->type_name("DEV")
-      ->group(kDeviceGroup)
-      ->capture_default_str();
-  add_threads_option(command, args.threads, kDeviceGroup);
+OptionGroup device_options(DeviceArgs& args) {
+  return {
+      kDeviceGroup,
+      {option("--device DEV", "auto, cpu, cuda or cuda:N", &args.device, {"device", 30}), threads_row(args.threads)}};
 }
 
-void define_solve_options(CLI::App& command, SolveArgs& args) {
-  Options& options = args.options;
-  add_surface_value(command, "--depth", args.depth, "octree depth D in levels, 1 to 20; cells are cube / 2^D wide")
-      ->type_name("D")
-      ->each([&args](const std::string&) { args.depth_given = true; });
-  add_surface_value(command, "--screening", options.screening, "weight of the points, no unit, >= 0; 0: unscreened")
-      ->type_name("W");
-  add_surface_value(command, "--iterations", options.iterations, "relaxations per level, 1 to 1000")->type_name("N");
-  add_surface_value(command, "--scale", options.scale, "working cube / bounding cube of the points, 1 to 100")
-      ->type_name("F");
-  add_surface_value(command, "--samples-per-node", options.samples_per_node, "points a cell should hold, 0 to 100")
-      ->type_name("N");
-  command.add_flag("--fixed-screening", options.fixed_screening, "weigh all points alike, however much they scatter")
-      ->group(kSurfaceGroup);
-  command.add_flag("--linear-fit", options.linear_fit, "place vertices by linear interpolation (also =on, =off)")
-      ->group(kSurfaceGroup);
-  add_surface_value(command, "--boundary", args.boundary,
-                    "field on the cube's faces: free (also called neumann), or dirichlet: 0")
-      ->type_name("B");
-  command.add_flag("--keep-strays", options.keep_strays, "use stray points, too, and make the cube for all points")
-      ->group(kSurfaceGroup);
-  command.add_flag("--no-normals", args.no_normals, "leave vertex normals out of the mesh")->group(kSurfaceGroup);
+OptionGroup fit_options(FitArgs& args) {
+  OptionGroup group = {kSurfaceGroup, solve_rows(args.options)};
+  for (OptionRow& row : mesh_rows(args)) group.rows.push_back(std::move(row));
+  return group;
 }
 
-void define_fit_options(CLI::App& command, FitArgs& args) {
-  define_solve_options(command, args);
-  Options& options = args.options;
-  add_surface_value(command, "--field", args.field,
-                    "poisson (a field solved for), or distance (to the points' tangent planes)")
-      ->type_name("F");
-  command.add_flag("--confidence", args.confidence, "the length of a normal is the weight of its point")
-      ->group(kSurfaceGroup);
-  command.add_flag("--open", args.open, "leave the surface open at the cube's faces, instead of closed")
-      ->group(kSurfaceGroup);
-  command.add_option("--envelope", args.envelope, "closed mesh that the surface stays inside of [default none]")
-      ->type_name("MESH")
-      ->group(kSurfaceGroup)
-      ->check(needs_a_name);
-  add_surface_value(command, "--offset", options.offset,
-                    "distance of the mesh from the surface, world units, > 0 outwards")
-      ->type_name("D");
-  add_surface_value(command, "--trim", args.trim,
-                    "cut where samples end: share that counts as sparse, 0 (off) to below 1")
-      ->type_name("Q");
-  add_surface_value(command, "--island-ratio", options.island_ratio,
-                    "trim: smallest piece, share of the area, 0 to below 1")
-      ->type_name("R");
-  command.add_flag("--largest", options.largest, "keep only the connected piece with the largest area")
-      ->group(kSurfaceGroup);
-  add_surface_value(command, "--min-component", options.min_component,
-                    "leave out smaller pieces: triangles, or below 1 the share of the area; 0: none")
-      ->type_name("N|RATIO");
-  command.add_flag("--density", options.density, "add the property density, points per world unit^2")
-      ->group(kSurfaceGroup);
-  command.add_flag("--weakness", options.weakness, "add the property weakness, 0 to 1: how doubtful the topology is")
-      ->group(kSurfaceGroup);
-  command
-      .add_flag("--keep-attributes", options.attributes,
-                "carry colours and every other property of the points to the vertices")
-      ->group(kSurfaceGroup);
+OptionRow clouds_row(std::vector<std::string>& files, OptionRules rules) {
+  return option("IN", "oriented clouds, merged; - reads stdin", &files, {"inputs", 60}, std::move(rules));
 }
 
-Options solve_options(const SolveArgs& args) {
-  Options options = with_words(args);
-  validate(options);
-  return options;
+OptionRow output_row(std::string& file, OptionRules rules) {
+  return option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &file, {"output", 62},
+                std::move(rules));
 }
 
-Options fit_options(const FitArgs& args) {
-  Options options = with_words(args);
-  options.trim = trim_of(args.trim);
-  options.confidence = confidence_of(args.confidence);
-  options.domain_faces = args.open ? DomainFaces::open : DomainFaces::closed;
-  options.field = field_of(args.field);
-  validate(options);
-  return options;
+OptionRow threads_row(int& threads) {
+  return option("--threads N", "CPU threads, 0: all that the process may use", &threads,
+                {"threads", 31, R"({"minimum": 0, "description": "0: all"})"});
+}
+
+OptionRow shift_row(std::string& shift, const std::string& when) {
+  return option("--shift S", "offset subtracted " + when + ": auto, none or x,y,z in world units", &shift,
+                {"shift", 32});
+}
+
+OptionRow ascii_row(bool& ascii) { return option("--ascii", "write PLY as text", &ascii); }
+
+OptionRow overwrite_row(bool& overwrite) {
+  return option("--overwrite", "let an output replace an input, once that has been read", &overwrite);
+}
+
+OptionRow report_row(std::string& file, const std::string& help) {
+  return {"--report FILE", help, &file, {}, {.check = needs_a_name}};
+}
+
+OptionRow json_row(bool& json) { return option("--json", "print JSON", &json); }
+
+OptionGroup quiet_option(bool& quiet) {
+  return {"Messages", {option("-q,--quiet", "errors and warnings only", &quiet)}};
 }
 
 }  // namespace pointskin::cli

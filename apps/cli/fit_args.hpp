@@ -1,12 +1,14 @@
-// The options that every command which fits a surface to points has: what surface, and on which device.
+// The options that every command which fits a surface to points has: what surface, and on which device. And those that
+// many commands have.
 #pragma once
 
 #include <string>
-
-#include <CLI/CLI.hpp>
+#include <vector>
 
 #include <pointskin/device.hpp>
 #include <pointskin/reconstruct.hpp>
+
+#include "option_table.hpp"
 
 namespace pointskin::cli {
 
@@ -18,43 +20,40 @@ struct DeviceArgs {
   [[nodiscard]] Device chosen() const;
 };
 
-/// How a field is solved for.
-struct SolveArgs {
+/// How a field is solved for, and what is done with it then. The library's options, the envelope left out: see
+/// read_envelope.
+struct FitArgs {
   Options options;
-  std::string depth = "8";
-  std::string boundary = "free";
-  bool depth_given = false, no_normals = false;
-};
-
-/// And what is done with it then.
-struct FitArgs : SolveArgs {
-  std::string field = "poisson";
-  std::string trim = "0";
-  std::string confidence = "0";  ///< PoissonRecon's exponent of the normals' length: 0 or 1 here
-  std::string envelope;          ///< empty: none
-  bool open = false;
+  std::string envelope;  ///< empty: none
 };
 
 inline constexpr char kDeviceGroup[] = "Device and limits";
 inline constexpr char kSurfaceGroup[] = "Surface";
 
-void define_device_options(CLI::App& command, DeviceArgs& args);
-void define_solve_options(CLI::App& command, SolveArgs& args);
-/// Those of define_solve_options, and more.
-void define_fit_options(CLI::App& command, FitArgs& args);
+OptionGroup device_options(DeviceArgs& args);
+OptionGroup fit_options(FitArgs& args);
+/// Those of fit_options about the mesh and not the field.
+inline constexpr std::initializer_list<const char*> kBeyondSolve = {
+    "--field",        "--confidence", "--open",          "--envelope", "--offset",   "--trim",
+    "--island-ratio", "--largest",    "--min-component", "--density",  "--weakness", "--keep-attributes"};
 
-/// Adds an option with a default to the group "Surface".
-template <class T>
-CLI::Option* add_surface_value(CLI::App& command, const std::string& name, T& value, const std::string& description) {
-  return command.add_option(name, value, description)->group(kSurfaceGroup)->capture_default_str();
-}
+/// Oriented clouds.
+OptionRow clouds_row(std::vector<std::string>& files, OptionRules rules = {.required = true});
+/// A mesh.
+OptionRow output_row(std::string& file, OptionRules rules = {});
+OptionRow threads_row(int& threads);
+/// "auto", "none" or "x,y,z": see parse_shift.
+OptionRow shift_row(std::string& shift, const std::string& when = "while working");
+OptionRow ascii_row(bool& ascii);
+/// See FilePlan.
+OptionRow overwrite_row(bool& overwrite);
+OptionRow report_row(std::string& file, const std::string& help = "write what was done as JSON");
+OptionRow json_row(bool& json);
+/// A group of its own.
+OptionGroup quiet_option(bool& quiet);
 
-/// Options as the library wants them, the envelope left out: see read_envelope.
-/// @throws Error usage if a value is out of range
-Options solve_options(const SolveArgs& args);
-Options fit_options(const FitArgs& args);
-
-/// A check for options that name a file: an empty name is an error.
+/// Checks for options that name a file, or anything: an empty text is an error.
 std::string needs_a_name(const std::string& file);
+std::string needs_a_value(const std::string& text);
 
 }  // namespace pointskin::cli

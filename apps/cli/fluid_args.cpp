@@ -1,90 +1,81 @@
 #include "fluid_args.hpp"
 
 #include "args.hpp"
-#include "commands.hpp"
 #include "frame_files.hpp"
 #include "unused_options.hpp"
 
 namespace pointskin::cli {
 namespace {
 
-void define_files(CLI::App& command, FluidArgs& args) {
-  const std::string group = "Files";
-  command.add_option("IN", args.input, "particles of a frame, or frame_{}.vtk for a sequence; - reads stdin");
-  command
-      .add_option("-o,--output", args.output, "mesh: .ply, .obj or .stl, {} where IN has it; - writes PLY to stdout")
-      ->type_name("OUT")
-      ->group(group);
-  command.add_option("--first", args.first, "number of the first frame of a sequence")->type_name("N")->group(group);
-  command.add_option("--last", args.last, "number of the last frame of a sequence")->type_name("N")->group(group);
-  command.add_option("--report", args.report, "write what was done as JSON; also measures the meshes")
-      ->type_name("FILE")
-      ->group(group);
-  add_overwrite_option(command, args.overwrite);
-  command.add_option("--shift", args.shift, "offset subtracted while working: auto, none or x,y,z in world units")
-      ->type_name("S")
-      ->group(group)
-      ->capture_default_str();
+OptionGroup file_options(FluidArgs& args) {
+  return {"Files",
+          {option("IN", "particles of a frame, or frame_{}.vtk for a sequence; - reads stdin", &args.input,
+                  {"input", 60, kNeverNull}),
+           option("-o,--output OUT", "mesh: .ply, .obj or .stl, {} where IN has it; - writes PLY to stdout",
+                  &args.output, {"output", 61, kNeverNull}),
+           option("--first N", "number of the first frame of a sequence", &args.first, {"first", 50}),
+           option("--last N", "number of the last frame of a sequence", &args.last, {"last", 51}),
+           option("--report FILE", "write what was done as JSON; also measures the meshes", &args.report),
+           overwrite_row(args.overwrite), shift_row(args.shift)}};
 }
 
-void define_surface(CLI::App& command, FluidArgs& args) {
-  const std::string group = "Surface (lengths in particle radii)";
-  FluidOptions& options = args.options;
-  const auto value = [&](const char* name, auto& target, const char* type, const char* description) {
-    return command.add_option(name, target, description)->type_name(type)->group(group);
-  };
-  value("-r,--particle-radius", options.particle_radius, "R", "half of the particles' distance at rest, world units");
-  value("-c,--cube-size", options.cube_size, "C", "width of the finest cells, 0.05 to 4")->capture_default_str();
-  value("-l,--smoothing-length", options.smoothing_length, "L", "half of the kernel's radius, 1 to 8")
-      ->capture_default_str();
-  value("--kernel", args.kernel, "K", "isotropic (Zhu & Bridson) or anisotropic (Yu & Turk)")
-      ->check(is_one_of({"isotropic", "anisotropic"}))
-      ->capture_default_str();
-  value("-t,--surface-threshold", options.surface_threshold, "T",
-        "isotropic: distance from the mean of particles, 0 to 2 [1];\n"
-        "anisotropic: share of the density at rest, 0 to 1 [0.2]");
-  command.add_flag("--no-attributes", args.no_attributes, "do not carry properties of the particles to the vertices")
-      ->group(group);
-  command.add_flag("--no-normals", args.no_normals, "leave vertex normals out of the mesh")->group(group);
+OptionGroup surface_options(FluidOptions& o) {
+  const auto threshold = [&o] { return o.surface_threshold == 0 ? Shown("default") : Shown(o.surface_threshold); };
+  const auto kernel =
+      one_of<FluidKernel>(o.kernel, {{"isotropic", FluidKernel::isotropic}, {"anisotropic", FluidKernel::anisotropic}});
+  return {
+      "Surface (lengths in particle radii)",
+      {option("-r,--particle-radius R", "half of the particles' distance at rest, world units", &o.particle_radius,
+              {"particle_radius", 1, kFromZero}, {.no_default = true}),
+       option("-c,--cube-size C", "width of the finest cells, 0.05 to 4", &o.cube_size, {"cube_size", 4, kFromZero}),
+       option("-l,--smoothing-length L", "half of the kernel's radius, 1 to 8", &o.smoothing_length,
+              {"smoothing_length", 3, kFromOne}),
+       option("--kernel K", "isotropic (Zhu & Bridson) or anisotropic (Yu & Turk)", kernel, {"kernel", 2},
+              {.check = is_one_of(kernel.words)}),
+       option("-t,--surface-threshold T",
+              "isotropic: distance from the mean of particles, 0 to 2 [1];\n"
+              "anisotropic: share of the density at rest, 0 to 1 [0.2]",
+              shown_as(&o.surface_threshold, threshold), {"surface_threshold", 5, R"({"type": ["number", "string"]})"},
+              {.no_default = true}),
+       option("--no-attributes", "do not carry properties of the particles to the vertices", negated(o.attributes),
+              {"attributes", 10}),
+       option("--no-normals", "leave vertex normals out of the mesh", negated(o.normals), {"normals", 9})}};
 }
 
-void define_finish(CLI::App& command, FluidArgs& args) {
-  const std::string group = "Finish";
-  command
-      .add_option("--mesh-smoothing-iters", args.options.smoothing_iterations,
-                  "iterations of Laplacian smoothing, 0 to 1000; 25 is plenty")
-      ->type_name("N")
-      ->group(group)
-      ->capture_default_str();
-  command.add_flag("--no-smoothing-weights", args.no_weights, "smooth single particles and thin sheets as much as all")
-      ->group(group);
-  command
-      .add_option("--min-component", args.options.min_component,
-                  "remove pieces, and fill bubbles, smaller than so many particles; 0: keep all")
-      ->type_name("N")
-      ->group(group)
-      ->capture_default_str();
+OptionGroup finish_options(FluidOptions& o) {
+  return {"Finish",
+          {option("--mesh-smoothing-iters N", "iterations of Laplacian smoothing, 0 to 1000; 25 is plenty",
+                  &o.smoothing_iterations, {"smoothing_iterations", 6, kFromZero}),
+           option("--no-smoothing-weights", "smooth single particles and thin sheets as much as all",
+                  negated(o.smoothing_weights), {"smoothing_weights", 7}),
+           option("--min-component N", "remove pieces, and fill bubbles, smaller than so many particles; 0: keep all",
+                  &o.min_component, {"min_component", 8, kFromZero})}};
 }
 
 }  // namespace
 
-void define_fluid_options(CLI::App& command, FluidArgs& args) {
-  define_files(command, args);
-  define_surface(command, args);
-  define_finish(command, args);
-  define_simulation(command, args.simulation);
-  define_device_options(command, args);
-  const std::string group = kDeviceGroup;
-  command.add_option("--at-once", args.at_once, "frames worked on together on the CPU; 0: as threads and memory allow")
-      ->type_name("N")
-      ->group(group)
-      ->capture_default_str();
-  command
-      .add_option("--max-memory", args.max_memory,
-                  "memory for frames worked on together, e.g. 8G [default: most of what is free]")
-      ->type_name("SIZE")
-      ->group(group);
-  command.add_flag("-q,--quiet", args.quiet, "errors and warnings only")->group("Messages");
+OptionTable fluid_options(FluidArgs& args) {
+  return {
+      file_options(args),
+      surface_options(args.options),
+      finish_options(args.options),
+      simulation_options(args.simulation).unreported(),
+      device_options(args),
+      {kDeviceGroup,
+       {option("--at-once N", "frames worked on together on the CPU; 0: as threads and memory allow", &args.at_once),
+        option("--max-memory SIZE", "memory for frames worked on together, e.g. 8G [default: most of what is free]",
+               &args.max_memory)}},
+      quiet_option(args.quiet)};
+}
+
+OptionTable simulation_report_options(FluidArgs& args) {
+  OptionGroup surface = surface_options(args.options), files = file_options(args), lengths, output;
+  lengths.rows = {surface.row("--cube-size"), surface.row("--smoothing-length")};
+  lengths.rows[0].report.place = 20;
+  lengths.rows[1].report.place = 21;
+  output.rows = {files.row("--output")};
+  output.rows[0].report.schema.clear();
+  return {simulation_options(args.simulation), lengths, device_options(args), output};
 }
 
 void warn_about_unused(const FluidArgs& args, bool on_gpu) {
@@ -109,11 +100,7 @@ void warn_about_unused(const FluidArgs& args, bool on_gpu) {
 }
 
 FluidOptions library_options(const FluidArgs& args) {
-  FluidOptions options = args.options;
-  options.kernel = args.kernel == "anisotropic" ? FluidKernel::anisotropic : FluidKernel::isotropic;
-  options.normals = !args.no_normals;
-  options.attributes = !args.no_attributes;
-  options.smoothing_weights = !args.no_weights;
+  const FluidOptions& options = args.options;
   if (args.simulation.scene.empty() || options.particle_radius != 0) validate(options);
   return options;
 }

@@ -5,8 +5,6 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include <pointskin/fluid.hpp>
 
 #include "fit_args.hpp"
@@ -17,17 +15,19 @@ namespace pointskin::cli {
 
 struct FluidArgs : DeviceArgs {
   std::string input, output, report;  ///< report empty: none
-  std::string kernel = "isotropic", shift = "auto";
+  std::string shift = "auto";
   std::string max_memory;  ///< empty: what the machine has left
   FluidOptions options;
   SimulateArgs simulation;  ///< with a scene: instead of `input`
   std::optional<std::int64_t> first, last;
   int at_once = 0;
-  bool no_normals = false, no_attributes = false, no_weights = false, overwrite = false, quiet = false;
+  bool overwrite = false, quiet = false;
   GivenOptions given;
 };
 
-void define_fluid_options(CLI::App& command, FluidArgs& args);
+/// Reports of files show all of it, those of simulations simulation_report_options.
+OptionTable fluid_options(FluidArgs& args);
+OptionTable simulation_report_options(FluidArgs& args);
 
 /// Warns of options that the kind of run leaves without effect. @param on_gpu  the device is a GPU
 void warn_about_unused(const FluidArgs& args, bool on_gpu);

@@ -30,8 +30,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-[[noreturn]] void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
-
 void check_ranges(const SimulateArgs& args) {
   const auto check = [](const char* option, auto value, auto least, auto most) {
     if (!(value >= least && value <= most))
@@ -78,7 +76,7 @@ simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& outp
   return *kind;
 }
 
-simulation::SimulationOptions simulation_options(const SimulateArgs& args) {
+simulation::SimulationOptions library_options(const SimulateArgs& args) {
   simulation::SimulationOptions options;
   options.iterations = args.iterations;
   options.viscosity = args.viscosity;
@@ -181,22 +179,6 @@ class Frames {
   std::string lines_;
 };
 
-Json options_json(const SimulateArgs& args, const SimulateOutput& output) {
-  return {{"simulate", args.scene},
-          {"particles", args.particles},
-          {"frames", args.frames},
-          {"fps", args.fps},
-          {"iterations", args.iterations},
-          {"viscosity", args.viscosity},
-          {"vorticity", args.vorticity},
-          {"cube_size", output.surface.cube_size},
-          {"smoothing_length", output.surface.smoothing_length},
-          {"device", output.device.device},
-          {"threads", output.device.threads},
-          {"output", or_null(output.output)},
-          {"particles_out", or_null(args.particles_out)}};
-}
-
 void write_report(const SimulateArgs& args, const SimulateOutput& output, const simulation::Simulation& fluid,
                   const Frames& frames) {
   const Device& device = fluid.device();
@@ -207,7 +189,7 @@ void write_report(const SimulateArgs& args, const SimulateOutput& output, const 
                    {"particles", fluid.report().particles},
                    {"spacing", scene.spacing},
                    {"tank", {scene.tank.x, scene.tank.y, scene.tank.z}}};
-  json["options"] = options_json(args, output);
+  json["options"] = output.shown_options;
   const std::string place = "frames go here";
   json["frames"] = place;
   json["ms"] = {{"simulate_median", spread_of(frames.step_ms()).median}};
@@ -221,30 +203,28 @@ void write_report(const SimulateArgs& args, const SimulateOutput& output, const 
 
 }  // namespace
 
-void define_simulation(CLI::App& command, SimulateArgs& args) {
-  const std::string group = "Simulation";
-  const auto value = [&](const char* name, auto& target, const char* type, const char* description) {
-    return command.add_option(name, target, description)->type_name(type)->group(group)->capture_default_str();
-  };
-  command
-      .add_option("--simulate", args.scene,
-                  "simulate dam-break, double-dam-break, drop, obstacle or stir instead of reading IN")
-      ->type_name("SCENE")
-      ->group(group);
-  value("--frames", args.frames, "N", "frames to write, the first at rest; {} in names: number");
-  value("--particles", args.particles, "N", "particles of the scene, 200 to 64000000");
-  value("--fps", args.fps, "F", "frames per simulated second");
-  value("--iterations", args.iterations, "N", "of the density constraint a substep, 1 to 100");
-  value("--viscosity", args.viscosity, "C", "of XSPH, no unit, 0 to 1");
-  value("--vorticity", args.vorticity, "E", "of vorticity confinement, no unit, 0: none");
-  command.add_option("--particles-out", args.particles_out, "particles of every frame: .ply with velocity_x, _y, _z")
-      ->type_name("OUT")
-      ->group(group);
+OptionGroup simulation_options(SimulateArgs& args) {
+  return {
+      "Simulation",
+      {option("--simulate SCENE", "simulate dam-break, double-dam-break, drop, obstacle or stir instead of reading IN",
+              &args.scene, {"simulate", 1, kNeverNull}),
+       option("--frames N", "frames to write, the first at rest; {} in names: number", &args.frames,
+              {"frames", 3, kFromOne}),
+       option("--particles N", "particles of the scene, 200 to 64000000", &args.particles,
+              {"particles", 2, R"({"minimum": 200})"}),
+       option("--fps F", "frames per simulated second", &args.fps, {"fps", 4, kFromOne}),
+       option("--iterations N", "of the density constraint a substep, 1 to 100", &args.iterations,
+              {"iterations", 5, kFromOne}),
+       option("--viscosity C", "of XSPH, no unit, 0 to 1", &args.viscosity, {"viscosity", 6, kFromZero}),
+       option("--vorticity E", "of vorticity confinement, no unit, 0: none", &args.vorticity,
+              {"vorticity", 7, kFromZero}),
+       option("--particles-out OUT", "particles of every frame: .ply with velocity_x, _y, _z", &args.particles_out,
+              {"particles_out", 62})}};
 }
 
 int run_simulation(const SimulateArgs& args, const SimulateOutput& output) {
   const simulation::SceneKind kind = check(args, output);
-  const simulation::SimulationOptions options = simulation_options(args);
+  const simulation::SimulationOptions options = library_options(args);
   const Device device = output.device.chosen();
   if (output.warn) output.warn(device.kind == DeviceKind::cuda);
   on_interrupt(OnInterrupt::remember);

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <pointskin/fluid.hpp>
 
@@ -33,10 +33,10 @@ struct SimulateOutput {
   FluidOptions surface;  ///< particle_radius 0: half the scene's spacing
   /// Called once everything has been checked. @param on_gpu  the device is a GPU
   std::function<void(bool on_gpu)> warn{};
+  nlohmann::ordered_json shown_options{};  ///< for the report
 };
 
-/// Adds the options of a simulation to `command`, in a group of their own.
-void define_simulation(CLI::App& command, SimulateArgs& args);
+OptionGroup simulation_options(SimulateArgs& args);
 
 /// Runs the simulation and writes frame 0, the scene at rest, to frame `frames` - 1. Files appear whole or not at all;
 /// a signal ends the run between two frames.

@@ -9,6 +9,8 @@
 
 #include <pointskin/error.hpp>
 
+#include "args.hpp"
+
 namespace pointskin::cli {
 namespace {
 
@@ -47,22 +49,20 @@ std::string frame_file(const std::string& pattern, int frame, int frames) {
 
 void check_pattern(const std::string& pattern, const char* option, const char* because) {
   if (pattern.empty() || is_pattern(pattern)) return;
-  throw Error(ErrorCode::usage,
-              fmt::format("{}: {} needs {{}}, where the frame's number goes, because of {}", option, pattern, because));
+  throw_usage(fmt::format("{}: {} needs {{}}, where the frame's number goes, because of {}", option, pattern, because));
 }
 
 void check_patterns(const std::string& input, const std::string& output, const char* option) {
   if (!is_pattern(input) && is_pattern(output))
-    throw Error(ErrorCode::usage, fmt::format("{}: {} has {{}}, but the input has none", option, output));
+    throw_usage(fmt::format("{}: {} has {{}}, but the input has none", option, output));
   if (is_pattern(input) && !is_pattern(output))
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: {} needs {{}}, where the frame's number goes, as the input has it", option, output));
+    throw_usage(fmt::format("{}: {} needs {{}}, where the frame's number goes, as the input has it", option, output));
 }
 
 std::vector<FrameFile> find_frames(const std::string& pattern, std::optional<std::int64_t> first,
                                    std::optional<std::int64_t> last) {
   if (!is_pattern(pattern)) {
-    if (first || last) throw Error(ErrorCode::usage, "--first and --last need {} in the name of the input");
+    if (first || last) throw_usage("--first and --last need {} in the name of the input");
     return {{pattern, ""}};
   }
   const fs::path path(pattern);
@@ -70,7 +70,7 @@ std::vector<FrameFile> find_frames(const std::string& pattern, std::optional<std
   const std::size_t place = name.find(kPlace);
   if (place == std::string::npos || name.find(kPlace, place + 2) != std::string::npos ||
       is_pattern(path.parent_path().string()))
-    throw Error(ErrorCode::usage, fmt::format("{}: {{}} must stand once, in the name of the file", pattern));
+    throw_usage(fmt::format("{}: {{}} must stand once, in the name of the file", pattern));
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::vector<FrameFile> frames;
   std::error_code failure;

@@ -3,22 +3,18 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 namespace pointskin::cli {
 
 /// The options that were given, whatever their values. Arguments of a command that have a member `given` of this type
-/// get it filled in (finish_command).
+/// get it filled in (make_command).
 class GivenOptions {
  public:
   GivenOptions() = default;
-  explicit GivenOptions(const CLI::App& command) {
-    for (const CLI::Option* option : command.get_options())
-      if (option->count() > 0)
-        for (const std::string& name : option->get_lnames()) names_.push_back("--" + name);
-  }
+  /// @param names  all long names of the options, with their dashes
+  explicit GivenOptions(std::vector<std::string> names) : names_(std::move(names)) {}
 
   /// @param option  with its dashes, the long name of several
   [[nodiscard]] bool has(const std::string& option) const {

@@ -74,11 +74,14 @@ std::int64_t drop_zero_normals(Cloud& cloud) {
   return zero;
 }
 
+void warn_about_dropped(std::int64_t count, const std::string& prefix) {
+  if (count > 0) print_warning(fmt::format("{}{} points were dropped: a coordinate is not finite", prefix, count));
+}
+
 void drop_unusable(Cloud& cloud, const std::string& prefix) {
   const std::int64_t not_finite = cloud.dropped;
   const std::int64_t no_normal = drop_zero_normals(cloud);
-  if (not_finite > 0)
-    print_warning(fmt::format("{}{} points were dropped: a coordinate is not finite", prefix, not_finite));
+  warn_about_dropped(not_finite, prefix);
   if (no_normal > 0)
     print_warning(fmt::format("{}{} points were dropped: their normal has zero length", prefix, no_normal));
 }

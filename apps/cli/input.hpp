@@ -31,6 +31,9 @@ void check_not_empty(const Cloud& cloud, const std::string& name);
 /// @throws Error no_normals if the cloud has no normals, or none that is not zero
 std::int64_t drop_zero_normals(Cloud& cloud);
 
+/// Warns of points that were left out on reading, if there are any. @param prefix  of the warning
+void warn_about_dropped(std::int64_t count, const std::string& prefix = "");
+
 /// drop_zero_normals, with a warning for what was left out on reading and one for what is now.
 /// @param prefix  of the warnings
 void drop_unusable(Cloud& cloud, const std::string& prefix = "");

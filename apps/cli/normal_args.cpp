@@ -5,8 +5,7 @@
 #include <optional>
 
 #include <fmt/format.h>
-
-#include <pointskin/error.hpp>
+#include <nlohmann/json.hpp>
 
 #include "args.hpp"
 #include "console.hpp"
@@ -17,55 +16,41 @@ namespace pointskin::cli {
 
 using Json = nlohmann::ordered_json;
 
-void define_normal_options(CLI::App& command, NormalArgs& args) {
-  NormalOptions& options = args.options;
-  const auto value = [&](const std::string& name, auto& target, const std::string& description) {
-    return command.add_option(name, target, description)->group(kNormalGroup)->capture_default_str();
-  };
-  command
-      .add_option("--sensor", args.sensors,
-                  "where a scanner stood, world coordinates; may be repeated, the nearest saw a point")
-      ->type_name("X,Y,Z")
-      ->group(kNormalGroup)
-      ->allow_extra_args(false);
-  value("--keep-within", options.keep_within_degrees, "repair: largest angle of a normal that stays, degrees, 0 to 90")
-      ->type_name("A");
-  value("--max-rounds", options.max_rounds, "trial reconstructions at most, 1 to 1000")->type_name("N");
-  value("--time-limit", options.time_limit_s, "begin no further trial after so many seconds, 0: no limit")
-      ->type_name("S");
-  command.add_flag("--random-start", options.random_start, "iterate: start from signs at random, not propagated ones")
-      ->group(kNormalGroup);
-  value("--seed", options.seed, "of the random start")->type_name("N");
+Binding method_of(NormalMethod& method) {
+  std::vector<std::pair<std::string, NormalMethod>> meanings;
+  for (const NormalMethod each : {NormalMethod::automatic, NormalMethod::sensor, NormalMethod::propagate,
+                                  NormalMethod::iterate, NormalMethod::repair})
+    meanings.emplace_back(name_of(each), each);
+  return one_of(method, meanings);
 }
 
-NormalMethod normal_method_of(const std::string& name, const std::string& option) {
-  for (const NormalMethod method : {NormalMethod::automatic, NormalMethod::sensor, NormalMethod::propagate,
-                                    NormalMethod::iterate, NormalMethod::repair})
-    if (name == name_of(method)) return method;
-  throw Error(ErrorCode::usage,
-              fmt::format("{}: '{}' is not auto, sensor, propagate, iterate or repair", option, name));
+OptionGroup normal_options(NormalArgs& args) {
+  NormalOptions& o = args.options;
+  return {
+      kNormalGroup,
+      {option("", "", method_of(o.method), {"method", 40}),
+       option("--sensor X,Y,Z", "where a scanner stood, world coordinates; may be repeated, the nearest saw a point",
+              shown_as(&args.sensors, [&o] { return o.sensors; }), {"sensors", 41}),
+       option("--keep-within A", "repair: largest angle of a normal that stays, degrees, 0 to 90",
+              &o.keep_within_degrees, {"keep_within_degrees", 46, R"({"minimum": 0, "maximum": 90})"}),
+       option("--max-rounds N", "trial reconstructions at most, 1 to 1000", &o.max_rounds,
+              {"max_rounds", 44, kFromOne}),
+       option("--time-limit S", "begin no further trial after so many seconds, 0: no limit", &o.time_limit_s,
+              {"time_limit_s", 45, kFromZero}),
+       option("--random-start", "iterate: start from signs at random, not propagated ones", &o.random_start,
+              {"random_start", 42}),
+       option("--seed N", "of the random start", &o.seed, {"seed", 43, kFromZero})}};
 }
 
-NormalOptions normal_options(const NormalArgs& args, const std::string& option) {
+NormalOptions library_options(const NormalArgs& args) {
   NormalOptions options = args.options;
-  options.method = normal_method_of(args.method, option);
   for (const std::string& text : args.sensors) {
     const std::optional<Vec3d> place = parse_vector(text);
-    if (!place) throw Error(ErrorCode::usage, fmt::format("--sensor: '{}' is not X,Y,Z", text));
+    if (!place) throw_usage(fmt::format("--sensor: '{}' is not X,Y,Z", text));
     options.sensors.push_back(*place);
   }
   validate(options);
   return options;
-}
-
-Json to_json(const NormalOptions& options) {
-  return {{"method", name_of(options.method)},
-          {"sensors", options.sensors},
-          {"random_start", options.random_start},
-          {"seed", options.seed},
-          {"max_rounds", options.max_rounds},
-          {"time_limit_s", options.time_limit_s},
-          {"keep_within_degrees", options.keep_within_degrees}};
 }
 
 Json to_json(const NormalReport& report) {

@@ -4,33 +4,32 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <pointskin/normals.hpp>
+
+#include "option_table.hpp"
 
 namespace pointskin::cli {
 
 struct NormalArgs {
   NormalOptions options;
-  std::string method = "auto";
   std::vector<std::string> sensors;
 };
 
 inline constexpr char kNormalGroup[] = "Normals";
 
-/// --sensor, --random-start, --seed, --max-rounds, --time-limit, --keep-within.
-void define_normal_options(CLI::App& command, NormalArgs& args);
+/// The words that mean a method.
+Binding method_of(NormalMethod& method);
 
-/// "auto", "sensor", "propagate", "iterate" or "repair". @throws Error usage, naming `option`
-NormalMethod normal_method_of(const std::string& name, const std::string& option);
+/// --sensor, --random-start, --seed, --max-rounds, --time-limit, --keep-within; reports show the method, too.
+OptionGroup normal_options(NormalArgs& args);
 
-/// Options as the library wants them. @param option  that names the method
+/// Options as the library wants them.
 /// @throws Error usage if a value is out of range
-NormalOptions normal_options(const NormalArgs& args, const std::string& option);
+NormalOptions library_options(const NormalArgs& args);
 
 /// What the reports of both commands say of the normals.
-nlohmann::ordered_json to_json(const NormalOptions& options);
 nlohmann::ordered_json to_json(const NormalReport& report);
 
 /// One line: method, what changed, doubts and times.

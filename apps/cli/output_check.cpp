@@ -46,8 +46,8 @@ void check_extension(const std::string& path, std::span<const FormatInfo> format
   if (is_special_file(path) && extension_of(path).empty()) return;  // Gets the first format.
   const FormatInfo* const format = format_of(path, formats);
   if (format != nullptr && format->writes_meshes) return;
-  throw Error(ErrorCode::usage, fmt::format("{}: unknown output format; use {}, or - for {} on stdout", path,
-                                            extension_list(&FormatInfo::writes_meshes, formats), formats.front().name));
+  throw_usage(fmt::format("{}: unknown output format; use {}, or - for {} on stdout", path,
+                          extension_list(&FormatInfo::writes_meshes, formats), formats.front().name));
 }
 
 }  // namespace
@@ -73,14 +73,14 @@ void check_cloud_name(const std::string& path, const char* story, const std::str
   const FormatInfo* const format = format_of(path);
   if (path == "-" || (format != nullptr && format->writes_clouds)) return;
   const std::string extensions = extension_list(&FormatInfo::writes_clouds);
-  throw Error(ErrorCode::usage, fmt::format(fmt::runtime(story), named.empty() ? path : named, extensions));
+  throw_usage(fmt::format(fmt::runtime(story), named.empty() ? path : named, extensions));
 }
 
 void check_result(const std::string& path) {
   if (path != "-") return check_replaceable(path);
   if (!stdout_is_open()) throw Error(ErrorCode::output_not_written, "stdout: cannot be written: it is closed");
   if (isatty(STDOUT_FILENO) == 1)
-    throw Error(ErrorCode::usage, "stdout is a terminal, and PLY is binary; redirect it or name a file with -o");
+    throw_usage("stdout is a terminal, and PLY is binary; redirect it or name a file with -o");
 }
 
 void check_mesh_output(const std::string& path, std::span<const FormatInfo> formats) {

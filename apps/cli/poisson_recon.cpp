@@ -1,8 +1,8 @@
 #include "poisson_recon.hpp"
 
-#include <fmt/format.h>
+#include <array>
 
-#include <pointskin/error.hpp>
+#include <fmt/format.h>
 
 #include "args.hpp"
 #include "console.hpp"
@@ -18,7 +18,7 @@ struct Ignored {
 
 constexpr char kInside[] = "has no meaning here: it is about the inside of PoissonRecon";
 
-constexpr std::array<Ignored, kIgnoredOptions> kIgnored = {{
+constexpr std::array<Ignored, 22> kIgnored = {{
     {"--alignDir", true, kInside},
     {"--baseDepth", true, kInside},
     {"--baseVCycles", true, kInside},
@@ -45,24 +45,25 @@ constexpr std::array<Ignored, kIgnoredOptions> kIgnored = {{
 
 }  // namespace
 
-void define_ignored_options(CLI::App& command, PoissonReconArgs& args) {
-  for (std::size_t i = 0; i < kIgnored.size(); ++i) {
-    const Ignored& option = kIgnored[i];
-    CLI::Option* const defined = option.has_value ? command.add_option(option.name, args.ignored[i])
-                                                  : command.add_flag(option.name, args.ignored[i]);
-    defined->description(option.why)->group("");
+OptionGroup ignored_options() {
+  OptionGroup group;
+  for (const Ignored& option : kIgnored) {
+    const auto nothing = [](const std::string&) { return std::string(); };
+    group.rows.push_back({option.name + std::string(option.has_value ? " TEXT" : ""), option.why,
+                          text_for("", nothing, [] { return nullptr; })});
   }
+  return group;
 }
 
-void warn_about_poisson_recon(const GivenOptions& given, const PoissonReconArgs& args) {
+void warn_about_poisson_recon(const GivenOptions& given, const std::string& data) {
   for (const Ignored& option : kIgnored)
     if (given.has(option.name)) print_warning(fmt::format("{} {}", option.name, option.why));
-  if (args.data.empty() || args.data == kDataAlone) return;
-  if (!parse_number(args.data)) throw Error(ErrorCode::usage, fmt::format("--data: '{}' is no number", args.data));
+  if (data.empty() || data == kDataAlone) return;
+  if (!parse_number(data)) throw_usage(fmt::format("--data: '{}' is no number", data));
   print_warning(
       fmt::format("--data: the factor {} has no meaning here; properties are carried as with "
                   "--keep-attributes",
-                  args.data));
+                  data));
 }
 
 }  // namespace pointskin::cli

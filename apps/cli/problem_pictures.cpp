@@ -9,6 +9,7 @@
 #include <pointskin/error.hpp>
 #include <pointskin/render.hpp>
 
+#include "args.hpp"
 #include "console.hpp"
 #include "output_check.hpp"
 #include "progress.hpp"
@@ -43,26 +44,19 @@ std::string caption_of(const std::vector<ProblemRegion>& regions, std::size_t r,
 
 }  // namespace
 
-void define_problem_options(CLI::App& command, ProblemPictureArgs& args) {
-  const std::string group = "Pictures";
-  command
-      .add_option("--pictures", args.folder, "draw the views into this folder, which is made: problem_01_1.png, ...")
-      ->type_name("DIR")
-      ->group(group);
-  command.add_option("--pictures-most", args.most, "regions to draw, the worst first, 1 to 999")
-      ->type_name("N")
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--up", args.up, "axis that points up in the views: x, y, z, -x, -y or -z")
-      ->type_name("AXIS")
-      ->group(group)
-      ->capture_default_str();
+OptionGroup problem_options(ProblemPictureArgs& args) {
+  return {"Pictures",
+          {option("--pictures DIR", "draw the views into this folder, which is made: problem_01_1.png, ...",
+                  &args.folder, {"pictures", 52, R"({"description": "of problems: the folder of the pictures"})"}),
+           option("--pictures-most N", "regions to draw, the worst first, 1 to 999", &args.most,
+                  {"pictures_most", 53, R"({"minimum": 1, "description": "of problems: regions to draw"})"}),
+           option("--up AXIS", "axis that points up in the views: x, y, z, -x, -y or -z", &args.up,
+                  {"up", 51, R"({"description": "of problems: the axis that points up in the views"})"})}};
 }
 
 void check_problem_pictures(const ProblemPictureArgs& args) {
   parse_up(args.up, "--up");
-  if (args.most < 1 || args.most > 999)
-    throw Error(ErrorCode::usage, fmt::format("--pictures-most: {} is not in [1, 999]", args.most));
+  if (args.most < 1 || args.most > 999) throw_usage(fmt::format("--pictures-most: {} is not in [1, 999]", args.most));
   if (args.folder.empty()) return;
   std::error_code ignored;
   fs::path place = fs::absolute(args.folder);
@@ -102,12 +96,6 @@ std::vector<PictureNames> write_problem_pictures(const Mesh& mesh, const std::ve
       line.update({"pictures", (static_cast<double>(r) + static_cast<double>(v + 1) / 3) / static_cast<double>(drawn)});
     }
   return names;
-}
-
-nlohmann::ordered_json to_json(const ProblemPictureArgs& args) {
-  nlohmann::ordered_json json = {{"up", args.up}, {"pictures", nullptr}, {"pictures_most", args.most}};
-  if (!args.folder.empty()) json["pictures"] = args.folder;
-  return json;
 }
 
 }  // namespace pointskin::cli

@@ -4,11 +4,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <pointskin/mesh.hpp>
 #include <pointskin/problems.hpp>
+
+#include "option_table.hpp"
 
 namespace pointskin::cli {
 
@@ -21,7 +20,7 @@ struct ProblemPictureArgs {
 /// The files of a region's views; empty for a region that is not drawn.
 using PictureNames = std::vector<std::string>;
 
-void define_problem_options(CLI::App& command, ProblemPictureArgs& args);
+OptionGroup problem_options(ProblemPictureArgs& args);
 
 /// Checks the options, and that pictures could be written into the folder, or the folder be made. Leaves nothing
 /// behind.
@@ -37,8 +36,5 @@ ProblemOptions problem_options(const ProblemPictureArgs& args, int threads);
 /// @throws Error output_not_written, interrupted
 std::vector<PictureNames> write_problem_pictures(const Mesh& mesh, const std::vector<ProblemRegion>& regions,
                                                  const ProblemPictureArgs& args, int threads, bool progress);
-
-/// For the options of a report.
-nlohmann::ordered_json to_json(const ProblemPictureArgs& args);
 
 }  // namespace pointskin::cli

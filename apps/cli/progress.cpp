@@ -8,8 +8,6 @@
 namespace pointskin::cli {
 namespace {
 
-using Seconds = std::chrono::duration<double>;
-
 std::string duration_text(double seconds) {
   const auto s = static_cast<long>(seconds + 0.5);
   if (s < 60) return fmt::format("{} s", s);
@@ -28,12 +26,11 @@ std::string progress_text(const Progress& progress, double elapsed_s) {
 
 void ProgressLine::update(const Progress& progress) {
   if (!shown_) return;
-  const Clock::time_point now = Clock::now();
-  const bool too_soon = on_screen_ ? now - last_ < Seconds(0.1) : now - start_ < Seconds(1);
-  if (too_soon) return;
-  last_ = now;
+  const double now_ms = watch_.ms();
+  if (on_screen_ ? now_ms - last_ms_ < 100 : now_ms < 1000) return;
+  last_ms_ = now_ms;
   on_screen_ = true;
-  const std::string line = "\r\x1b[K" + progress_text(progress, Seconds(now - start_).count());
+  const std::string line = "\r\x1b[K" + progress_text(progress, now_ms / 1000);
   std::fwrite(line.data(), 1, line.size(), stderr);
   std::fflush(stderr);
 }

@@ -1,10 +1,11 @@
 // One line of progress on a terminal.
 #pragma once
 
-#include <chrono>
 #include <string>
 
 #include <pointskin/reconstruct.hpp>
+
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 
@@ -22,12 +23,10 @@ class ProgressLine {
   void clear();
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   bool shown_;
   bool on_screen_ = false;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point last_ = start_;
+  Stopwatch watch_;
+  double last_ms_ = 0;
 };
 
 /// "solve  42 %, 3 s left". @param elapsed_s  since fraction was zero

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include <pointskin/reconstruct.hpp>
 
 #include "fit_args.hpp"
@@ -23,24 +21,19 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   std::string report;                     ///< empty: none
   std::string shift = "auto";
   NormalArgs normals;
-  std::string normals_policy = "auto";
-  std::string estimate_normals;  ///< method; empty: --normals counts
-  std::string max_memory;        ///< empty: no limit
-  int boundary_type = 0;         ///< PoissonRecon's number of the boundary; 0: none
-  double width_world = 0;        ///< > 0: chooses the depth
+  double width_world = 0;  ///< > 0: chooses the depth
   int repeat = 0;
-  bool width_given = false, repeat_given = false;
   bool problems = false;   ///< list regions whose topology is doubtful; a mesh is not needed then
   bool overwrite = false;  ///< results may replace inputs
   bool ascii = false;      ///< PLY as text
   ProblemPictureArgs pictures;
-  PoissonReconArgs poisson_recon;
+  std::string poisson_recon_data;  ///< pull factor of --data, or kDataAlone; empty: not given
   GivenOptions given;
   bool colors = false, dry_run = false, quiet = false, verbose = false;
 };
 
-/// Defines the options of `pointskin reconstruct` on `command`, bound to `args`.
-void define_reconstruct_options(CLI::App& command, ReconstructArgs& args);
+/// The options of `pointskin reconstruct`, or of `pointskin problems`.
+OptionTable reconstruct_options(ReconstructArgs& args);
 
 /// Options as the library wants them. The depth is not settled yet when a width is given.
 /// @throws Error usage if a value is out of range or two contradict each other

@@ -1,7 +1,5 @@
 #include "report.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "console.hpp"
@@ -57,7 +55,7 @@ Json trim_json(const TrimReport& trim) {
 
 Json envelope_json(const Record& record) {
   const EnvelopeReport& envelope = record.run.envelope;
-  return {{"file", record.other_options.at("envelope")},
+  return {{"file", record.shown_options.at("envelope")},
           {"samples_outside", envelope.samples_outside},
           {"vertices_moved", envelope.vertices_moved},
           {"farthest_move", envelope.farthest_move}};
@@ -124,43 +122,10 @@ Json repeat_json(const std::vector<double>& values) {
   return {{"min", ms.min}, {"median", ms.median}, {"max", ms.max}};
 }
 
-Json options_json(const Record& record) {
-  Json json = to_json(record.options);
-  json["point_normals"] = name_of(record.options.point_normals);
-  if (record.options.trim == Options::kAutomaticTrim) json["trim"] = record.run.trim.quantile;
-  json.update(record.other_options);
-  return json;
-}
-
 }  // namespace
 
 Json to_json(const Device& device) {
   return {{"kind", device.kind == DeviceKind::cuda ? "cuda" : "cpu"}, {"name", device.name()}};
-}
-
-Json to_json(const Options& options) {
-  return {{"depth", options.depth},
-          {"field", options.field == FieldKind::distance ? "distance" : "poisson"},
-          {"screening", options.screening},
-          {"iterations", options.iterations},
-          {"scale", options.scale},
-          {"samples_per_node", options.samples_per_node},
-          {"confidence", options.confidence},
-          {"fixed_screening", options.fixed_screening},
-          {"linear_fit", options.linear_fit},
-          {"density", options.density},
-          {"weakness", options.weakness},
-          {"attributes", options.attributes},
-          {"normals", options.normals},
-          {"open", options.domain_faces == DomainFaces::open},
-          {"boundary", options.boundary == Boundary::dirichlet ? "dirichlet" : "free"},
-          {"offset", options.offset},
-          {"trim", options.trim},
-          {"island_ratio", options.island_ratio},
-          {"largest", options.largest},
-          {"min_component", options.min_component},
-          {"keep_strays", options.keep_strays},
-          {"max_memory_bytes", options.max_memory_bytes}};
 }
 
 Json to_json(const MeshReport& mesh) {
@@ -174,7 +139,7 @@ Json to_json(const Record& record) {
   Json json = {{"version", 1}, {"command", record.command}};
   json["device"] = to_json(record.device);
   json["input"] = input_json(record);
-  json["options"] = options_json(record);
+  json["options"] = record.shown_options;
   json["warnings"] = printed_warnings();
   if (record.run.normals) json["normals"] = to_json(*record.run.normals);
   json["octree"] = octree_json(record.run);

@@ -25,7 +25,7 @@ struct Record {
   std::int64_t points = 0;               ///< in the files
   std::int64_t dropped = 0;              ///< of them, left out: not finite, or a normal of zero length
   Options options;                       ///< after defaults
-  nlohmann::ordered_json other_options;  ///< what Options does not hold
+  nlohmann::ordered_json shown_options;  ///< with those that Options does not hold
   RunReport run;
   MeshReport mesh;
   std::string command = "reconstruct";
@@ -39,9 +39,8 @@ struct Record {
 
 nlohmann::ordered_json to_json(const Record& record);
 
-/// What the reports of all commands have in common. The options are those after defaults, without the files.
+/// What the reports of all commands have in common.
 nlohmann::ordered_json to_json(const Device& device);
-nlohmann::ordered_json to_json(const Options& options);
 nlohmann::ordered_json to_json(const MeshReport& mesh);
 /// The name of a file that may be left out.
 nlohmann::ordered_json or_null(const std::string& file);

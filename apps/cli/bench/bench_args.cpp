@@ -10,7 +10,7 @@
 #include "args.hpp"
 #include "bench/launcher.hpp"
 #include "bench/words.hpp"
-#include "commands.hpp"
+#include "fit_args.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -43,52 +43,40 @@ void append_devices(std::vector<Device>& devices, const std::string& name, int t
   }
 }
 
-CLI::Option* add_text(CLI::App& command, const std::string& name, std::string& value, const std::string& description) {
-  return command.add_option(name, value, description)->check([](const std::string& text) {
-    return std::string(text.empty() ? "needs a value" : "");
-  });
-}
-
-void define_peer(CLI::App& command, BenchArgs& args) {
-  const std::string group = "Another program";
-  add_text(command, "--peer", args.peer, "its command, with {in}, {out}, {depth}; run in turn with ours, file to file")
-      ->type_name("CMD")
-      ->group(group);
-  command.add_option("--peer-repeat", args.peer_repeat, "runs of each, 1 to 1000")
-      ->type_name("N")
-      ->group(group)
-      ->check(CLI::Range(1, 1000).description(""))
-      ->capture_default_str();
+/// A check for whole numbers.
+std::function<std::string(const std::string&)> in_range(int least, int most) {
+  return [least, most](const std::string& text) {
+    const double value = parse_number(text).value_or(least - 1);
+    const bool good = value >= least && value <= most && value == static_cast<int>(value);
+    return good ? "" : fmt::format("Value {} not in range {} to {}", text, least, most);
+  };
 }
 
 }  // namespace
 
-void define_bench_options(CLI::App& command, BenchArgs& args) {
-  command.add_option("IN", args.inputs, "oriented clouds, measured one by one [default the paper's six, generated]");
-  command.add_option("--generate", args.generate, "a cloud of a known shape, e.g. knot:1000000; may be repeated")
-      ->type_name("SHAPE:N")
-      ->group("Work")
-      ->allow_extra_args(false);
-  add_text(command, "--depths", args.depths,
-           "octree depths, 1 to 20 [default 8,9,10; those of the paper for its clouds]")
-      ->type_name("D,D,...")
-      ->group("Work");
-  command.add_option("--repeat", args.repeat, "runs on data in memory, 1 to 100000")
-      ->type_name("N")
-      ->group("Work")
-      ->check(CLI::Range(1, 100000).description(""))
-      ->capture_default_str();
-  add_text(command, "--devices", args.devices, "cpu, cuda (every GPU), cuda:N, separated by commas, or all")
-      ->type_name("DEV,...")
-      ->group("Device and limits")
-      ->capture_default_str();
-  add_threads_option(command, args.threads, "Device and limits");
-  define_peer(command, args);
-  add_text(command, "--report", args.report, "write what was measured, and where, as JSON")
-      ->type_name("FILE")
-      ->group("Output");
-  add_text(command, "--plot", args.plot, "draw time against points and depth")->type_name("FILE.svg")->group("Output");
-  command.add_flag("-q,--quiet", args.quiet, "no progress on stderr")->group("Output");
+OptionTable bench_options(BenchArgs& args) {
+  const OptionRules text = {.check = needs_a_value};
+  return {
+      {"Work",
+       {option("IN", "oriented clouds, measured one by one [default the paper's six, generated]", &args.inputs),
+        option("--generate SHAPE:N", "a cloud of a known shape, e.g. knot:1000000; may be repeated", &args.generate),
+        option("--depths D,D,...", "octree depths, 1 to 20 [default 8,9,10; those of the paper for its clouds]",
+               &args.depths, {}, text),
+        option("--repeat N", "runs on data in memory, 1 to 100000", &args.repeat, {"repeat", 1, kFromOne},
+               {.check = in_range(1, 100000)})}},
+      {kDeviceGroup,
+       {option("--devices DEV,...", "cpu, cuda (every GPU), cuda:N, separated by commas, or all", &args.devices, {},
+               text),
+        threads_row(args.threads)}},
+      {"Another program",
+       {option("--peer CMD", "its command, with {in}, {out}, {depth}; run in turn with ours, file to file", &args.peer,
+               {}, text),
+        option("--peer-repeat N", "runs of each, 1 to 1000", &args.peer_repeat, {"peer_repeat", 40, kFromOne},
+               {.check = in_range(1, 1000)})}},
+      {"Output",
+       {option("--report FILE", "write what was measured, and where, as JSON", &args.report, {}, text),
+        option("--plot FILE.svg", "draw time against points and depth", &args.plot, {}, text),
+        option("-q,--quiet", "no progress on stderr", &args.quiet)}}};
 }
 
 std::vector<int> parse_depths(const std::string& text) {
@@ -96,8 +84,7 @@ std::vector<int> parse_depths(const std::string& text) {
   for (const std::string& part : parts(text)) {
     const double depth = parse_number(part).value_or(0);
     if (!(depth >= 1 && depth <= 20) || depth != static_cast<int>(depth)) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("--depths: '{}' is no depth; whole numbers in [1, 20], such as 8,9,10", part));
+      throw_usage(fmt::format("--depths: '{}' is no depth; whole numbers in [1, 20], such as 8,9,10", part));
     }
     if (std::find(depths.begin(), depths.end(), static_cast<int>(depth)) == depths.end()) {
       depths.push_back(static_cast<int>(depth));
@@ -130,10 +117,10 @@ std::vector<std::string> parse_peer(const std::string& command) {
                        [&](const std::string& word) { return word.find(name) != std::string::npos; });
   };
   if (!names("{in}") || !names("{out}")) {
-    throw Error(ErrorCode::usage, "--peer: the command must say where {in} and {out} go");
+    throw_usage("--peer: the command must say where {in} and {out} go");
   }
   if (!is_executable(words[0])) {
-    throw Error(ErrorCode::usage, fmt::format("--peer: there is no program {} to run", words[0]));
+    throw_usage(fmt::format("--peer: there is no program {} to run", words[0]));
   }
   return words;
 }

@@ -4,11 +4,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include <pointskin/device.hpp>
 
 #include "given_options.hpp"
+#include "option_table.hpp"
 
 namespace pointskin::cli {
 
@@ -27,8 +26,7 @@ struct BenchArgs {
   GivenOptions given;
 };
 
-/// Defines the options on `command`, bound to `args`.
-void define_bench_options(CLI::App& command, BenchArgs& args);
+OptionTable bench_options(BenchArgs& args);
 
 /// "8,9,10": the depths in this order, without repetitions.
 /// @throws Error usage for anything else, and for depths outside of [1, 20]

@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
-
 #include "args.hpp"
 #include "console.hpp"
 #include "input.hpp"
@@ -36,10 +34,10 @@ CloudSource parse_generate(const std::string& text, const std::vector<int>& dept
   const auto is_shape = [&](const char* name) { return shape == name; };
   if (std::none_of(bench::kShapeNames.begin(), bench::kShapeNames.end(), is_shape) || !(points >= 1) ||
       points > kMostPoints) {
-    throw Error(ErrorCode::usage,
-                fmt::format("--generate: '{}' is not SHAPE:N, where SHAPE is one of {} and N a number of "
-                            "points up to 1e9",
-                            text, fmt::join(bench::kShapeNames, ", ")));
+    throw_usage(
+        fmt::format("--generate: '{}' is not SHAPE:N, where SHAPE is one of {} and N a number of "
+                    "points up to 1e9",
+                    text, fmt::join(bench::kShapeNames, ", ")));
   }
   return {text, "", shape, static_cast<std::int64_t>(points), depths};
 }
@@ -68,7 +66,7 @@ std::vector<CloudSource> cloud_sources(const BenchArgs& args) {
   if (depths.empty()) depths = {8, 9, 10};
   std::vector<CloudSource> sources;
   for (const std::string& path : args.inputs) {
-    if (path == "-") throw Error(ErrorCode::usage, "stdin (-) cannot be measured again and again; name a file");
+    if (path == "-") throw_usage("stdin (-) cannot be measured again and again; name a file");
     sources.push_back({short_path(path, args.inputs), path, "", 0, depths});
   }
   for (const std::string& text : args.generate) sources.push_back(parse_generate(text, depths));

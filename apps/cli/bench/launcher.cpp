@@ -12,7 +12,6 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -23,6 +22,7 @@
 #include <pointskin/error.hpp>
 
 #include "signals.hpp"
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -61,7 +61,7 @@ Outcome launch(std::vector<std::string> request) {
   Outcome outcome;
   std::array<int, 2> error_pipe{};
   if (pipe2(error_pipe.data(), O_CLOEXEC) != 0) return outcome.start_error = errno, outcome;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const pid_t id = fork();
   if (id == 0) become_program(request, error_pipe[1]);
   outcome.start_error = id < 0 ? errno : 0;
@@ -72,7 +72,7 @@ Outcome launch(std::vector<std::string> request) {
     struct rusage usage = {};
     while (wait4(id, &status, 0, &usage) < 0 && errno == EINTR) {
     }
-    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    outcome.seconds = watch.ms() / 1000;
     outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     outcome.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     outcome.peak_bytes = std::int64_t{usage.ru_maxrss} * 1024;

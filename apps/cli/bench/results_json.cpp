@@ -119,7 +119,7 @@ Json to_json(const Results& results, const BenchArgs& args, const std::vector<De
   json["command_line"] = command_line();
   json["time"] = utc_now();
   json["machine"] = machine_json(devices);
-  json["options"] = {{"repeat", args.repeat}, {"threads", args.threads}, {"peer_repeat", args.peer_repeat}};
+  json["options"] = report_of(bench_options, args);
   for (const char* list : {"clouds", "runs", "file_runs"}) json[list] = Json::array();
   for (const CloudFacts& cloud : results.clouds) json["clouds"].push_back(cloud_json(cloud));
   for (const MemoryRun& run : results.memory_runs) json["runs"].push_back(memory_run_json(results, run));

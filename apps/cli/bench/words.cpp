@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/error.hpp>
+#include "args.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -51,8 +51,7 @@ class Splitter {
   }
 
   char next(const char* problem) {
-    if (at_ == text_.size())
-      throw Error(ErrorCode::usage, fmt::format("the command {} is no command: {}", text_, problem));
+    if (at_ == text_.size()) throw_usage(fmt::format("the command {} is no command: {}", text_, problem));
     return text_[at_++];
   }
 
@@ -70,8 +69,7 @@ std::string filled(const std::string& word, const std::map<std::string, std::str
       continue;
     }
     const auto value = values.find(name);
-    if (value == values.end())
-      throw Error(ErrorCode::usage, fmt::format("the command names {{{}}}, which is not known", name));
+    if (value == values.end()) throw_usage(fmt::format("the command names {{{}}}, which is not known", name));
     result += value->second;
     at = end + 1;
   }
@@ -86,7 +84,7 @@ bool is_plain(char c) {
 
 std::vector<std::string> split_words(const std::string& text) {
   std::vector<std::string> words = Splitter(text).words();
-  if (words.empty()) throw Error(ErrorCode::usage, "the command is empty");
+  if (words.empty()) throw_usage("the command is empty");
   return words;
 }
 

@@ -13,6 +13,7 @@
 
 #include <pointskin/error.hpp>
 
+#include "args.hpp"
 #include "standard_files.hpp"
 
 namespace pointskin::cli {

@@ -2,9 +2,11 @@
 
 #include <pointskin/error.hpp>
 
-#include <chrono>
+#include <memory>
 
-#include "boolean/engine.hpp"
+#include "boolean/combine.hpp"
+#include "core/stopwatch.hpp"
+#include "exec/any_space.hpp"
 #include "reconstruct/engine.hpp"
 
 namespace pointskin {
@@ -27,19 +29,23 @@ void check(const BooleanOptions& options) {
 
 }  // namespace
 
-Booleans::Booleans(Device device)
-    : impl_(device.kind == DeviceKind::cuda ? detail::make_cuda_booleans(device.index)
-                                            : detail::make_cpu_booleans(device.threads)) {}
+class Booleans::Impl {
+ public:
+  explicit Impl(const Device& device) : space(device) {}
+
+  exec::AnySpace space;
+};
+
+Booleans::Booleans(Device device) : impl_(std::make_unique<Impl>(device)) {}
 Booleans::~Booleans() = default;
 Booleans::Booleans(Booleans&&) noexcept = default;
 Booleans& Booleans::operator=(Booleans&&) noexcept = default;
 
 BooleanResult Booleans::combine(BooleanOperand a, BooleanOperand b, BooleanOp op, const BooleanOptions& options) {
-  using Clock = std::chrono::steady_clock;
   check(options);
-  const Clock::time_point start = Clock::now();
-  BooleanResult result = impl_->combine(a, b, op, options);
-  result.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  const Stopwatch watch;
+  BooleanResult result = exec::visit(impl_->space, [&](auto& ex) { return boolean::combine(ex, a, b, op, options); });
+  result.report.total_ms = watch.milliseconds();
   return result;
 }
 

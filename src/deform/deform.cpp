@@ -3,34 +3,45 @@
 
 #include <fmt/format.h>
 
-#include "deform/engine.hpp"
+#include "deform/moving_cloud.hpp"
+#include "exec/any_space.hpp"
 #include "reconstruct/engine.hpp"
 
 namespace pointskin {
 
+namespace {
+
+void check_memory(const Cloud& rest, const Options& options, const Device& device) {
+  if (options.max_memory_bytes == 0) return;
+  const std::int64_t needed = 2 * estimate_device_bytes(rest, options, device.threads);
+  if (needed > options.max_memory_bytes)
+    throw Error(ErrorCode::over_limit,
+                fmt::format("the field at rest and a frame would need about {} MB of the {} MB allowed; choose a "
+                            "smaller depth or allow more",
+                            needed / 1'000'000, options.max_memory_bytes / 1'000'000));
+}
+
+exec::AnySpace checked_space(const Cloud& rest, const Options& options, const Device& device) {
+  detail::validate_settled(options);
+  check_memory(rest, options, device);
+  return exec::AnySpace(device);
+}
+
+}  // namespace
+
 class Deformer::Impl {
  public:
-  Impl(const Cloud& rest, const Options& options, Device device) : device_(device), points_(rest.size()) {
-    detail::validate_settled(options);
-    check_memory(rest, options);
-    engine_ = device.kind == DeviceKind::cuda ? detail::make_cuda_deform_engine(device.index, rest, options, report_)
-                                              : detail::make_cpu_deform_engine(device.threads, rest, options, report_);
-  }
+  Impl(const Cloud& rest, const Options& options, const Device& on)
+      : device(on),
+        points(rest.size()),
+        space(checked_space(rest, options, on)),
+        moving(exec::visit(space, [&](auto& ex) { return deform::start(ex, rest, options, report); })) {}
 
-  void check_memory(const Cloud& rest, const Options& options) const {
-    if (options.max_memory_bytes == 0) return;
-    const std::int64_t needed = 2 * estimate_device_bytes(rest, options, device_.threads);
-    if (needed > options.max_memory_bytes)
-      throw Error(ErrorCode::over_limit,
-                  fmt::format("the field at rest and a frame would need about {} MB of the {} MB allowed; choose a "
-                              "smaller depth or allow more",
-                              needed / 1'000'000, options.max_memory_bytes / 1'000'000));
-  }
-
-  Device device_;
-  std::int64_t points_;
-  DeformReport report_;
-  std::unique_ptr<detail::DeformEngine> engine_;
+  Device device;
+  std::int64_t points;
+  DeformReport report;
+  exec::AnySpace space;
+  deform::MovingCloud moving;
 };
 
 Deformer::Deformer(const Cloud& rest, const Options& options, Device device)
@@ -40,8 +51,8 @@ Deformer::Deformer(Deformer&&) noexcept = default;
 Deformer& Deformer::operator=(Deformer&&) noexcept = default;
 
 void Deformer::deform(const Deformation& deformation) {
-  validate(deformation, impl_->points_);
-  impl_->engine_->deform(deformation, impl_->report_);
+  validate(deformation, impl_->points);
+  exec::visit(impl_->space, [&](auto& ex) { deform::apply(ex, deformation, impl_->moving, impl_->report); });
 }
 
 Mesh Deformer::reconstruct() {
@@ -50,10 +61,19 @@ Mesh Deformer::reconstruct() {
   return mesh;
 }
 
-void Deformer::reconstruct(Mesh& mesh) { impl_->engine_->reconstruct(mesh, impl_->report_); }
-Cloud Deformer::cloud() const { return impl_->engine_->cloud(); }
-SpacingRatios Deformer::spacing() const { return impl_->engine_->spacing(); }
-const DeformReport& Deformer::report() const { return impl_->report_; }
-const Device& Deformer::device() const { return impl_->device_; }
+void Deformer::reconstruct(Mesh& mesh) {
+  exec::visit(impl_->space, [&](auto& ex) { deform::reconstruct(ex, impl_->moving, mesh, impl_->report); });
+}
+
+Cloud Deformer::cloud() const {
+  return exec::visit(impl_->space, [&](auto& ex) { return deform::copy_cloud(ex, impl_->moving); });
+}
+
+SpacingRatios Deformer::spacing() const {
+  return exec::visit(impl_->space, [&](auto& ex) { return deform::measure_spacing(ex, impl_->moving); });
+}
+
+const DeformReport& Deformer::report() const { return impl_->report; }
+const Device& Deformer::device() const { return impl_->device; }
 
 }  // namespace pointskin

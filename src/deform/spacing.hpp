@@ -3,105 +3,21 @@
 
 #include <pointskin/deform.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "exec/algorithms.hpp"
-#include "octree/frame.hpp"
-#include "octree/octree_data.hpp"
-#include "octree/search.hpp"
+#include "core/array_view.hpp"
+#include "exec/space.hpp"
 
-namespace pointskin::detail {
-namespace spacing {
-
-inline constexpr int kNeighbours = 6;
-
-/// Means the distances of the nearest points but the first, which is the point itself.
-struct MeanDistance {
-  ArrayView<const std::int32_t> ids;  ///< (n, kNeighbours + 1)
-  ArrayView<const float> squared;
-  float size_world;
-  ArrayView<float> out;
-  PSK_HD void operator()(std::int64_t i) const {
-    float sum = 0;
-    int found = 0;
-    for (std::int64_t k = 1; k <= kNeighbours; ++k) {
-      const std::int64_t at = i * (kNeighbours + 1) + k;
-      if (ids[at] < 0) continue;
-      sum += std::sqrt(squared[at]);
-      ++found;
-    }
-    out[i] = found > 0 ? sum / static_cast<float>(found) * size_world : 0.0F;
-  }
-};
-
-struct ByIndex {
-  ArrayView<std::uint64_t> out;
-  PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<std::uint64_t>(i); }
-};
-
-}  // namespace spacing
-
-/// Smallest depth at which a surface's cells hold about as many points as a search looks at in one go.
-inline int search_depth(std::int64_t points) {
-  constexpr int kDeepest = 12;
-  int depth = 1;
-  while (depth < kDeepest && (std::int64_t{8} << 2 * depth) < points) ++depth;
-  return depth;
-}
+namespace pointskin::deform {
 
 /// Mean distance of each point to its 6 nearest neighbours, in the order of the points; 0 where there are no others.
 /// Independent of their order. A tree and a search of its own; 56 bytes of scratch for each of up to 2^20 points.
 template <exec::Space Exec>
-std::vector<float> neighbour_distances(Exec& ex, ArrayView<const Vec3f> positions) {
-  const std::int64_t n = positions.size;
-  const octree::Frame frame = octree::fit_frame(ex, positions, 1);
-  auto unit = exec::make_buffer<Vec3f>(ex, n);
-  for_each(ex, "deform.spacing", n, octree::ToUnit{frame, positions, unit.view()});
-  auto ties = exec::make_buffer<std::uint64_t>(ex, n);
-  for_each(ex, "deform.spacing", n, spacing::ByIndex{ties.view()});
-  const octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), ties.cview());
-  const octree::OctreeData tree = octree::build_octree(ex, sorted.keys.cview(), search_depth(n));
-  auto by_key = exec::make_buffer<Vec3f>(ex, n);
-  exec::gather(ex, unit.cview(), sorted.order.cview(), by_key.view());
-
-  const octree::SearchView points{tree.view(), by_key.cview(), sorted.order.cview()};
-  constexpr std::int64_t kAtOnce = std::int64_t{1} << 20;
-  std::vector<float> means(static_cast<std::size_t>(n));
-  for (std::int64_t first = 0; first < n; first += kAtOnce) {  // in key order: neighbours look at the same cells
-    const std::int64_t count = std::min(kAtOnce, n - first);
-    auto ids = exec::make_buffer<std::int32_t>(ex, count * (spacing::kNeighbours + 1));
-    auto squared = exec::make_buffer<float>(ex, count * (spacing::kNeighbours + 1));
-    octree::find_nearest(ex, points, by_key.cview().part(first, count), spacing::kNeighbours + 1, ids.view(),
-                         squared.view());
-    auto mean = exec::make_buffer<float>(ex, count);
-    for_each(ex, "deform.spacing", count,
-             spacing::MeanDistance{ids.cview(), squared.cview(), static_cast<float>(frame.size), mean.view()});
-    copy_to_host(ex, mean.cview(), means.data() + first);
-  }
-  std::vector<std::int32_t> order(means.size());
-  copy_to_host(ex, sorted.order.cview(), order.data());
-  std::vector<float> out(means.size());
-  for (std::size_t i = 0; i < order.size(); ++i) out[static_cast<std::size_t>(order[i])] = means[i];
-  return out;
-}
+std::vector<float> neighbour_distances(Exec& ex, ArrayView<const Vec3f> positions);
 
 /// Percentiles of the distances now over those of the parents at rest; coinciding points are left out.
-inline SpacingRatios spacing_ratios(const std::vector<float>& now, const std::vector<float>& at_rest,
-                                    const std::vector<std::int32_t>& parents) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    const float before = at_rest[static_cast<std::size_t>(parents[i])];
-    if (before > 0) ratios.push_back(static_cast<double>(now[i]) / static_cast<double>(before));
-  }
-  if (ratios.empty()) return {};
-  std::sort(ratios.begin(), ratios.end());
-  const auto at = [&](double share) {
-    return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1))];
-  };
-  return {at(0.05), at(0.5), at(0.95)};
-}
+SpacingRatios spacing_ratios(const std::vector<float>& now, const std::vector<float>& at_rest,
+                             const std::vector<std::int32_t>& parents);
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::deform

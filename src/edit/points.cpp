@@ -3,7 +3,6 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -15,8 +14,13 @@
 #include "edit/view_frame.hpp"
 #include "exec/this_space.hpp"
 
-namespace pointskin::detail {
+namespace pointskin::edit {
 namespace {
+
+using detail::AttributeBuffer;
+using detail::FieldData;
+using detail::FieldSamples;
+using detail::PointBuffers;
 
 /// 1 for points that say something of normals, and for those that may be removed.
 struct IsKindOtherThan {
@@ -33,17 +37,6 @@ struct Scale {
     Vec3f& v = vectors[i];
     v = {v.x * factor, v.y * factor, v.z * factor};
   }
-};
-
-struct LengthOf {
-  ArrayView<const Vec3f> vectors;
-  PSK_HD double operator()(std::int64_t i) const {
-    const Vec3f v = vectors[i];
-    return std::sqrt(double{v.x} * v.x + double{v.y} * v.y + double{v.z} * v.z);
-  }
-};
-struct Add {
-  PSK_HD double operator()(double a, double b) const { return a + b; }
 };
 
 template <class T, exec::Space Exec>
@@ -103,58 +96,57 @@ PointBuffers append(Exec& ex, const PointBuffers& points, const PointBuffers& ad
   return out;
 }
 
-edit::GuideShape shape_of(const Guide& guide, const edit::ViewFrame& view, const EditInput& input) {
-  edit::GuideShape shape;
+GuideShape shape_of(const Guide& guide, const ViewFrame& view, const EditInput& input) {
+  GuideShape shape;
   const double cell = input.field.frame.size / static_cast<double>(std::int64_t{1} << input.field.tree.depth);
   shape.interval = guide.interval > 0 ? guide.interval : cell;
-  const edit::DepthRange depths = edit::depth_range(view, input.base_box, shape.interval);
+  const DepthRange depths = depth_range(view, input.base_box, shape.interval);
   shape.first_depth = depths.first;
   shape.last_depth = depths.last;
-  for (const Pixel& pixel : guide.stroke) shape.stroke.push_back(edit::to_plane(guide.camera, pixel));
+  for (const Pixel& pixel : guide.stroke) shape.stroke.push_back(to_plane(guide.camera, pixel));
   return shape;
 }
 
 /// The sides of an area's polygons.
-std::vector<edit::PlaneEdge> edges_of(const Camera& camera, const Area& area) {
-  std::vector<edit::PlaneEdge> edges;
+std::vector<PlaneEdge> edges_of(const Camera& camera, const Area& area) {
+  std::vector<PlaneEdge> edges;
   for (const std::vector<Pixel>& polygon : area)
     for (std::size_t i = 0; i < polygon.size(); ++i)
-      edges.push_back(
-          {edit::to_plane(camera, polygon[i]), edit::to_plane(camera, polygon[i + 1 < polygon.size() ? i + 1 : 0])});
+      edges.push_back({to_plane(camera, polygon[i]), to_plane(camera, polygon[i + 1 < polygon.size() ? i + 1 : 0])});
   return edges;
 }
 
 template <exec::Space Exec>
 EditedPoints apply(Exec& ex, const EditInput& input, const Guide& guide) {
-  const edit::ViewFrame view = edit::frame_of(guide.camera, input.origin);
-  edit::GuideShape shape = shape_of(guide, view, input);
+  const ViewFrame view = frame_of(guide.camera, input.origin);
+  GuideShape shape = shape_of(guide, view, input);
   if (guide.stroke.empty()) shape.edges = edges_of(guide.camera, guide.area);
   EditedPoints edited;
   if (!(shape.last_depth >= shape.first_depth)) return edited;  // all of the cloud is behind the eye
   const FieldData& field = input.field;
-  const edit::KeepInside keep{field.view(input.options.domain_faces), field.frame, guide.inside_only};
+  const KeepInside keep{field.view(input.options.domain_faces), field.frame, guide.inside_only};
   const bool by_stroke = guide.normals == GuideNormals::stroke;
-  edit::GuidePoints points = edit::guide_points(ex, view, shape, keep, by_stroke);
+  GuidePoints points = guide_points(ex, view, shape, keep, by_stroke);
   edited.added = points.positions.size();
   if (edited.added == 0) return edited;
   if (!by_stroke) {
     const FieldSamples& samples = field.samples;
     auto counts = exec::make_buffer<std::uint8_t>(ex, samples.added.size());
-    for_each(ex, "guide.count", counts.size(), IsKindOtherThan{samples.added.cview(), edit::kGuide, counts.view()});
-    points.normals = edit::interpolate_normals(
-        ex, {field.tree.view(), samples.positions.cview(), samples.normals.cview(), counts.cview()}, field.frame,
-        points.positions.cview());
+    for_each(ex, "guide.count", counts.size(), IsKindOtherThan{samples.added.cview(), kGuide, counts.view()});
+    points.normals =
+        interpolate_normals(ex, {field.tree.view(), samples.positions.cview(), samples.normals.cview(), counts.cview()},
+                            field.frame, points.positions.cview());
   }
   if (input.normal_length != 1)
     for_each(ex, "guide.length", edited.added, Scale{points.normals.view(), static_cast<float>(input.normal_length)});
-  edited.points = append(ex, input.points, {std::move(points.positions), std::move(points.normals)}, edit::kGuide);
+  edited.points = append(ex, input.points, {std::move(points.positions), std::move(points.normals)}, kGuide);
   return edited;
 }
 
 template <exec::Space Exec>
 EditedPoints apply(Exec& ex, const EditInput& input, const Remove& remove) {
-  const std::vector<edit::PlaneEdge> edges = edges_of(remove.camera, remove.area);
-  auto on_device = exec::make_buffer<edit::PlaneEdge>(ex, static_cast<std::int64_t>(edges.size()));
+  const std::vector<PlaneEdge> edges = edges_of(remove.camera, remove.area);
+  auto on_device = exec::make_buffer<PlaneEdge>(ex, static_cast<std::int64_t>(edges.size()));
   copy_to_device(ex, edges.data(), on_device.view());
   const PointBuffers& points = input.points;
   exec::Buffer<std::uint8_t> all;
@@ -162,10 +154,10 @@ EditedPoints apply(Exec& ex, const EditInput& input, const Remove& remove) {
     all = exec::make_buffer<std::uint8_t>(ex, points.positions.size());
     exec::fill(ex, all.view(), std::uint8_t{1});
   }
-  static_assert(edit::kOriginal == 0);  // so that the kinds tell what may be removed
+  static_assert(kOriginal == 0);  // so that the kinds tell what may be removed
   const exec::Buffer<std::int32_t> kept =
-      edit::points_not_in(ex, edit::frame_of(remove.camera, input.origin), {on_device.cview()},
-                          points.positions.cview(), remove.originals ? all.cview() : points.added.cview());
+      points_not_in(ex, frame_of(remove.camera, input.origin), {on_device.cview()}, points.positions.cview(),
+                    remove.originals ? all.cview() : points.added.cview());
   EditedPoints edited;
   edited.removed = points.positions.size() - kept.size();
   if (kept.empty()) throw Error(ErrorCode::empty_result, "the operation would remove all points");
@@ -174,8 +166,8 @@ EditedPoints apply(Exec& ex, const EditInput& input, const Remove& remove) {
 }
 
 /// From the part's coordinates, relative to its origin, to those of the cloud, relative to `origin`.
-edit::Placement placement_of(const Insert& insert, const Vec3d& origin) {
-  edit::Placement placement;
+Placement placement_of(const Insert& insert, const Vec3d& origin) {
+  Placement placement;
   const Similarity& s = insert.placement;
   for (std::size_t i = 0; i < 9; ++i) {
     placement.turn[i] = s.rotation[i];
@@ -201,8 +193,8 @@ struct IsInBox {
 /// The points of the part that are to be copied, in its own coordinates.
 template <exec::Space Exec>
 PointBuffers upload_part(Exec& ex, const Insert& insert, const Options& options) {
-  PointBuffers part = upload(ex, *insert.part);
-  part.attributes = upload_attributes(ex, *insert.part, options);
+  PointBuffers part = detail::upload(ex, *insert.part);
+  part.attributes = detail::upload_attributes(ex, *insert.part, options);
   IsInBox in_box{{}, {}, part.positions.cview()};
   for (std::size_t a = 0; a < 3; ++a) {
     in_box.lower[a] = insert.lower[a] - insert.part->origin[a];
@@ -216,19 +208,19 @@ PointBuffers upload_part(Exec& ex, const Insert& insert, const Options& options)
 template <exec::Space Exec>
 EditedPoints apply(Exec& ex, const EditInput& input, const Insert& insert) {
   PointBuffers part = upload_part(ex, insert, input.options);
-  edit::place(ex, placement_of(insert, input.origin), part.positions.view(), part.normals.view());
+  place(ex, placement_of(insert, input.origin), part.positions.view(), part.normals.view());
   EditedPoints edited;
   if (insert.snap) {
     const FieldData& field = input.field;
     const exec::Buffer<std::int32_t> ids = exec::iota(ex, field.samples.positions.size());
-    const edit::SnapTarget target{
+    const SnapTarget target{
         {field.tree.view(), field.samples.positions.cview(), ids.cview()}, field.samples.normals.cview(), field.frame};
-    const auto motion = edit::find_snap(ex, target, part.positions.cview(), part.normals.cview());
+    const auto motion = find_snap(ex, target, part.positions.cview(), part.normals.cview());
     edited.snapped = motion.has_value();
-    if (motion) edit::place(ex, *motion, part.positions.view(), part.normals.view());
+    if (motion) place(ex, *motion, part.positions.view(), part.normals.view());
   }
   edited.added = part.positions.size();
-  edited.points = append(ex, input.points, part, edit::kInserted);
+  edited.points = append(ex, input.points, part, kInserted);
   return edited;
 }
 
@@ -246,14 +238,7 @@ PointBuffers copy_used(Exec& ex, const PointBuffers& points) {
   return choose(ex, points, points.used.empty() ? all.cview() : points.used.cview());
 }
 
-template <exec::Space Exec>
-double mean_length(Exec& ex, ArrayView<const Vec3f> normals) {
-  return exec::reduce<double>(ex, "edit.length", normals.size, LengthOf{normals}, Add{}) /
-         static_cast<double>(normals.size);
-}
-
 PSK_INSTANTIATE(edit_points);
 PSK_INSTANTIATE(copy_used);
-PSK_INSTANTIATE(mean_length);
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::edit

@@ -9,12 +9,12 @@
 #include "reconstruct/fit_field.hpp"
 #include "reconstruct/points.hpp"
 
-namespace pointskin::detail {
+namespace pointskin::edit {
 
 /// What an operation starts from.
 struct EditInput {
-  const PointBuffers& points;  ///< relative to `origin`, all used, with PointBuffers::added
-  const FieldData& field;      ///< of these points, with samples
+  const detail::PointBuffers& points;  ///< relative to `origin`, all used, with PointBuffers::added
+  const detail::FieldData& field;      ///< of these points, with samples
   Vec3d origin;
   Bounds base_box;           ///< of the original points
   double normal_length = 1;  ///< of normals that are made
@@ -23,7 +23,7 @@ struct EditInput {
 
 /// The points after an operation, and what it did.
 struct EditedPoints {
-  PointBuffers points;
+  detail::PointBuffers points;
   std::int64_t added = 0, removed = 0;
   bool snapped = false;
 
@@ -36,14 +36,10 @@ EditedPoints edit_points(Exec& ex, const EditInput& input, const Operation& oper
 
 /// A copy of the points that are used, without PointBuffers::used.
 template <exec::Space Exec>
-PointBuffers copy_used(Exec& ex, const PointBuffers& points);
-
-/// Mean length of the normals.
-template <exec::Space Exec>
-double mean_length(Exec& ex, ArrayView<const Vec3f> normals);
+detail::PointBuffers copy_used(Exec& ex, const detail::PointBuffers& points);
 
 /// Throws before any work where an operation is not as described in edit.hpp.
 /// @throws Error usage
 void validate(const Operation& operation);
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::edit

@@ -1,11 +1,17 @@
-#include "edit/session.hpp"
-
+#include <pointskin/edit.hpp>
 #include <pointskin/error.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <utility>
+#include <vector>
 
+#include "core/stopwatch.hpp"
 #include "edit/points.hpp"
+#include "edit/states.hpp"
+#include "exec/any_space.hpp"
 #include "reconstruct/engine.hpp"
 
 namespace pointskin {
@@ -15,69 +21,129 @@ void require(bool holds, const char* story) {
   if (!holds) throw Error(ErrorCode::usage, story);
 }
 
-bool is_finite(const std::vector<Pixel>& pixels) {
-  for (const Pixel& p : pixels)
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1])) return false;
-  return true;
-}
-
-void check(const Area& area) {
-  require(!area.empty(), "the operation has no area; give it polygons");
-  for (const std::vector<Pixel>& polygon : area) {
-    require(polygon.size() >= 3, "a polygon needs at least 3 corners");
-    require(is_finite(polygon), "the corners of polygons must be finite");
-  }
-}
-
-bool has_length(const std::vector<Pixel>& stroke) {
-  for (const Pixel& p : stroke)
-    if (p != stroke.front()) return true;
-  return false;
-}
-
-void check(const Guide& guide) {
-  validate(guide.camera);
-  require(guide.stroke.empty() != guide.area.empty(), "a guide needs either a stroke or an area");
-  require(is_finite(guide.stroke), "the points of a stroke must be finite");
-  if (guide.stroke.empty()) check(guide.area);
-  require(guide.interval >= 0 && std::isfinite(guide.interval), "the interval of a guide must be at least 0");
-  require(guide.normals == GuideNormals::cloud || has_length(guide.stroke),
-          "normals to the right of a stroke need a stroke with a length");
-}
-
-void check(const Remove& remove) {
-  validate(remove.camera);
-  check(remove.area);
-}
-
-void check(const Insert& insert) {
-  require(insert.part != nullptr, "an inserted part needs a cloud");
-  for (std::size_t a = 0; a < 3; ++a)
-    require(insert.lower[a] <= insert.upper[a], "the box of a part must have its lower corner below its upper one");
-  const Similarity& s = insert.placement;
-  require(s.scale > 0 && std::isfinite(s.scale), "the scale of a part's placement must be above 0");
-  for (const double t : s.translation) require(std::isfinite(t), "the translation of a part must be finite");
-  Camera as_camera;  // whose view must be a rotation, too
-  for (std::size_t i = 0; i < 9; ++i) as_camera.view[4 * (i / 3) + i % 3] = s.rotation[i];
-  try {
-    validate(as_camera);
-  } catch (const Error&) {
-    throw Error(ErrorCode::usage, "the rotation of a part's placement must be a rotation matrix, row by row");
-  }
-}
-
-std::unique_ptr<EditSession::Impl> make_session(const Cloud& base, const EditOptions& options, const Device& device) {
+exec::AnySpace checked_space(const EditOptions& options, const Device& device) {
   detail::validate_settled(options.reconstruction);
   require(options.reconstruction.offset == 0, "option offset must be 0 in an editing session");
   require(options.states_kept >= 1, "option states_kept must be at least 1");
-  return device.kind == DeviceKind::cuda ? detail::make_cuda_session(base, options, device.index)
-                                         : detail::make_cpu_session(base, options, device.threads);
+  return exec::AnySpace(device);
+}
+
+/// Components, genus and Euler number. O(t log t), on the host.
+Topology topology_of(const Mesh& mesh, int threads) {
+  const MeshReport report = measure(mesh, threads);
+  return {report.components,
+          report.components - static_cast<std::int64_t>(std::floor(static_cast<double>(report.euler) / 2)),
+          report.euler};
 }
 
 }  // namespace
 
+/// The history of a session.
+class EditSession::Impl {
+ public:
+  Impl(const Cloud& base, const EditOptions& options, const Device& device) : space_(checked_space(options, device)) {
+    edit::Beginning beginning = exec::visit(space_, [&](auto& ex) { return edit::begin_session(ex, base, options); });
+    settings_ = std::move(beginning.settings);
+    states_.push_back(std::move(beginning.state));
+    show(*states_.front());
+    base_topology_ = topology({});
+  }
+
+  const StepReport& apply(const Operation& operation) {
+    StepReport report;
+    edit::SharedState next = make_next(states_[done_], operation, report);  // may throw: nothing has changed
+    const bool changed = next != states_[done_];
+    const Stopwatch watch;
+    if (changed) show(*next);
+    report.reconstruct_ms += watch.milliseconds();
+    report.total_ms = report.edit_ms + report.reconstruct_ms;
+    report.triangles = static_cast<std::int64_t>(mesh_.triangles.size());
+    report.before = done_ == 0 ? base_topology_ : steps_[done_ - 1].report.after;
+    report.after = changed ? topology(report.before) : report.before;
+    steps_.resize(done_);
+    states_.resize(done_ + 1);
+    steps_.push_back({operation, std::move(report)});
+    states_.push_back(std::move(next));
+    go_to(done_ + 1);
+    return steps_.back().report;
+  }
+
+  bool undo() {
+    if (done_ == 0) return false;
+    go_to(done_ - 1);
+    show(*states_[done_]);
+    return true;
+  }
+
+  bool redo() {
+    if (done_ == steps_.size()) return false;
+    go_to(done_ + 1);
+    show(*states_[done_]);
+    return true;
+  }
+
+  [[nodiscard]] std::vector<Operation> operations() const {
+    std::vector<Operation> operations;
+    for (std::size_t i = 0; i < done_; ++i) operations.push_back(steps_[i].operation);
+    return operations;
+  }
+
+  [[nodiscard]] std::vector<StepReport> steps() const {
+    std::vector<StepReport> reports;
+    for (std::size_t i = 0; i < done_; ++i) reports.push_back(steps_[i].report);
+    return reports;
+  }
+
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+
+  [[nodiscard]] Cloud cloud() const {
+    return exec::visit(space_, [&](auto& ex) { return edit::copy_cloud(ex, settings_, *states_[done_]); });
+  }
+
+ private:
+  struct Step {
+    Operation operation;
+    StepReport report;
+  };
+
+  void show(const edit::State& state) {
+    exec::visit(space_, [&](auto& ex) { edit::show(ex, settings_, state, mesh_); });
+  }
+
+  edit::SharedState make_next(const edit::SharedState& before, const Operation& operation, StepReport& report) const {
+    edit::validate(operation);
+    return exec::visit(space_, [&](auto& ex) { return edit::make_next(ex, settings_, before, operation, report); });
+  }
+
+  /// Of the mesh, or what is known where the options want none.
+  [[nodiscard]] Topology topology(const Topology& known) const {
+    if (!settings_.options.topology) return known;
+    return topology_of(mesh_, exec::visit(space_, [](auto& ex) { return ex.host_threads(); }));
+  }
+
+  /// Makes this state the present one; makes it again if it has been forgotten.
+  void go_to(std::size_t done) {
+    std::size_t from = done;
+    while (states_[from] == nullptr) --from;  // the base is never forgotten
+    for (StepReport unused; from < done; ++from)
+      states_[from + 1] = make_next(states_[from], steps_[from].operation, unused);
+    done_ = done;
+    const auto kept = static_cast<std::size_t>(settings_.options.states_kept);
+    for (std::size_t i = 1; i < states_.size(); ++i)
+      if (i + kept <= done_ || i >= done_ + kept) states_[i] = nullptr;
+  }
+
+  exec::AnySpace space_;
+  edit::Settings settings_;
+  Topology base_topology_;
+  std::vector<Step> steps_;                ///< done and undone
+  std::vector<edit::SharedState> states_;  ///< steps_ + 1; null: to be made again
+  std::size_t done_ = 0;
+  Mesh mesh_;  ///< of the present state
+};
+
 EditSession::EditSession(const Cloud& base, const EditOptions& options, const Device& device)
-    : device_(device), impl_(make_session(base, options, device)) {}
+    : device_(device), impl_(std::make_unique<Impl>(base, options, device)) {}
 EditSession::~EditSession() = default;
 EditSession::EditSession(EditSession&&) noexcept = default;
 EditSession& EditSession::operator=(EditSession&&) noexcept = default;
@@ -91,18 +157,4 @@ const Mesh& EditSession::mesh() const { return impl_->mesh(); }
 Cloud EditSession::cloud() const { return impl_->cloud(); }
 const Device& EditSession::device() const { return device_; }
 
-namespace detail {
-
-void validate(const Operation& operation) {
-  std::visit([](const auto& kind) { check(kind); }, operation);
-}
-
-Topology topology_of(const Mesh& mesh, int threads) {
-  const MeshReport report = measure(mesh, threads);
-  return {report.components,
-          report.components - static_cast<std::int64_t>(std::floor(static_cast<double>(report.euler) / 2)),
-          report.euler};
-}
-
-}  // namespace detail
 }  // namespace pointskin

@@ -1,31 +1,27 @@
 // Sets that grow together, with the smallest member of each as its name.
-// Source: Galler & Fischer, "An improved equivalence algorithm", Communications of the ACM 7, 1964.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
-namespace pointskin::detail {
+#include "exec/disjoint_sets.hpp"
 
+namespace pointskin::normals {
+
+/// exec::DisjointSets with an array of their own on the host, for one thread.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count = 0) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+    std::iota(parents_.begin(), parents_.end(), std::int32_t{0});
   }
 
   /// The smallest member of the set of `a`.
   [[nodiscard]] std::size_t root(std::size_t a) const {
-    while (parents_[a] != a) a = parents_[a];
-    return a;
+    return static_cast<std::size_t>(sets().root(static_cast<std::int32_t>(a)));
   }
-  void unite(std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
+  void unite(std::size_t a, std::size_t b) { sets().unite(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)); }
 
   /// The sets, numbered by their smallest members.
   struct Numbers {
@@ -42,7 +38,10 @@ class DisjointSets {
   }
 
  private:
-  std::vector<std::size_t> parents_;
+  [[nodiscard]] exec::DisjointSets sets() const {
+    return {{parents_.data(), static_cast<std::int64_t>(parents_.size())}};
+  }
+  mutable std::vector<std::int32_t> parents_;  // who looks for a root shortens the way to it
 };
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::normals

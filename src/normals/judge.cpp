@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pointskin::detail {
+namespace pointskin::normals {
 namespace {
 
 constexpr std::size_t kMostTried = 14;
@@ -95,4 +95,4 @@ void choose_signs(const Couplings& couplings, const std::vector<bool>& fixed, st
   }
 }
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::normals

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace pointskin::detail {
+namespace pointskin::normals {
 
 /// How the trial fields of patches act on each other: row a holds, for the field of patch a alone, the sum over the
 /// samples of patch b of area times normal times minus the gradient. Symmetric but for the solver's error.
@@ -39,4 +39,4 @@ void choose_sides(const Sides& sides, const std::vector<bool>& fixed, std::vecto
 /// @param fixed  patches whose sign stays
 void choose_signs(const Couplings& couplings, const std::vector<bool>& fixed, std::vector<int>& signs);
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::normals

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <memory>
 #include <string>
 
-#include "normals/engine.hpp"
+#include "core/stopwatch.hpp"
+#include "exec/any_space.hpp"
+#include "normals/orient.hpp"
 #include "normals/trial_size.hpp"
 
 namespace pointskin {
@@ -42,8 +44,8 @@ const ViewNames* find_views(const Cloud& cloud, std::array<const Attribute*, 3>&
   return nullptr;
 }
 
-detail::Views find_views(const Cloud& cloud, const NormalOptions& options) {
-  detail::Views views;
+normals::Views find_views(const Cloud& cloud, const NormalOptions& options) {
+  normals::Views views;
   for (const Vec3d& sensor : options.sensors)
     views.sensors.push_back({sensor[0] - cloud.origin[0], sensor[1] - cloud.origin[1], sensor[2] - cloud.origin[2]});
   if (!views.sensors.empty()) return views;
@@ -65,7 +67,7 @@ detail::Views find_views(const Cloud& cloud, const NormalOptions& options) {
   return views;
 }
 
-NormalMethod chosen_method(const Cloud& cloud, const detail::Views& views, NormalMethod method) {
+NormalMethod chosen_method(const Cloud& cloud, const normals::Views& views, NormalMethod method) {
   if (method == NormalMethod::automatic) {
     if (!views.empty()) return NormalMethod::sensor;
     return cloud.has_normals() ? NormalMethod::repair : NormalMethod::propagate;
@@ -81,14 +83,11 @@ NormalMethod chosen_method(const Cloud& cloud, const detail::Views& views, Norma
 
 class NormalEstimator::Impl {
  public:
-  explicit Impl(Device device)
-      : device_(device),
-        engine_(device.kind == DeviceKind::cuda ? detail::make_cuda_normal_engine(device.index)
-                                                : detail::make_cpu_normal_engine(device.threads)) {}
+  explicit Impl(const Device& on) : device(on), space(on) {}
 
-  Device device_;
-  std::unique_ptr<detail::NormalEngine> engine_;
-  NormalReport report_;
+  Device device;
+  exec::AnySpace space;
+  NormalReport report;
 };
 
 NormalEstimator::NormalEstimator(Device device) : impl_(std::make_unique<Impl>(device)) {}
@@ -97,28 +96,28 @@ NormalEstimator::NormalEstimator(NormalEstimator&&) noexcept = default;
 NormalEstimator& NormalEstimator::operator=(NormalEstimator&&) noexcept = default;
 
 void NormalEstimator::orient(Cloud& cloud, const NormalOptions& options) {
-  using Clock = std::chrono::steady_clock;
   validate(options);
-  const Clock::time_point start = Clock::now();
-  detail::Views views = find_views(cloud, options);
+  const Stopwatch watch;
+  normals::Views views = find_views(cloud, options);
   NormalOptions settled = options;
   settled.method = chosen_method(cloud, views, options.method);
   views.turns_given = options.method == NormalMethod::automatic && settled.method == NormalMethod::repair;
-  impl_->report_ = {};
-  impl_->report_.method = settled.method;
-  impl_->engine_->orient(cloud, views, settled, impl_->report_);
-  impl_->report_.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  NormalReport& report = impl_->report;
+  report = {};
+  report.method = settled.method;
+  exec::visit(impl_->space, [&](auto& ex) { normals::orient(ex, cloud, views, settled, report); });
+  report.total_ms = watch.milliseconds();
 }
 
-const NormalReport& NormalEstimator::report() const { return impl_->report_; }
-const Device& NormalEstimator::device() const { return impl_->device_; }
+const NormalReport& NormalEstimator::report() const { return impl_->report; }
+const Device& NormalEstimator::device() const { return impl_->device; }
 
 std::int64_t estimate_normals_device_bytes(const Cloud& cloud, int threads) {
   constexpr std::int64_t kLinks = 540;   // a point, while patches are made: 370 to 500 measured
   constexpr std::int64_t kBeside = 180;  // a point, beside a trial field: 100 to 130
   Options trial;
-  trial.depth = detail::trial_depth(cloud.size());
-  trial.scale = detail::kTrialRoom;
+  trial.depth = normals::trial_depth(cloud.size());
+  trial.scale = normals::kTrialRoom;
   return std::max(kLinks * cloud.size(), estimate_device_bytes(cloud, trial, threads) + kBeside * cloud.size());
 }
 

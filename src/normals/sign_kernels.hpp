@@ -9,7 +9,7 @@
 #include "exec/atomic.hpp"
 #include "normals/trial_field.hpp"
 
-namespace pointskin::detail::signs {
+namespace pointskin::normals::signs {
 
 /// Sums of fractions as integers, so that their order does not matter.
 inline constexpr double kFraction = 65536;
@@ -129,4 +129,4 @@ struct Confidence {
   }
 };
 
-}  // namespace pointskin::detail::signs
+}  // namespace pointskin::normals::signs

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "core/stopwatch.hpp"
 #include "exec/algorithms.hpp"
 #include "normals/disjoint_sets.hpp"
 #include "normals/judge.hpp"
@@ -19,7 +19,7 @@
 #include "normals/sign_kernels.hpp"
 #include "normals/trial_field.hpp"
 
-namespace pointskin::detail {
+namespace pointskin::normals {
 
 /// Links whose votes agree at least so far join patches, the surest first: sums over longer borders are surer. The rest
 /// is for trial fields to decide.
@@ -34,7 +34,7 @@ inline constexpr double kSettled = 0.001;
 /// What the input says of signs.
 struct Evidence {
   ArrayView<const std::int32_t> signs;  ///< (n) 1, -1 or 0: which sign of the line it speaks for; empty: of none
-  double typical = 0;                   ///< unless 0, lines have their likely signs (normals::LikelySigns)
+  double typical = 0;                   ///< unless 0, lines have their likely signs (LikelySigns)
   bool may_be_inside_out = false;       ///< all signs of a closed part may be wrong
 
   /// The input knows more than neighbours do.
@@ -44,17 +44,16 @@ struct Evidence {
 template <exec::Space Exec>
 class SignSolver {
  public:
-  SignSolver(Exec& ex, const normals::LinkedLines& lines, const octree::OctreeData& tree, const Evidence& evidence,
+  SignSolver(Exec& ex, const LinkedLines& lines, const octree::OctreeData& tree, const Evidence& evidence,
              const NormalOptions& options, NormalReport& report)
       : ex_(ex), lines_(lines), tree_(tree), evidence_(evidence), options_(options), report_(report) {}
 
   /// Neighbours alone.
   void propagate() {
     const std::int64_t n = lines_.positions.size;
-    patches_ = normals::start_patches(ex_, lines_, evidence_.typical > 0);
-    for (const double agreement : kAgreements) normals::merge_patches(ex_, {agreement, 0, evidence_.typical}, patches_);
-    normals::merge_patches(ex_, {kAgreements.back(), std::max<std::int64_t>(32, n / 2000), evidence_.typical},
-                           patches_);
+    patches_ = start_patches(ex_, lines_, evidence_.typical > 0);
+    for (const double agreement : kAgreements) merge_patches(ex_, {agreement, 0, evidence_.typical}, patches_);
+    merge_patches(ex_, {kAgreements.back(), std::max<std::int64_t>(32, n / 2000), evidence_.typical}, patches_);
     report_.patches = patches_.count;
     join_patches();
     signs_ = exec::make_buffer<std::int32_t>(ex_, n);
@@ -103,7 +102,7 @@ class SignSolver {
 
   /// Components of patches, with the less sure votes.
   void join_patches() {
-    normals::SignPatches upper;
+    SignPatches upper;
     upper.count = patches_.count;
     upper.labels = exec::iota(ex_, patches_.count);
     upper.signs = exec::make_buffer<std::int32_t>(ex_, patches_.count);
@@ -112,7 +111,7 @@ class SignSolver {
     copy(ex_, patches_.sizes.cview(), upper.sizes.view());
     upper.pairs = std::move(patches_.pairs);
     upper.votes = std::move(patches_.votes);
-    normals::merge_patches(ex_, {0, 0, evidence_.typical}, upper);
+    merge_patches(ex_, {0, 0, evidence_.typical}, upper);
     report_.components = upper.count;
     components_ = to_host(upper.labels);
     const std::vector<std::int32_t> signs = to_host(upper.signs);
@@ -177,7 +176,7 @@ class SignSolver {
     if (options_.progress &&
         !options_.progress({"iterate", 0.5 + 0.45 * report_.rounds / std::max(1, options_.max_rounds)}))
       throw Error(ErrorCode::interrupted, "cancelled while signs were decided");
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    const double seconds = watch_.milliseconds() / 1000;
     if (report_.rounds >= options_.max_rounds || (options_.time_limit_s > 0 && seconds > options_.time_limit_s)) {
       report_.settled = false;
       return false;
@@ -389,7 +388,7 @@ class SignSolver {
     auto changed = exec::make_buffer<std::int32_t>(ex_, n);
     for (int round = 0; round < kRounds; ++round) {
       trial.solve(signs_.cview());
-      normals::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
+      measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
       for_each(ex_, "normals.clean", n,
                signs::CleanUp{trial.view(), lines_.positions, lines_.normals, agreement.cview(), signs_.view(),
                               changed.view()});
@@ -400,7 +399,7 @@ class SignSolver {
   void settle_confidence(TrialField<Exec>& trial) {
     const std::int64_t n = signs_.size();
     auto agreement = exec::make_buffer<float>(ex_, n);
-    normals::measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
+    measure_agreement(ex_, lines_, signs_.cview(), agreement.view());
     const double sides = options_.method == NormalMethod::sensor || options_.method == NormalMethod::repair
                              ? 1.0
                              : std::clamp(5 * std::abs(report_.enclosing), 0.5, 1.0);
@@ -410,16 +409,15 @@ class SignSolver {
                                signs_.cview(), static_cast<float>(sides), confidence_.view()});
   }
 
-  using Clock = std::chrono::steady_clock;
   Exec& ex_;
-  normals::LinkedLines lines_;
+  LinkedLines lines_;
   const octree::OctreeData& tree_;
   Evidence evidence_;
   const NormalOptions& options_;
   NormalReport& report_;
-  Clock::time_point start_ = Clock::now();
+  Stopwatch watch_;
 
-  normals::SignPatches patches_;
+  SignPatches patches_;
   std::vector<std::int32_t> components_;  // of patches
   std::vector<int> patch_signs_;
   std::vector<std::uint64_t> sizes_;
@@ -430,4 +428,4 @@ class SignSolver {
   exec::Buffer<float> confidence_;
 };
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::normals

@@ -19,7 +19,7 @@
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
 
-namespace pointskin::detail {
+namespace pointskin::normals {
 namespace trial {
 
 /// Signed normals of the samples that take part.
@@ -112,4 +112,4 @@ class TrialField {
   exec::Buffer<float> values_;
 };
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::normals

@@ -5,7 +5,7 @@
 
 #include "octree/even_depth.hpp"
 
-namespace pointskin::detail {
+namespace pointskin::normals {
 
 /// Working cube / bounding cube: the trial field is 0 on the cube, which must not be near.
 inline constexpr double kTrialRoom = 1.5;
@@ -14,4 +14,4 @@ inline constexpr double kTrialRoom = 1.5;
 /// sides.
 inline int trial_depth(std::int64_t n) { return octree::depth_of_even_samples(n); }
 
-}  // namespace pointskin::detail
+}  // namespace pointskin::normals

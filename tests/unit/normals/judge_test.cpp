@@ -10,7 +10,7 @@
 #include "normals/judge.hpp"
 #include "support/shapes.hpp"
 
-namespace pointskin::detail {
+namespace pointskin::normals {
 namespace {
 
 double sum_of(const Couplings& c, const std::vector<int>& signs) {
@@ -119,4 +119,4 @@ TEST(DisjointSets, AreNamedByTheirSmallestMembers) {
 }
 
 }  // namespace
-}  // namespace pointskin::detail
+}  // namespace pointskin::normals

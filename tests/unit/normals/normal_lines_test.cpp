@@ -20,7 +20,7 @@ namespace {
 struct Estimated {
   explicit Estimated(const Cloud& cloud, int threads = 2)
       : ex(threads),
-        points(detail::prepare_cloud(ex, cloud)),
+        points(normals::prepare_cloud(ex, cloud)),
         neighbours(normals::find_neighbours(ex, search())),
         lines(normals::estimate_lines(ex, search(), neighbours.cview())) {}
 
@@ -36,7 +36,7 @@ struct Estimated {
   }
 
   exec::Cpu ex;
-  detail::PreparedCloud points;
+  normals::PreparedCloud points;
   exec::Buffer<std::int32_t> neighbours;
   normals::NormalLines lines;
 };

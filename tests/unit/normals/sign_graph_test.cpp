@@ -18,7 +18,7 @@ namespace {
 
 /// True normals with signs turned at random, and the graph over them.
 struct Graph {
-  explicit Graph(const Cloud& cloud, std::uint64_t seed) : ex(2), points(detail::prepare_cloud(ex, cloud)) {
+  explicit Graph(const Cloud& cloud, std::uint64_t seed) : ex(2), points(normals::prepare_cloud(ex, cloud)) {
     test::Random random(seed);
     const octree::SearchView search{points.tree.view(), points.positions.cview(), {}};
     ids = normals::find_neighbours(ex, search);
@@ -38,7 +38,7 @@ struct Graph {
   }
 
   exec::Cpu ex;
-  detail::PreparedCloud points;
+  normals::PreparedCloud points;
   exec::Buffer<std::int32_t> ids;
   exec::Buffer<float> flatness, noise;
   std::vector<std::int32_t> turned;

@@ -1,0 +1,32 @@
+#include "edit/mean_length.hpp"
+
+#include <cmath>
+
+#include "exec/this_space.hpp"
+
+namespace pointskin::edit {
+namespace {
+
+struct LengthOf {
+  ArrayView<const Vec3f> vectors;
+  PSK_HD double operator()(std::int64_t i) const {
+    const Vec3f v = vectors[i];
+    return std::sqrt(double{v.x} * v.x + double{v.y} * v.y + double{v.z} * v.z);
+  }
+};
+
+struct Add {
+  PSK_HD double operator()(double a, double b) const { return a + b; }
+};
+
+}  // namespace
+
+template <exec::Space Exec>
+double mean_length(Exec& ex, ArrayView<const Vec3f> normals) {
+  return exec::reduce<double>(ex, "edit.length", normals.size, LengthOf{normals}, Add{}) /
+         static_cast<double>(normals.size);
+}
+
+PSK_INSTANTIATE(mean_length);
+
+}  // namespace pointskin::edit

@@ -1,0 +1,15 @@
+// The mean length of normals: what their lengths are measured by where they stand for confidence.
+#pragma once
+
+#include <pointskin/vector.hpp>
+
+#include "core/array_view.hpp"
+#include "exec/space.hpp"
+
+namespace pointskin::edit {
+
+/// Shape (n), n > 0. O(n), one wait. The same bits on every device.
+template <exec::Space Exec>
+double mean_length(Exec& ex, ArrayView<const Vec3f> normals);
+
+}  // namespace pointskin::edit

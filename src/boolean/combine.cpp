@@ -16,6 +16,7 @@
 #include "octree/frame.hpp"
 #include "octree/strays.hpp"
 #include "reconstruct/fit_field.hpp"
+#include "reconstruct/mesh_of_field.hpp"
 #include "reconstruct/phase_clock.hpp"
 #include "reconstruct/points.hpp"
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/announce.hpp"
 #include "core/stopwatch.hpp"
 #include "deform/arrays.hpp"
 #include "deform/deform_map.hpp"
@@ -14,6 +15,7 @@
 #include "exec/this_space.hpp"
 #include "exec/typed_buffer.hpp"
 #include "reconstruct/fit_field.hpp"
+#include "reconstruct/mesh_of_field.hpp"
 #include "reconstruct/phase_clock.hpp"
 #include "reconstruct/points.hpp"
 #include "reconstruct/within_envelope.hpp"
@@ -28,19 +30,6 @@ template <class T, exec::Space Exec>
 void copy_out(Exec& ex, const exec::Buffer<T>& from, std::vector<T>& to) {
   to.resize(static_cast<std::size_t>(from.size()));
   copy_to_host(ex, from.cview(), to.data());
-}
-
-/// The points of the cloud with all of its attributes, under the caller's names.
-/// @param mesh_names  receives the attributes' names on meshes (kept_names)
-template <exec::Space Exec>
-PointBuffers upload_all(Exec& ex, const Cloud& cloud, const Options& options, std::vector<std::string>& mesh_names) {
-  PointBuffers points = detail::upload(ex, cloud);
-  Options all = options;
-  all.attributes = true;
-  points.attributes = detail::upload_attributes(ex, cloud, all);
-  for (std::size_t a = 0; a < points.attributes.size(); ++a)
-    mesh_names.push_back(std::exchange(points.attributes[a].name, cloud.attributes[a].name));
-  return points;
 }
 
 /// Of the samples as they are now.
@@ -99,11 +88,10 @@ void make_mesh(Exec& ex, const MovingCloud& moving, PointBuffers& points, const 
   const Options& options = moving.options;
   if (options.attributes)
     for (std::size_t a = 0; a < moving.rest.attributes.size(); ++a)
-      points.attributes.push_back({moving.rest.mesh_names[a], attribute_of(ex, moving, a)});
+      points.attributes.push_back({moving.rest.attributes[a].name, attribute_of(ex, moving, a)});
   detail::FieldData field = fit_field(ex, points, {.keep_points = true, .envelope = moving.envelope}, options, report);
   put_back();
-  if (options.progress && !options.progress({"extract", 0.8}))
-    throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
+  announce(options.progress, "extract", 0.8);
   extract_and_release(ex, field, options, moving.rest.origin, mesh, report);
 }
 
@@ -116,12 +104,11 @@ MovingCloud start(Exec& ex, const Cloud& cloud, const Options& options, DeformRe
   moving.options = options;
   moving.options.keep_strays = true;  // they are left out already
   moving.envelope = detail::make_envelope(ex, options, cloud.origin);
-  std::vector<std::string> mesh_names;
-  PointBuffers points = upload_all(ex, cloud, options, mesh_names);
+  PointBuffers points = detail::upload(ex, cloud);
+  points.attributes = detail::upload_attributes(ex, cloud);
   ex.synchronize();
   report.upload_ms = watch.lap();
   moving.rest = make_rest(ex, std::move(points), cloud.origin, options, report.run);
-  moving.rest.mesh_names = std::move(mesh_names);
   for (Vec3d& p : report.run.farthest_strays)
     for (std::size_t a = 0; a < 3; ++a) p[a] += cloud.origin[a];
   ex.synchronize();

@@ -24,7 +24,6 @@ struct RestCloud {
   exec::Buffer<Vec3f> unit;                         ///< (n) positions in the cube of the field
   exec::Buffer<float> spacings;                     ///< (n) as RestSamples
   std::vector<detail::AttributeBuffer> attributes;  ///< (n) each, under the caller's names
-  std::vector<std::string> mesh_names;              ///< the attributes' names on meshes
   detail::FieldData field;
 
   [[nodiscard]] std::int64_t size() const { return positions.size(); }

@@ -194,7 +194,7 @@ struct IsInBox {
 template <exec::Space Exec>
 PointBuffers upload_part(Exec& ex, const Insert& insert, const Options& options) {
   PointBuffers part = detail::upload(ex, *insert.part);
-  part.attributes = detail::upload_attributes(ex, *insert.part, options);
+  if (options.attributes) part.attributes = detail::upload_attributes(ex, *insert.part);
   IsInBox in_box{{}, {}, part.positions.cview()};
   for (std::size_t a = 0; a < 3; ++a) {
     in_box.lower[a] = insert.lower[a] - insert.part->origin[a];

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
-#include "edit/mean_length.hpp"
 #include "edit/point_kind.hpp"
 #include "edit/points.hpp"
 #include "exec/this_space.hpp"
 #include "exec/typed_buffer.hpp"
 #include "octree/frame.hpp"
+#include "poisson/mean_length.hpp"
+#include "reconstruct/mesh_of_field.hpp"
 #include "reconstruct/within_envelope.hpp"
 
 namespace pointskin::edit {
@@ -53,7 +54,7 @@ std::shared_ptr<State> make_base(Exec& ex, const Settings& settings, const Cloud
   const Options& options = settings.options.reconstruction;
   auto state = std::make_shared<State>();
   PointBuffers points = detail::upload(ex, base);
-  points.attributes = detail::upload_attributes(ex, base, options);
+  if (options.attributes) points.attributes = detail::upload_attributes(ex, base);
   RunReport unused;
   state->field = fit_field(ex, points, {.keep_points = true, .envelope = settings.envelope, .keep_samples = true},
                            options, unused);
@@ -112,7 +113,7 @@ Beginning begin_session(Exec& ex, const Cloud& base, const EditOptions& options)
   settings.envelope = detail::make_envelope(ex, reconstruction, base.origin);
   std::shared_ptr<State> state = make_base(ex, settings, base);
   settings.base_box = octree::box_around(ex, state->points.positions.cview());
-  if (reconstruction.confidence) settings.normal_length = mean_length(ex, state->points.normals.cview());
+  if (reconstruction.confidence) settings.normal_length = poisson::mean_length(ex, state->points.normals.cview());
   extract(ex, settings, *state);
   return {std::move(settings), std::move(state)};
 }

@@ -82,7 +82,9 @@ class FluidEngineOn final : public FluidEngine {
   }
 
   void upload_values(const Cloud& cloud, fluid::Particles& particles) {
-    const std::vector<std::string> names = kept_names(cloud.attributes, false, false);
+    std::vector<std::string> given;
+    for (const Attribute& attribute : cloud.attributes) given.push_back(attribute.name);
+    const std::vector<std::string> names = kept_names(given, false, false);
     for (std::size_t a = 0; a < names.size(); ++a) {
       const Attribute& from = cloud.attributes[a];
       const auto n = static_cast<std::int64_t>(from.values.size());

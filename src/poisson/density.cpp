@@ -5,6 +5,7 @@
 
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
+#include "poisson/mean_length.hpp"
 
 namespace pointskin::poisson {
 namespace {
@@ -74,19 +75,6 @@ PSK_HD double length_of(const Vec3f& n) {
   const double y = n.y;
   const double z = n.z;
   return std::sqrt(x * x + y * y + z * z);
-}
-struct LengthOf {
-  ArrayView<const Vec3f> normals;
-  PSK_HD double operator()(std::int64_t i) const { return length_of(normals[i]); }
-};
-struct Plus {
-  PSK_HD double operator()(double a, double b) const { return a + b; }
-};
-
-template <exec::Space Exec>
-double mean_length(Exec& ex, ArrayView<const Vec3f> normals) {
-  return exec::reduce<double>(ex, "density.confidence", normals.size, LengthOf{normals}, Plus{}) /
-         static_cast<double>(normals.size);
 }
 struct RelativeLength {
   ArrayView<const Vec3f> normals;

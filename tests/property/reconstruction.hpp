@@ -81,7 +81,7 @@ inline void expect_distance_to_unit_sphere(const Field& field, double radius, do
   for (int i = 0; i < 200; ++i) {
     const Vec3d d = random.direction();
     const double r = random.in(radius - band, radius + band);
-    EXPECT_NEAR(field.values({{r * d[0], r * d[1], r * d[2]}})[0], (1 - r) / cell, 0.1);
+    EXPECT_NEAR(field.values(std::vector<Vec3d>{{r * d[0], r * d[1], r * d[2]}})[0], (1 - r) / cell, 0.1);
   }
 }
 

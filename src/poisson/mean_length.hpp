@@ -6,10 +6,10 @@
 #include "core/array_view.hpp"
 #include "exec/space.hpp"
 
-namespace pointskin::edit {
+namespace pointskin::poisson {
 
 /// Shape (n), n > 0. O(n), one wait. The same bits on every device.
 template <exec::Space Exec>
 double mean_length(Exec& ex, ArrayView<const Vec3f> normals);
 
-}  // namespace pointskin::edit
+}  // namespace pointskin::poisson

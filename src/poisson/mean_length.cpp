@@ -1,10 +1,10 @@
-#include "edit/mean_length.hpp"
+#include "poisson/mean_length.hpp"
 
 #include <cmath>
 
 #include "exec/this_space.hpp"
 
-namespace pointskin::edit {
+namespace pointskin::poisson {
 namespace {
 
 struct LengthOf {
@@ -23,10 +23,10 @@ struct Add {
 
 template <exec::Space Exec>
 double mean_length(Exec& ex, ArrayView<const Vec3f> normals) {
-  return exec::reduce<double>(ex, "edit.length", normals.size, LengthOf{normals}, Add{}) /
+  return exec::reduce<double>(ex, "density.confidence", normals.size, LengthOf{normals}, Add{}) /
          static_cast<double>(normals.size);
 }
 
 PSK_INSTANTIATE(mean_length);
 
-}  // namespace pointskin::edit
+}  // namespace pointskin::poisson

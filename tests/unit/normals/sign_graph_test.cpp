@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "exec/algorithms.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "normals/estimate_normals.hpp"
 #include "normals/likely_signs.hpp"

@@ -81,18 +81,14 @@ void resample_and_map(Exec& ex, const PreparedDeformation& prepared, MovingCloud
   clock.read();
 }
 
-/// The mesh of `points`, which are the samples. Calls `put_back` as soon as the fit needs them no longer.
-template <exec::Space Exec, class PutBack>
-void make_mesh(Exec& ex, const MovingCloud& moving, PointBuffers& points, const PutBack& put_back, Mesh& mesh,
-               RunReport& report) {
-  const Options& options = moving.options;
-  if (options.attributes)
+/// Of the samples as they are now, with their names.
+template <exec::Space Exec>
+std::vector<detail::AttributeBuffer> mesh_attributes(Exec& ex, const MovingCloud& moving) {
+  std::vector<detail::AttributeBuffer> attributes;
+  if (moving.options.attributes)
     for (std::size_t a = 0; a < moving.rest.attributes.size(); ++a)
-      points.attributes.push_back({moving.rest.attributes[a].name, attribute_of(ex, moving, a)});
-  detail::FieldData field = fit_field(ex, points, {.keep_points = true, .envelope = moving.envelope}, options, report);
-  put_back();
-  announce(options.progress, "extract", 0.8);
-  extract_and_release(ex, field, options, moving.rest.origin, mesh, report);
+      attributes.push_back({moving.rest.attributes[a].name, attribute_of(ex, moving, a)});
+  return attributes;
 }
 
 }  // namespace
@@ -144,7 +140,14 @@ void reconstruct(Exec& ex, MovingCloud& moving, Mesh& mesh, DeformReport& report
     samples.normals = std::move(points.normals);
   };
   try {
-    make_mesh(ex, moving, points, put_back, mesh, report.run);
+    const Options& options = moving.options;
+    points.attributes = mesh_attributes(ex, moving);
+    detail::FieldData field =
+        fit_field(ex, points, {.keep_points = true, .envelope = moving.envelope}, options, report.run);
+    put_back();
+    if (options.progress && !options.progress({"extract", 0.8}))
+      throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
+    extract_and_release(ex, field, options, moving.rest.origin, mesh, report.run);
   } catch (...) {
     if (samples.positions.empty()) put_back();
     throw;

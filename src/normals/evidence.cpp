@@ -2,6 +2,7 @@
 
 #include "core/double3.hpp"
 #include "exec/this_space.hpp"
+#include "normals/arrays.hpp"
 #include "octree/frame.hpp"
 
 namespace pointskin::normals {
@@ -54,13 +55,6 @@ struct GivenSide {
   }
 };
 
-template <class T, exec::Space Exec>
-exec::Buffer<T> on_device(Exec& ex, const std::vector<T>& from) {
-  auto to = exec::make_buffer<T>(ex, static_cast<std::int64_t>(from.size()));
-  copy_to_device(ex, from.data(), to.view());
-  return to;
-}
-
 }  // namespace
 
 template <exec::Space Exec>
@@ -73,8 +67,8 @@ exec::Buffer<std::int32_t> find_evidence(Exec& ex, const PreparedCloud& points, 
     for_each(ex, "normals.given", n, GivenSide{points.given.cview(), lines, evidence.view()});
     return evidence;
   }
-  const exec::Buffer<Vec3d> sensors = on_device(ex, views.sensors);
-  const exec::Buffer<Vec3f> towards = on_device(ex, views.towards);
+  const exec::Buffer<Vec3d> sensors = to_device(ex, views.sensors);
+  const exec::Buffer<Vec3f> towards = to_device(ex, views.towards);
   for_each(ex, "normals.seen", n,
            SeenFrom{points.frame, points.positions.cview(), lines, points.order.cview(), sensors.cview(),
                     towards.cview(), evidence.view()});

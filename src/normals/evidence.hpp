@@ -1,4 +1,4 @@
-// What the input says of the side of single points.
+// What the input says of sides.
 #pragma once
 
 #include <pointskin/normals.hpp>
@@ -22,8 +22,17 @@ struct Views {
   [[nodiscard]] bool empty() const { return sensors.empty() && towards.empty(); }
 };
 
-/// Which sign of its line speaks for every point: 1, -1, or 0 where the input says nothing; shape (n). Empty unless the
-/// method is repair (which asks the given normals) or sensor.
+/// What the input says of signs.
+struct Evidence {
+  ArrayView<const std::int32_t> signs;  ///< (n) 1, -1 or 0: which sign of the line it speaks for; empty: of none
+  double typical = 0;                   ///< unless 0, lines have their likely signs (LikelySigns)
+  bool may_be_inside_out = false;       ///< all signs of a closed part may be wrong
+
+  /// The input knows more than neighbours do.
+  [[nodiscard]] bool is_certain() const { return typical > 1; }
+};
+
+/// Evidence::signs, of given normals for the method repair and of views for the method sensor; else empty.
 /// @param lines  (n) unit length, of any sign
 template <exec::Space Exec>
 exec::Buffer<std::int32_t> find_evidence(Exec& ex, const PreparedCloud& points, ArrayView<const Vec3f> lines,

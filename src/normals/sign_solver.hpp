@@ -13,7 +13,9 @@
 
 #include "core/stopwatch.hpp"
 #include "exec/algorithms.hpp"
+#include "normals/arrays.hpp"
 #include "normals/disjoint_sets.hpp"
+#include "normals/evidence.hpp"
 #include "normals/judge.hpp"
 #include "normals/sign_graph.hpp"
 #include "normals/sign_kernels.hpp"
@@ -30,16 +32,6 @@ inline constexpr std::size_t kJudgedPatches = 14;
 
 /// Signs of samples that the field or the neighbours turn are settled when fewer than this share change in a round.
 inline constexpr double kSettled = 0.001;
-
-/// What the input says of signs.
-struct Evidence {
-  ArrayView<const std::int32_t> signs;  ///< (n) 1, -1 or 0: which sign of the line it speaks for; empty: of none
-  double typical = 0;                   ///< unless 0, lines have their likely signs (LikelySigns)
-  bool may_be_inside_out = false;       ///< all signs of a closed part may be wrong
-
-  /// The input knows more than neighbours do.
-  [[nodiscard]] bool is_certain() const { return typical > 1; }
-};
 
 template <exec::Space Exec>
 class SignSolver {
@@ -82,24 +74,6 @@ class SignSolver {
   [[nodiscard]] const exec::Buffer<float>& confidence() const { return confidence_; }
 
  private:
-  template <class T>
-  std::vector<T> to_host(const exec::Buffer<T>& buffer) {
-    std::vector<T> out(static_cast<std::size_t>(buffer.size()));
-    copy_to_host(ex_, buffer.cview(), out.data());
-    return out;
-  }
-  template <class T>
-  exec::Buffer<T> to_device(const std::vector<T>& values) {
-    auto out = exec::make_buffer<T>(ex_, static_cast<std::int64_t>(values.size()));
-    copy_to_device(ex_, values.data(), out.view());
-    return out;
-  }
-  exec::Buffer<std::uint64_t> zeros(std::int64_t n) {
-    auto out = exec::make_buffer<std::uint64_t>(ex_, n);
-    exec::fill(ex_, out.view(), std::uint64_t{0});
-    return out;
-  }
-
   /// Components of patches, with the less sure votes.
   void join_patches() {
     SignPatches upper;
@@ -113,15 +87,15 @@ class SignSolver {
     upper.votes = std::move(patches_.votes);
     merge_patches(ex_, {0, 0, evidence_.typical}, upper);
     report_.components = upper.count;
-    components_ = to_host(upper.labels);
-    const std::vector<std::int32_t> signs = to_host(upper.signs);
+    components_ = to_host(ex_, upper.labels);
+    const std::vector<std::int32_t> signs = to_host(ex_, upper.signs);
     patch_signs_.assign(signs.begin(), signs.end());
-    sizes_ = to_host(patches_.sizes);
+    sizes_ = to_host(ex_, patches_.sizes);
   }
 
   void compose(const std::vector<int>& patch_signs) {
     const exec::Buffer<std::int32_t> on_device =
-        to_device(std::vector<std::int32_t>(patch_signs.begin(), patch_signs.end()));
+        to_device(ex_, std::vector<std::int32_t>(patch_signs.begin(), patch_signs.end()));
     for_each(ex_, "normals.compose", signs_.size(),
              signs::ComposeSigns{patches_.labels.cview(), patches_.signs.cview(), on_device.cview(), signs_.view()});
   }
@@ -136,12 +110,12 @@ class SignSolver {
   };
   /// Of samples, for the sign within their patch.
   std::vector<Votes> votes_of_patches(ArrayView<const std::int32_t> votes) {
-    const exec::Buffer<std::uint64_t> net = zeros(patches_.count);
-    const exec::Buffer<std::uint64_t> gross = zeros(patches_.count);
+    const exec::Buffer<std::uint64_t> net = zeros(ex_, patches_.count);
+    const exec::Buffer<std::uint64_t> gross = zeros(ex_, patches_.count);
     for_each(ex_, "normals.votes", votes.size,
              signs::CountVotes{patches_.labels.cview(), patches_.signs.cview(), votes, net.data(), gross.data()});
-    const std::vector<std::uint64_t> nets = to_host(net);
-    const std::vector<std::uint64_t> all = to_host(gross);
+    const std::vector<std::uint64_t> nets = to_host(ex_, net);
+    const std::vector<std::uint64_t> all = to_host(ex_, gross);
     std::vector<Votes> out(nets.size());
     for (std::size_t c = 0; c < out.size(); ++c)
       out[c] = {static_cast<std::int64_t>(nets[c]), static_cast<std::int64_t>(all[c])};
@@ -193,12 +167,12 @@ class SignSolver {
   std::vector<SetSums> measure(const TrialField<Exec>& trial, ArrayView<const std::int32_t> signs,
                                const std::vector<std::int32_t>& sets, std::size_t count) {
     constexpr int kSums = signs::MeasureSets::kSums;
-    const exec::Buffer<std::int32_t> on_device = to_device(sets);
-    const exec::Buffer<std::uint64_t> sums = zeros(kSums * static_cast<std::int64_t>(count));
+    const exec::Buffer<std::int32_t> on_device = to_device(ex_, sets);
+    const exec::Buffer<std::uint64_t> sums = zeros(ex_, kSums * static_cast<std::int64_t>(count));
     for_each(ex_, "normals.measure", signs.size,
              signs::MeasureSets{trial.view(), lines_.positions, lines_.normals, trial.areas(), signs,
                                 patches_.labels.cview(), on_device.cview(), sums.data()});
-    const std::vector<std::uint64_t> all = to_host(sums);
+    const std::vector<std::uint64_t> all = to_host(ex_, sums);
     std::vector<SetSums> out(count);
     for (std::size_t s = 0; s < count; ++s)
       out[s] = {signs::from_fixed_point(all[kSums * s]), signs::from_fixed_point(all[kSums * s + 1]),
@@ -280,7 +254,7 @@ class SignSolver {
   }
 
   signs::ComposeSigns with_signs(const std::vector<int>& patch_signs, exec::Buffer<std::int32_t>& out) {
-    kept_signs_ = to_device(std::vector<std::int32_t>(patch_signs.begin(), patch_signs.end()));
+    kept_signs_ = to_device(ex_, std::vector<std::int32_t>(patch_signs.begin(), patch_signs.end()));
     return {patches_.labels.cview(), patches_.signs.cview(), kept_signs_.cview(), out.view()};
   }
 

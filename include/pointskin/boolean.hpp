@@ -5,9 +5,9 @@
 #include <memory>
 
 #include <pointskin/cloud.hpp>
-#include <pointskin/device.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin {
 
@@ -87,7 +87,7 @@ struct BooleanResult {
 class Booleans {
  public:
   /// @throws Error device_unavailable if the device does not answer, usage for a negative number of threads
-  explicit Booleans(Device device = Device::automatic());
+  explicit Booleans(Workspace workspace = {});
   ~Booleans();
   Booleans(Booleans&&) noexcept;
   Booleans& operator=(Booleans&&) noexcept;

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
-#include <pointskin/device.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/vector.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin {
 
@@ -145,7 +145,7 @@ class Deformer {
   /// Uploads `rest` and fits its field once; strays are left out unless Options::keep_strays. `options` hold for every
   /// frame. Costs a reconstruction.
   /// @throws Error as Reconstructor::solve; max_memory_bytes is compared with the estimate for two fields
-  explicit Deformer(const Cloud& rest, const Options& options = {}, Device device = Device::automatic());
+  explicit Deformer(const Cloud& rest, const Options& options = {}, Workspace workspace = {});
   ~Deformer();
   Deformer(Deformer&&) noexcept;
   Deformer& operator=(Deformer&&) noexcept;

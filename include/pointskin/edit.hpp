@@ -11,9 +11,9 @@
 
 #include <pointskin/camera.hpp>
 #include <pointskin/cloud.hpp>
-#include <pointskin/device.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin {
 
@@ -103,7 +103,7 @@ class EditSession {
  public:
   /// Uploads and reconstructs the base cloud.
   /// @throws Error as Reconstructor::reconstruct, usage if an edit option is out of range
-  explicit EditSession(const Cloud& base, const EditOptions& options = {}, const Device& device = Device::automatic());
+  explicit EditSession(const Cloud& base, const EditOptions& options = {}, Workspace workspace = {});
   ~EditSession();
   EditSession(EditSession&&) noexcept;
   EditSession& operator=(EditSession&&) noexcept;
@@ -135,7 +135,6 @@ class EditSession {
   class Impl;
 
  private:
-  Device device_;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
-#include <pointskin/device.hpp>
 #include <pointskin/progress.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/warning.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin {
 
@@ -73,7 +73,7 @@ struct NormalReport {
 class NormalEstimator {
  public:
   /// @throws Error device_unavailable, usage as Reconstructor
-  explicit NormalEstimator(Device device = Device::automatic());
+  explicit NormalEstimator(Workspace workspace = {});
   ~NormalEstimator();
   NormalEstimator(NormalEstimator&&) noexcept;
   NormalEstimator& operator=(NormalEstimator&&) noexcept;

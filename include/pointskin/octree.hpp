@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include <pointskin/device.hpp>
 #include <pointskin/vector.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin {
 
@@ -77,7 +77,7 @@ class Octree {
   ///         device_unavailable
   /// O(n + nodes log nodes). Integers only after the points are scaled: the same tree on every device.
   static Octree build(std::span<const Vec3f> positions, const OctreeOptions& options = {},
-                      const Device& device = Device::automatic());
+                      const Workspace& workspace = {});
 
   [[nodiscard]] int depth() const;
   [[nodiscard]] std::int64_t points() const;

@@ -31,12 +31,10 @@ void check(const BooleanOptions& options) {
 
 class Booleans::Impl {
  public:
-  explicit Impl(const Device& device) : space(device) {}
-
-  exec::AnySpace space;
+  Workspace workspace;
 };
 
-Booleans::Booleans(Device device) : impl_(std::make_unique<Impl>(device)) {}
+Booleans::Booleans(Workspace workspace) : impl_(std::make_unique<Impl>(Impl{std::move(workspace)})) {}
 Booleans::~Booleans() = default;
 Booleans::Booleans(Booleans&&) noexcept = default;
 Booleans& Booleans::operator=(Booleans&&) noexcept = default;
@@ -44,7 +42,8 @@ Booleans& Booleans::operator=(Booleans&&) noexcept = default;
 BooleanResult Booleans::combine(BooleanOperand a, BooleanOperand b, BooleanOp op, const BooleanOptions& options) {
   check(options);
   const Stopwatch watch;
-  BooleanResult result = exec::visit(impl_->space, [&](auto& ex) { return boolean::combine(ex, a, b, op, options); });
+  BooleanResult result =
+      exec::visit(impl_->workspace.data().space, [&](auto& ex) { return boolean::combine(ex, a, b, op, options); });
   result.report.total_ms = watch.milliseconds();
   return result;
 }

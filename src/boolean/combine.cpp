@@ -10,6 +10,7 @@
 #include "boolean/crease.hpp"
 #include "boolean/keep_apart.hpp"
 #include "boolean/set_operation.hpp"
+#include "core/announce.hpp"
 #include "exec/this_space.hpp"
 #include "field/surface_distance.hpp"
 #include "mesh/oriented_samples.hpp"
@@ -130,8 +131,7 @@ class Combination {
       keep_apart(first.field, second.field, steepness, options.reconstruction.domain_faces, field, report);
     first = {};
     second = {};
-    if (part.progress && !part.progress({"extract", 0.8}))
-      throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
+    announce(part.progress, "extract", 0.8);
     extract_and_release(ex_, field, options.reconstruction, origin_, result.mesh, report.result);
     report.device_peak_bytes = ex_.pool()->peak_bytes();
     return result;

@@ -21,38 +21,38 @@ void check_memory(const Cloud& rest, const Options& options, const Device& devic
                             needed / 1'000'000, options.max_memory_bytes / 1'000'000));
 }
 
-exec::AnySpace checked_space(const Cloud& rest, const Options& options, const Device& device) {
+const Cloud& checked(const Cloud& rest, const Options& options, const Device& device) {
   detail::validate_settled(options);
   check_memory(rest, options, device);
-  return exec::AnySpace(device);
+  return rest;
 }
 
 }  // namespace
 
 class Deformer::Impl {
  public:
-  Impl(const Cloud& rest, const Options& options, const Device& on)
-      : device(on),
-        points(rest.size()),
-        space(checked_space(rest, options, on)),
-        moving(exec::visit(space, [&](auto& ex) { return deform::start(ex, rest, options, report); })) {}
+  Impl(const Cloud& rest, const Options& options, Workspace in)
+      : workspace(std::move(in)),
+        points(checked(rest, options, workspace.device()).size()),
+        moving(
+            exec::visit(workspace.data().space, [&](auto& ex) { return deform::start(ex, rest, options, report); })) {}
 
-  Device device;
+  Workspace workspace;
   std::int64_t points;
   DeformReport report;
-  exec::AnySpace space;
   deform::MovingCloud moving;
 };
 
-Deformer::Deformer(const Cloud& rest, const Options& options, Device device)
-    : impl_(std::make_unique<Impl>(rest, options, device)) {}
+Deformer::Deformer(const Cloud& rest, const Options& options, Workspace workspace)
+    : impl_(std::make_unique<Impl>(rest, options, std::move(workspace))) {}
 Deformer::~Deformer() = default;
 Deformer::Deformer(Deformer&&) noexcept = default;
 Deformer& Deformer::operator=(Deformer&&) noexcept = default;
 
 void Deformer::deform(const Deformation& deformation) {
   validate(deformation, impl_->points);
-  exec::visit(impl_->space, [&](auto& ex) { deform::apply(ex, deformation, impl_->moving, impl_->report); });
+  exec::visit(impl_->workspace.data().space,
+              [&](auto& ex) { deform::apply(ex, deformation, impl_->moving, impl_->report); });
 }
 
 Mesh Deformer::reconstruct() {
@@ -62,18 +62,20 @@ Mesh Deformer::reconstruct() {
 }
 
 void Deformer::reconstruct(Mesh& mesh) {
-  exec::visit(impl_->space, [&](auto& ex) { deform::reconstruct(ex, impl_->moving, mesh, impl_->report); });
+  exec::visit(impl_->workspace.data().space,
+              [&](auto& ex) { deform::reconstruct(ex, impl_->moving, mesh, impl_->report); });
 }
 
 Cloud Deformer::cloud() const {
-  return exec::visit(impl_->space, [&](auto& ex) { return deform::copy_cloud(ex, impl_->moving); });
+  return exec::visit(impl_->workspace.data().space, [&](auto& ex) { return deform::copy_cloud(ex, impl_->moving); });
 }
 
 SpacingRatios Deformer::spacing() const {
-  return exec::visit(impl_->space, [&](auto& ex) { return deform::measure_spacing(ex, impl_->moving); });
+  return exec::visit(impl_->workspace.data().space,
+                     [&](auto& ex) { return deform::measure_spacing(ex, impl_->moving); });
 }
 
 const DeformReport& Deformer::report() const { return impl_->report; }
-const Device& Deformer::device() const { return impl_->device; }
+const Device& Deformer::device() const { return impl_->workspace.device(); }
 
 }  // namespace pointskin

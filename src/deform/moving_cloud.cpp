@@ -145,8 +145,7 @@ void reconstruct(Exec& ex, MovingCloud& moving, Mesh& mesh, DeformReport& report
     detail::FieldData field =
         fit_field(ex, points, {.keep_points = true, .envelope = moving.envelope}, options, report.run);
     put_back();
-    if (options.progress && !options.progress({"extract", 0.8}))
-      throw Error(ErrorCode::interrupted, "cancelled before the phase \"extract\"");
+    announce(options.progress, "extract", 0.8);
     extract_and_release(ex, field, options, moving.rest.origin, mesh, report.run);
   } catch (...) {
     if (samples.positions.empty()) put_back();

@@ -21,11 +21,11 @@ void require(bool holds, const char* story) {
   if (!holds) throw Error(ErrorCode::usage, story);
 }
 
-exec::AnySpace checked_space(const EditOptions& options, const Device& device) {
+const EditOptions& checked(const EditOptions& options) {
   detail::validate_settled(options.reconstruction);
   require(options.reconstruction.offset == 0, "option offset must be 0 in an editing session");
   require(options.states_kept >= 1, "option states_kept must be at least 1");
-  return exec::AnySpace(device);
+  return options;
 }
 
 /// Components, genus and Euler number. O(t log t), on the host.
@@ -41,13 +41,16 @@ Topology topology_of(const Mesh& mesh, int threads) {
 /// The history of a session.
 class EditSession::Impl {
  public:
-  Impl(const Cloud& base, const EditOptions& options, const Device& device) : space_(checked_space(options, device)) {
-    edit::Beginning beginning = exec::visit(space_, [&](auto& ex) { return edit::begin_session(ex, base, options); });
+  Impl(const Cloud& base, const EditOptions& options, Workspace workspace) : workspace_(std::move(workspace)) {
+    edit::Beginning beginning =
+        exec::visit(space(), [&](auto& ex) { return edit::begin_session(ex, base, checked(options)); });
     settings_ = std::move(beginning.settings);
     states_.push_back(std::move(beginning.state));
     show(*states_.front());
     base_topology_ = topology({});
   }
+
+  [[nodiscard]] const Device& device() const { return workspace_.device(); }
 
   const StepReport& apply(const Operation& operation) {
     StepReport report;
@@ -97,7 +100,7 @@ class EditSession::Impl {
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
 
   [[nodiscard]] Cloud cloud() const {
-    return exec::visit(space_, [&](auto& ex) { return edit::copy_cloud(ex, settings_, *states_[done_]); });
+    return exec::visit(space(), [&](auto& ex) { return edit::copy_cloud(ex, settings_, *states_[done_]); });
   }
 
  private:
@@ -107,18 +110,18 @@ class EditSession::Impl {
   };
 
   void show(const edit::State& state) {
-    exec::visit(space_, [&](auto& ex) { edit::show(ex, settings_, state, mesh_); });
+    exec::visit(space(), [&](auto& ex) { edit::show(ex, settings_, state, mesh_); });
   }
 
   edit::SharedState make_next(const edit::SharedState& before, const Operation& operation, StepReport& report) const {
     edit::validate(operation);
-    return exec::visit(space_, [&](auto& ex) { return edit::make_next(ex, settings_, before, operation, report); });
+    return exec::visit(space(), [&](auto& ex) { return edit::make_next(ex, settings_, before, operation, report); });
   }
 
   /// Of the mesh, or what is known where the options want none.
   [[nodiscard]] Topology topology(const Topology& known) const {
     if (!settings_.options.topology) return known;
-    return topology_of(mesh_, exec::visit(space_, [](auto& ex) { return ex.host_threads(); }));
+    return topology_of(mesh_, exec::visit(space(), [](auto& ex) { return ex.host_threads(); }));
   }
 
   /// Makes this state the present one; makes it again if it has been forgotten.
@@ -133,7 +136,9 @@ class EditSession::Impl {
       if (i + kept <= done_ || i >= done_ + kept) states_[i] = nullptr;
   }
 
-  exec::AnySpace space_;
+  [[nodiscard]] const exec::AnySpace& space() const { return workspace_.data().space; }
+
+  Workspace workspace_;
   edit::Settings settings_;
   Topology base_topology_;
   std::vector<Step> steps_;                ///< done and undone
@@ -142,8 +147,8 @@ class EditSession::Impl {
   Mesh mesh_;  ///< of the present state
 };
 
-EditSession::EditSession(const Cloud& base, const EditOptions& options, const Device& device)
-    : device_(device), impl_(std::make_unique<Impl>(base, options, device)) {}
+EditSession::EditSession(const Cloud& base, const EditOptions& options, Workspace workspace)
+    : impl_(std::make_unique<Impl>(base, options, std::move(workspace))) {}
 EditSession::~EditSession() = default;
 EditSession::EditSession(EditSession&&) noexcept = default;
 EditSession& EditSession::operator=(EditSession&&) noexcept = default;
@@ -155,6 +160,6 @@ std::vector<Operation> EditSession::operations() const { return impl_->operation
 std::vector<StepReport> EditSession::steps() const { return impl_->steps(); }
 const Mesh& EditSession::mesh() const { return impl_->mesh(); }
 Cloud EditSession::cloud() const { return impl_->cloud(); }
-const Device& EditSession::device() const { return device_; }
+const Device& EditSession::device() const { return impl_->device(); }
 
 }  // namespace pointskin

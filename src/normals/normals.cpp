@@ -83,14 +83,11 @@ NormalMethod chosen_method(const Cloud& cloud, const normals::Views& views, Norm
 
 class NormalEstimator::Impl {
  public:
-  explicit Impl(const Device& on) : device(on), space(on) {}
-
-  Device device;
-  exec::AnySpace space;
+  Workspace workspace;
   NormalReport report;
 };
 
-NormalEstimator::NormalEstimator(Device device) : impl_(std::make_unique<Impl>(device)) {}
+NormalEstimator::NormalEstimator(Workspace workspace) : impl_(std::make_unique<Impl>(Impl{std::move(workspace), {}})) {}
 NormalEstimator::~NormalEstimator() = default;
 NormalEstimator::NormalEstimator(NormalEstimator&&) noexcept = default;
 NormalEstimator& NormalEstimator::operator=(NormalEstimator&&) noexcept = default;
@@ -105,12 +102,12 @@ void NormalEstimator::orient(Cloud& cloud, const NormalOptions& options) {
   NormalReport& report = impl_->report;
   report = {};
   report.method = settled.method;
-  exec::visit(impl_->space, [&](auto& ex) { normals::orient(ex, cloud, views, settled, report); });
+  exec::visit(impl_->workspace.data().space, [&](auto& ex) { normals::orient(ex, cloud, views, settled, report); });
   report.total_ms = watch.milliseconds();
 }
 
 const NormalReport& NormalEstimator::report() const { return impl_->report; }
-const Device& NormalEstimator::device() const { return impl_->device; }
+const Device& NormalEstimator::device() const { return impl_->workspace.device(); }
 
 std::int64_t estimate_normals_device_bytes(const Cloud& cloud, int threads) {
   constexpr std::int64_t kLinks = 540;   // a point, while patches are made: 370 to 500 measured

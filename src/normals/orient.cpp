@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/announce.hpp"
 #include "core/double3.hpp"
 #include "exec/this_space.hpp"
 #include "normals/estimate_normals.hpp"
@@ -135,11 +136,6 @@ std::string assumption(const NormalReport& report, bool is_certain) {
 }
 
 /// Tells the caller where the run is. @throws Error interrupted if it wants to stop
-void announce(const NormalOptions& options, const char* phase, double fraction) {
-  if (options.progress && !options.progress({phase, fraction}))
-    throw Error(ErrorCode::interrupted, std::string("cancelled before the phase \"") + phase + "\"");
-}
-
 /// @returns the mean vote of links; 0: the evidence says nothing of single points
 template <exec::Space Exec>
 double turn_lines(Exec& ex, const LinkedLines& linked, NormalLines& lines, exec::Buffer<std::int32_t>& evidence) {
@@ -201,7 +197,7 @@ template <exec::Space Exec>
 void orient(Exec& ex, Cloud& cloud, const Views& views, const NormalOptions& options, NormalReport& report) {
   ex.pool()->reset_peak();
   report.points = cloud.size();
-  announce(options, "estimate", 0);
+  announce(options.progress, "estimate", 0);
   detail::PhaseClock clock(ex);
   const PreparedCloud points = prepare_cloud(ex, cloud);
   const octree::SearchView search{points.tree.view(), points.positions.cview(), {}};
@@ -209,7 +205,7 @@ void orient(Exec& ex, Cloud& cloud, const Views& views, const NormalOptions& opt
   NormalLines lines = estimate_lines(ex, search, neighbours.cview());
   clock.lap(report.estimate_ms);
 
-  announce(options, "propagate", 0.3);
+  announce(options.progress, "propagate", 0.3);
   exec::Buffer<std::int32_t> evidence = find_evidence(ex, points, lines.normals.cview(), views, options.method);
   const LinkedLines linked{points.positions.cview(), lines.normals.cview(), lines.flatness.cview(), lines.noise.cview(),
                            neighbours.cview()};
@@ -218,7 +214,7 @@ void orient(Exec& ex, Cloud& cloud, const Views& views, const NormalOptions& opt
   SignSolver<Exec> solver(ex, linked, points.tree, known, options, report);
   solver.propagate();
   clock.lap(report.propagate_ms);
-  announce(options, "iterate", 0.5);
+  announce(options.progress, "iterate", 0.5);
   solver.judge();
   clock.lap(report.iterate_ms);
   write(ex, {points, lines, solver.signs(), solver.confidence()}, options, cloud, report);

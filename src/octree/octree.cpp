@@ -56,14 +56,13 @@ OctreeOwner OctreeLevel::face_owner(std::int32_t cell, int face) const {
 
 Octree::Octree(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
-Octree Octree::build(std::span<const Vec3f> positions, const OctreeOptions& options, const Device& device) {
+Octree Octree::build(std::span<const Vec3f> positions, const OctreeOptions& options, const Workspace& workspace) {
   if (options.depth < 1 || options.depth > octree::kMaxDepth)
     throw Error(ErrorCode::usage, "option depth must be in 1..20");
   if (!(options.scale >= 1 && options.scale <= 100)) throw Error(ErrorCode::usage, "option scale must be in 1..100");
-  const exec::AnySpace space(device);
   octree::BuiltOctree tree =
-      exec::visit(space, [&](auto& ex) { return octree::build_of_points(ex, positions, options); });
-  return Octree(std::make_shared<Impl>(Impl{space, std::move(tree)}));
+      exec::visit(workspace.data().space, [&](auto& ex) { return octree::build_of_points(ex, positions, options); });
+  return Octree(std::make_shared<Impl>(Impl{workspace, std::move(tree)}));
 }
 
 int Octree::depth() const { return impl_->tree.data.depth; }
@@ -72,27 +71,30 @@ Vec3d Octree::cube_lower() const { return impl_->tree.frame.lower; }
 double Octree::cube_size() const { return impl_->tree.frame.size; }
 
 std::vector<std::int32_t> Octree::point_order() const {
-  return exec::visit(impl_->space, [&](auto& ex) { return octree::point_order(ex, impl_->tree); });
+  return exec::visit(impl_->workspace.data().space, [&](auto& ex) { return octree::point_order(ex, impl_->tree); });
 }
 
 std::vector<OctreeLeaf> Octree::locate(std::span<const Vec3f> queries) const {
-  return exec::visit(impl_->space, [&](auto& ex) { return octree::locate_all(ex, impl_->tree, queries); });
+  return exec::visit(impl_->workspace.data().space,
+                     [&](auto& ex) { return octree::locate_all(ex, impl_->tree, queries); });
 }
 
 OctreeLevel Octree::level(int depth) const {
   if (depth < 0 || depth > this->depth()) throw Error(ErrorCode::usage, "the octree has no level of this depth");
-  return exec::visit(impl_->space, [&](auto& ex) { return octree::level_of(ex, impl_->tree, depth); });
+  return exec::visit(impl_->workspace.data().space, [&](auto& ex) { return octree::level_of(ex, impl_->tree, depth); });
 }
 
 OctreeNeighbours Octree::nearest(std::span<const Vec3f> queries, int k) const {
   if (k < 1) throw Error(ErrorCode::usage, "the number of neighbours must be at least 1");
-  return exec::visit(impl_->space, [&](auto& ex) { return octree::nearest(ex, impl_->tree, queries, k); });
+  return exec::visit(impl_->workspace.data().space,
+                     [&](auto& ex) { return octree::nearest(ex, impl_->tree, queries, k); });
 }
 
 OctreeNeighbours Octree::within(std::span<const Vec3f> queries, double radius) const {
   if (!(radius >= 0) || !std::isfinite(radius))
     throw Error(ErrorCode::usage, "the radius must be finite and not negative");
-  return exec::visit(impl_->space, [&](auto& ex) { return octree::within(ex, impl_->tree, queries, radius); });
+  return exec::visit(impl_->workspace.data().space,
+                     [&](auto& ex) { return octree::within(ex, impl_->tree, queries, radius); });
 }
 
 }  // namespace pointskin

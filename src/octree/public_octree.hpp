@@ -52,7 +52,7 @@ namespace pointskin {
 
 class Octree::Impl {
  public:
-  exec::AnySpace space;
+  Workspace workspace;
   octree::BuiltOctree tree;
 };
 

@@ -206,7 +206,7 @@ TEST(Trim, OfAFieldAndWithoutNormalsIsTheSame) {
   const Field field = r.solve(cloud, {.depth = 7});
   expect_same_bytes(field.extract({.trim = 0.05}), expected);
   expect_same_bytes(field.extract({.trim = 0.05}), expected);
-  expect_same_bytes(field.extract(), reconstructed(cloud, {{.depth = 7}}));
+  expect_same_bytes(field.extract(), test::reconstructed(cloud, {{.depth = 7}}));
   const Mesh bare = run(cloud, {{.depth = 7}, {.normals = false, .trim = 0.05}}).mesh;
   EXPECT_TRUE(bare.normals.empty());
   EXPECT_EQ(bare.vertices, expected.vertices);

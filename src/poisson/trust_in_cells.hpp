@@ -6,6 +6,7 @@
 #include "core/array_view.hpp"
 #include "octree/view.hpp"
 #include "poisson/samples.hpp"
+#include "poisson/trust.hpp"
 
 namespace pointskin::poisson {
 

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "arguments.hpp"
-#include "fluid/simulation.hpp"
+#include <pointskin/simulation.hpp>
 
 namespace {
 

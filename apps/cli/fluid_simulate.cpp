@@ -13,7 +13,7 @@
 #include "args.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
-#include "fluid/simulation.hpp"
+#include <pointskin/simulation.hpp>
 #include "frame_files.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"

@@ -1,4 +1,5 @@
-// Points and meshes in the memory of a device: what a program that computes there passes in and gets out without a copy.
+// Points and meshes in the memory of a device: what a program that computes there passes in and gets out without a
+// copy.
 #pragma once
 
 #include <cstdint>
@@ -45,8 +46,8 @@ struct DevicePoints {
 };
 
 /// A mesh in the memory of a workspace's device. A handle that owns its arrays: copies share them, and they live until
-/// the last copy is gone. They are ready in the order of the workspace's stream: work enqueued there after the call that
-/// made the mesh may use them; others wait (Workspace::synchronize). The arrays may be changed by the caller.
+/// the last copy is gone. They are ready in the order of the workspace's stream: work enqueued there after the call
+/// that made the mesh may use them; others wait (Workspace::synchronize). The arrays may be changed by the caller.
 struct DeviceMesh {
   Vec3d origin{0, 0, 0};                    ///< world position of vertex i = origin + vertices[i]
   DeviceSpan<Vec3f> vertices;               ///< shape (v)

@@ -6,9 +6,10 @@
 #include <memory>
 
 #include <pointskin/cloud.hpp>
-#include <pointskin/device.hpp>
+#include <pointskin/device_data.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin {
 
@@ -54,7 +55,7 @@ struct FluidReport {
 class FluidSurfacer {
  public:
   /// @throws Error device_unavailable if the device does not answer, usage for a negative number of threads
-  explicit FluidSurfacer(Device device = Device::automatic());
+  explicit FluidSurfacer(Workspace workspace = {});
   ~FluidSurfacer();
   FluidSurfacer(FluidSurfacer&&) noexcept;
   FluidSurfacer& operator=(FluidSurfacer&&) noexcept;
@@ -72,6 +73,9 @@ class FluidSurfacer {
   /// The same into a mesh of the caller, whose memory is used again.
   /// @throws Error as above; the mesh is then valid but unspecified
   void surface(const Cloud& particles, const FluidOptions& options, Mesh& mesh);
+
+  /// The same from particles in the memory of the workspace's device to a mesh there: neither is copied.
+  DeviceMesh surface(const DevicePoints& particles, const FluidOptions& options);
 
   /// Report of the last frame.
   [[nodiscard]] const FluidReport& report() const;

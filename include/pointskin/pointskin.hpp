@@ -22,6 +22,7 @@
 #include <pointskin/problems.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/render.hpp>
+#include <pointskin/simulation.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/vertex_normals.hpp>
 #include <pointskin/workspace.hpp>

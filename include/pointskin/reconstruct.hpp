@@ -268,8 +268,8 @@ class Reconstructor {
 /// RunReport::device_peak_bytes within 15 %, from the bricks that the octree of these points would have on every level.
 /// With Options::offset it is an upper bound for common shapes, 1.2 to 3 times what is taken.
 /// With PointNormals::automatic it is that of a run whose normals are kept or turned: to doubt and repair them takes
-/// more, and is left undone where Options::max_memory_bytes does not allow it. What a Field of solve() keeps beyond that
-/// (see there) and the host's own copy of the cloud are not in it.
+/// more, and is left undone where Options::max_memory_bytes does not allow it. What a Field of solve() keeps beyond
+/// that (see there) and the host's own copy of the cloud are not in it.
 /// @param threads  CPU threads that count, 0: all
 /// @throws Error usage (an option out of range), over_limit (a level beyond 32-bit node ids)
 /// Takes less memory than it predicts and a fraction of the run's time. O(n log n + nodes log nodes).

@@ -12,9 +12,9 @@ namespace detail {
 struct WorkspaceData;
 }
 
-/// A stream of a device's work and a pool that keeps freed memory for the next run. A cheap handle: copies stand for the
-/// same workspace, which lives as long as any object or array in it. Objects that share one take turns on its stream
-/// and reuse each other's memory; a workspace and all in it belong to one thread at a time.
+/// A stream of a device's work and a pool that keeps freed memory for the next run. A cheap handle: copies stand for
+/// the same workspace, which lives as long as any object or array in it. Objects that share one take turns on its
+/// stream and reuse each other's memory; a workspace and all in it belong to one thread at a time.
 class Workspace {
  public:
   /// A workspace of its own on `device`. Implicit, so that a Device will do where nothing is to be shared.
@@ -22,9 +22,10 @@ class Workspace {
   Workspace(const Device& device = Device::automatic());  // NOLINT(google-explicit-constructor)
 
   /// Work goes to a stream of the caller's.
-  /// @param cuda_stream  a cudaStream_t of the GPU `device`, also the default stream (null). It must live as long as this
-  ///                     workspace and all in it. Work is enqueued there in the order of the calls; where a call returns
-  ///                     results to the host it waits for the stream.
+  /// @param cuda_stream  a cudaStream_t of the GPU `device`, also the default stream (null). It must live as long as
+  /// this
+  ///                     workspace and all in it. Work is enqueued there in the order of the calls; where a call
+  ///                     returns results to the host it waits for the stream.
   /// @throws Error usage unless `device` is a GPU, device_unavailable if it does not answer
   Workspace(const Device& device, void* cuda_stream);
 

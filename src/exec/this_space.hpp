@@ -18,6 +18,8 @@ using ThisSpace = Cpu;
 
 #include "exec/algorithms.hpp"
 
-/// Instantiates a function template, whose first parameter is the space, for the space that this file is compiled for.
-#define PSK_INSTANTIATE(function) \
-  template decltype(function<::pointskin::exec::ThisSpace>) function<::pointskin::exec::ThisSpace>
+/// Instantiates a function template for the space that this file is compiled for, its first parameter; what follows the
+/// name are the others.
+#define PSK_INSTANTIATE(function, ...)                                                    \
+  template decltype(function<::pointskin::exec::ThisSpace __VA_OPT__(, ) __VA_ARGS__>)    \
+      function<::pointskin::exec::ThisSpace __VA_OPT__(, ) __VA_ARGS__>

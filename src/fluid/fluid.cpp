@@ -2,26 +2,44 @@
 #include <pointskin/fluid.hpp>
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "fluid/engine.hpp"
+#include "exec/any_space.hpp"
+#include "fluid/frames.hpp"
+#include "reconstruct/engine.hpp"
+#include "reconstruct/phase_clock.hpp"
 
 namespace pointskin {
 
 class FluidSurfacer::Impl {
  public:
-  explicit Impl(Device where)
-      : device(where),
-        engine(where.kind == DeviceKind::cuda ? detail::make_cuda_fluid_engine(where.index)
-                                              : detail::make_cpu_fluid_engine(where.threads)) {}
+  /// Calls finish(ex, surface, names) in the space.
+  template <class Finish>
+  auto surface(const detail::Input& input, const FluidOptions& options, const Finish& finish) {
+    validate(options);
+    report = {};
+    return exec::visit(workspace.data().space, [&](auto& ex) {
+      ex.pool()->reset_peak();
+      detail::PhaseClock clock(ex);
+      fluid::Frame frame = fluid::load_frame(ex, input, options);
+      clock.lap(report.upload_ms);
+      clock.read();
+      fluid::FluidSurface made = fluid::make_surface(ex, frame.particles, options, report);
+      const std::vector<std::string> names = frame.names();
+      frame = {};
+      return finish(ex, std::move(made), names);
+    });
+  }
 
-  Device device;
-  FluidReport report;
-  std::unique_ptr<detail::FluidEngine> engine;
+  Workspace workspace;
+  FluidReport report{};
 };
 
-FluidSurfacer::FluidSurfacer(Device device) : impl_(std::make_unique<Impl>(device)) {}
+FluidSurfacer::FluidSurfacer(Workspace workspace) : impl_(std::make_unique<Impl>(Impl{std::move(workspace)})) {}
 FluidSurfacer::~FluidSurfacer() = default;
 FluidSurfacer::FluidSurfacer(FluidSurfacer&&) noexcept = default;
 FluidSurfacer& FluidSurfacer::operator=(FluidSurfacer&&) noexcept = default;
@@ -33,12 +51,22 @@ Mesh FluidSurfacer::surface(const Cloud& particles, const FluidOptions& options)
 }
 
 void FluidSurfacer::surface(const Cloud& particles, const FluidOptions& options, Mesh& mesh) {
-  validate(options);
-  impl_->engine->surface(particles, options, mesh, impl_->report);
+  impl_->surface(particles, options, [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
+    fluid::download_surface(ex, std::move(made), names, particles.origin, mesh, impl_->report);
+  });
+}
+
+DeviceMesh FluidSurfacer::surface(const DevicePoints& particles, const FluidOptions& options) {
+  return impl_->surface(
+      particles, options, [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
+        impl_->report.device_peak_bytes = ex.pool()->peak_bytes();
+        return detail::handle_of(impl_->workspace, {std::move(made.mesh), names, std::move(made.values)},
+                                 particles.origin);
+      });
 }
 
 const FluidReport& FluidSurfacer::report() const { return impl_->report; }
-const Device& FluidSurfacer::device() const { return impl_->device; }
+const Device& FluidSurfacer::device() const { return impl_->workspace.device(); }
 
 void validate(const FluidOptions& options) {
   const auto require = [](bool holds, const char* name, double value, const char* range) {

@@ -9,7 +9,7 @@
 #include "exec/typed_buffer.hpp"
 #include "field/attributes.hpp"
 #include "fluid/surface.hpp"
-#include "fluid/vertex_values_impl.hpp"
+#include "fluid/vertex_values.hpp"
 
 namespace pointskin::fluid {
 

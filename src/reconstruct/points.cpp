@@ -138,10 +138,10 @@ exec::Buffer<Vec3f> turned(Exec& ex, const exec::Buffer<Vec3f>& normals) {
   return out;
 }
 
-void require_length(const std::string& name, std::int64_t length, std::int64_t points) {
+void require_length(const std::string& name, std::int64_t length, std::int64_t points, const char* what) {
   if (length != points)
     throw Error(ErrorCode::invalid_input, "the attribute " + name + " has " + std::to_string(length) + " values for " +
-                                              std::to_string(points) + " points");
+                                              std::to_string(points) + " " + what);
 }
 
 }  // namespace
@@ -168,7 +168,7 @@ PointBuffers upload(Exec& ex, const Input& input) {
 }
 
 template <exec::Space Exec>
-std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Input& input) {
+std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Input& input, const char* what) {
   std::vector<AttributeBuffer> attributes;
   if (const DevicePoints* const given = input.points()) {
     for (const DeviceAttribute& from : given->attributes)
@@ -176,7 +176,7 @@ std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Input& input) {
     return attributes;
   }
   for (const Attribute& from : input.cloud()->attributes) {
-    require_length(from.name, static_cast<std::int64_t>(from.values.size()), input.size());
+    require_length(from.name, static_cast<std::int64_t>(from.values.size()), input.size(), what);
     attributes.push_back({from.name, exec::upload_typed(ex, from.values)});
   }
   return attributes;
@@ -185,7 +185,7 @@ std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Input& input) {
 template <exec::Space Exec>
 PointBuffers copy_points(Exec& ex, const Cloud& cloud) {
   PointBuffers points = taken(ex, cloud);
-  points.attributes = upload_attributes(ex, cloud);
+  points.attributes = upload_attributes(ex, cloud, "points");
   return points;
 }
 

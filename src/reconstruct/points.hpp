@@ -36,7 +36,7 @@ struct AttributeBuffer {
 
 /// A cloud in a space, in the caller's order and coordinates.
 struct PointBuffers {
-  exec::Buffer<Vec3f> positions, normals;  ///< of the run, or borrowed: then never written
+  exec::Buffer<Vec3f> positions, normals;     ///< of the run, or borrowed: then never written
   std::vector<AttributeBuffer> attributes{};  ///< those that a mesh is to keep
   exec::Buffer<std::uint8_t>
       added{};  ///< (n) edit/point_kind.hpp; only original points have a say in the isovalue; empty: all are original
@@ -53,8 +53,8 @@ exec::Buffer<T> borrowed(const DeviceSpan<const T>& from) {
 
 inline exec::TypedBuffer borrowed(const DeviceAttribute& from, std::int64_t n) {
   const auto* const bytes = static_cast<const std::uint8_t*>(from.data);
-  exec::TypedBuffer to{from.type, n, borrowed<std::uint8_t>({bytes, n * static_cast<std::int64_t>(size_of(from.type))}),
-                       {}};
+  exec::TypedBuffer to{
+      from.type, n, borrowed<std::uint8_t>({bytes, n * static_cast<std::int64_t>(size_of(from.type))}), {}};
   if (from.missing != nullptr) to.missing = borrowed<std::uint8_t>({from.missing, n});
   return to;
 }
@@ -72,9 +72,10 @@ template <exec::Space Exec>
 PointBuffers upload(Exec& ex, const Input& input);
 
 /// Brings the attributes to the space.
+/// @param what  the points are called in errors
 /// @throws Error invalid_input if an attribute has another length than the points
 template <exec::Space Exec>
-std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Input& input);
+std::vector<AttributeBuffer> upload_attributes(Exec& ex, const Input& input, const char* what = "points");
 
 /// Copies a cloud to the space as it is.
 /// @throws Error invalid_input for an attribute of another length, over_limit

@@ -29,6 +29,7 @@ LAYERS = {
     "deform": SOLVE | {"deform"},
     "boolean": SOLVE | {"boolean"},
     "fluid": SOLVE | {"fluid"},
+    "simulation": SOLVE | {"fluid", "simulation"},  # shows its water by the surfaces of fluid
     "render": {"core", "exec", "octree", "mesh", "render"},
     "problems": {"core", "exec", "mesh", "render", "problems"},
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fluid/simulation.hpp"
+#include <pointskin/simulation.hpp>
 #include "parity/gpu_test.hpp"
 
 namespace pointskin::simulation {

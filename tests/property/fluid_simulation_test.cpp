@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "fluid/simulation.hpp"
+#include <pointskin/simulation.hpp>
 
 namespace pointskin::simulation {
 namespace {

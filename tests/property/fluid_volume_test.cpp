@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fluid/simulation.hpp"
+#include <pointskin/simulation.hpp>
 
 namespace pointskin::simulation {
 namespace {

@@ -7,10 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fluid/band_impl.hpp"
-#include "fluid/particle_tree_impl.hpp"
-#include "fluid/surface.hpp"
-#include "fluid/surface_impl.hpp"
+#include "fluid/sorted_particles.hpp"
 #include "support/particles.hpp"
 #include "support/spaces.hpp"
 
@@ -21,7 +18,7 @@ constexpr std::uint64_t kSeed = 4711;
 
 struct Frame {
   fluid::FluidFrame frame;
-  fluid::make::SortedParticles sorted;
+  fluid::SortedParticles sorted;
   fluid::ZhuBridsonField field;
 };
 
@@ -29,8 +26,8 @@ Frame prepare(exec::Cpu& ex, const Cloud& cloud, const FluidOptions& options) {
   Frame f;
   f.frame = fluid::fit_frame(bounds_of(cloud.positions), options);
   const ArrayView<const Vec3f> positions{cloud.positions.data(), cloud.size()};
-  f.sorted = fluid::make::sort_particles(ex, {positions}, f.frame);
-  f.field = fluid::make::isotropic_field(f.sorted, f.frame, options);
+  f.sorted = fluid::sort_particles(ex, {positions}, f.frame);
+  f.field = fluid::isotropic_field(f.sorted, f.frame, options);
   return f;
 }
 
@@ -69,7 +66,7 @@ TEST(FluidBand, LosesNoCrossingOfADenseGrid) {
       options.cube_size = cube_size;
       const Frame f = prepare(ex, frame.cloud, options);
       if (f.frame.depth > 7) continue;
-      const fluid::Band band = fluid::make::find_isotropic_band(ex, f.sorted, f.frame, options);
+      const fluid::Band band = fluid::find_isotropic_band(ex, f.sorted, f.frame, options);
       const surface::Surface mesh = surface::extract_surface(ex, band.field(), {.curvature = 0, .normals = false});
       EXPECT_EQ(mesh.positions.size(), crossed_edges_of_grid(ex, f.field, f.frame.depth));
     }
@@ -86,9 +83,9 @@ TEST(FluidBand, LosesNoCrossingOfEllipsoids) {
       options.kernel = FluidKernel::anisotropic;
       const Frame f = prepare(ex, frame.cloud, options);
       if (f.frame.depth > 6) continue;
-      const fluid::Ellipsoids ellipsoids = fluid::make::ellipsoids_of(ex, f.sorted, f.frame, options);
-      const fluid::AnisotropicField field = fluid::make::anisotropic_field(ellipsoids, f.frame, options);
-      const fluid::Band band = fluid::make::find_anisotropic_band(ex, field, f.frame, options);
+      const fluid::Ellipsoids ellipsoids = fluid::ellipsoids_of(ex, f.sorted, f.frame, options);
+      const fluid::AnisotropicField field = fluid::anisotropic_field(ellipsoids, f.frame, options);
+      const fluid::Band band = fluid::find_anisotropic_band(ex, field, f.frame, options);
       const surface::Surface mesh = surface::extract_surface(ex, band.field(), {.curvature = 0, .normals = false});
       EXPECT_EQ(mesh.positions.size(), crossed_edges_of_grid(ex, field, f.frame.depth));
       for (std::int64_t i = 0; i < ellipsoids.centres.size(); ++i) {
@@ -106,7 +103,7 @@ TEST(FluidBand, HoldsTheFieldsValuesBitForBit) {
     options.particle_radius = 1;
     options.cube_size = 0.8;
     const Frame f = prepare(ex, frame.cloud, options);
-    const fluid::Band band = fluid::make::find_isotropic_band(ex, f.sorted, f.frame, options);
+    const fluid::Band band = fluid::find_isotropic_band(ex, f.sorted, f.frame, options);
     const octree::LevelView level = band.fine.view();
     for (std::int32_t n = 0; n < level.nodes(); ++n) {
       const octree::Coordinates c = octree::decode(level.node_key(n));
@@ -116,10 +113,10 @@ TEST(FluidBand, HoldsTheFieldsValuesBitForBit) {
                             static_cast<float>(c.z) * width}))
           << n;
     }
-    const fluid::Ellipsoids ellipsoids = fluid::make::ellipsoids_of(ex, f.sorted, f.frame, options);
+    const fluid::Ellipsoids ellipsoids = fluid::ellipsoids_of(ex, f.sorted, f.frame, options);
     options.kernel = FluidKernel::anisotropic;
-    const fluid::AnisotropicField field = fluid::make::anisotropic_field(ellipsoids, f.frame, options);
-    const fluid::Band other = fluid::make::find_anisotropic_band(ex, field, f.frame, options);
+    const fluid::AnisotropicField field = fluid::anisotropic_field(ellipsoids, f.frame, options);
+    const fluid::Band other = fluid::find_anisotropic_band(ex, field, f.frame, options);
     const octree::LevelView fine = other.fine.view();
     for (std::int32_t n = 0; n < fine.nodes(); ++n) {
       const octree::Coordinates c = octree::decode(fine.node_key(n));
@@ -154,7 +151,7 @@ TEST(FluidBand, DoesNotEvaluateWhatIsDeep) {
   options.cube_size = 1;
   const Cloud large = lattice_particles(1, 60, 0.1, kSeed, [](const Vec3d&) { return true; });
   const Frame f = prepare(ex, large, options);
-  const fluid::Band band = fluid::make::find_isotropic_band(ex, f.sorted, f.frame, options);
+  const fluid::Band band = fluid::find_isotropic_band(ex, f.sorted, f.frame, options);
   const double whole = std::pow(122.0 / 2, 3);  // coarse corners in the block, without those around it
   EXPECT_LT(static_cast<double>(band.coarse_corners), 0.8 * whole);
   EXPECT_EQ(band.rounds, 0);

@@ -10,7 +10,7 @@
 #include "exec/cpu.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "fluid/surface.hpp"
-#include "fluid/walls_impl.hpp"
+#include "fluid/walls.hpp"
 
 namespace pointskin::test {
 namespace {

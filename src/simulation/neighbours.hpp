@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "core/array_view.hpp"
-#include "kernels.hpp"
-#include "step.hpp"
+#include "simulation/kernels.hpp"
+#include "simulation/step.hpp"
 
 namespace pointskin::simulation::step {
 

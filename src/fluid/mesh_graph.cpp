@@ -1,4 +1,4 @@
-#pragma once
+#include "fluid/mesh_graph.hpp"
 
 #include <pointskin/error.hpp>
 
@@ -6,13 +6,12 @@
 #include <limits>
 #include <utility>
 
-#include "exec/algorithms.hpp"
 #include "exec/atomic.hpp"
 #include "exec/disjoint_sets.hpp"
-#include "fluid/mesh_graph.hpp"
+#include "exec/this_space.hpp"
 
 namespace pointskin::fluid {
-namespace mesh_graph {
+namespace {
 
 struct CornerKeys {
   ArrayView<const Triangle> triangles;
@@ -183,7 +182,7 @@ struct MoveTriangle {
   }
 };
 
-}  // namespace mesh_graph
+}  // namespace
 
 template <exec::Space Exec>
 Fans find_fans(Exec& ex, ArrayView<const Triangle> triangles, std::int64_t vertices) {
@@ -194,12 +193,12 @@ Fans find_fans(Exec& ex, ArrayView<const Triangle> triangles, std::int64_t verti
   const std::int64_t n = 3 * triangles.size;
   auto keys = exec::make_buffer<std::uint64_t>(ex, n);
   fans.corners = exec::make_buffer<std::int32_t>(ex, n);
-  for_each(ex, kLabel, n, mesh_graph::CornerKeys{triangles, keys.view(), fans.corners.view()});
+  for_each(ex, kLabel, n, CornerKeys{triangles, keys.view(), fans.corners.view()});
   int bits = 1;
   while (std::int64_t{1} << bits < vertices) ++bits;
   sort_pairs(ex, kLabel, keys, fans.corners, bits);
   fans.begin = exec::make_buffer<std::int32_t>(ex, vertices + 1);
-  for_each(ex, kLabel, n + 1, mesh_graph::FindBegins{keys.cview(), fans.begin.view()});
+  for_each(ex, kLabel, n + 1, FindBegins{keys.cview(), fans.begin.view()});
   return fans;
 }
 
@@ -207,11 +206,11 @@ template <exec::Space Exec>
 void smooth(Exec& ex, const Fans& fans, ArrayView<const Triangle> triangles, ArrayView<const float> weights,
             int iterations, exec::Buffer<Vec3f>& positions) {
   auto next = exec::make_buffer<std::int32_t>(ex, fans.corners.size());
-  for_each(ex, "fluid.smooth", next.size(), mesh_graph::FindNext{fans.corners.cview(), triangles, next.view()});
+  for_each(ex, "fluid.smooth", next.size(), FindNext{fans.corners.cview(), triangles, next.view()});
   auto moved = exec::make_buffer<Vec3f>(ex, positions.size());
   for (int i = 0; i < iterations; ++i) {
     for_each(ex, "fluid.smooth", positions.size(),
-             mesh_graph::SmoothVertex{fans.begin.cview(), next.cview(), weights, positions.cview(), moved.view()});
+             SmoothVertex{fans.begin.cview(), next.cview(), weights, positions.cview(), moved.view()});
     positions.swap(moved);
   }
 }
@@ -220,15 +219,13 @@ template <exec::Space Exec>
 exec::Buffer<Vec3f> normals_of(Exec& ex, const Fans& fans, ArrayView<const Triangle> triangles,
                                ArrayView<const Vec3f> positions) {
   auto normals = exec::make_buffer<Vec3f>(ex, positions.size);
-  for_each(
-      ex, "fluid.normals", positions.size,
-      mesh_graph::NormalOfVertex{{fans.begin.cview(), fans.corners.cview(), triangles}, positions, normals.view()});
+  for_each(ex, "fluid.normals", positions.size,
+           NormalOfVertex{{fans.begin.cview(), fans.corners.cview(), triangles}, positions, normals.view()});
   return normals;
 }
 
 template <exec::Space Exec>
 std::int64_t remove_small_components(Exec& ex, int depth, double least_cells, surface::Surface& mesh) {
-  using namespace mesh_graph;
   constexpr const char* kLabel = "fluid.components";
   const int quanta_depth = depth <= 16 ? depth + 4 : 20;  // so that six times the cube's volume fits
   const double per_cell = std::ldexp(1.0, 3 * (quanta_depth - depth));
@@ -259,5 +256,10 @@ std::int64_t remove_small_components(Exec& ex, int depth, double least_cells, su
   mesh = std::move(left);
   return removed;
 }
+
+PSK_INSTANTIATE(find_fans);
+PSK_INSTANTIATE(smooth);
+PSK_INSTANTIATE(normals_of);
+PSK_INSTANTIATE(remove_small_components);
 
 }  // namespace pointskin::fluid

@@ -1,14 +1,19 @@
-#include "simulation.hpp"
+#include <pointskin/simulation.hpp>
 
 #include <pointskin/error.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "engine.hpp"
+#include "core/stopwatch.hpp"
+#include "exec/any_space.hpp"
+#include "fluid/frames.hpp"
+#include "reconstruct/engine.hpp"
+#include "simulation/fluid_state.hpp"
 
 namespace pointskin::simulation {
 namespace {
@@ -60,12 +65,11 @@ void validate(const SimulationOptions& options) {
 
 class Simulation::Impl {
  public:
-  Impl(Scene scene, const SimulationOptions& options, Device device)
-      : scene_(std::move(scene)), options_(options), device_(device) {
+  Impl(Scene scene, const SimulationOptions& options, Workspace workspace)
+      : scene_(std::move(scene)), options_(options), workspace_(std::move(workspace)) {
     validate(options);
     if (scene_.positions.empty() || !(scene_.spacing > 0)) refuse("a scene needs particles and a spacing");
     radius_ = scene_.spacing / kRestSpacing;
-    engine_ = device.kind == DeviceKind::cuda ? make_cuda_engine(device.index) : make_cpu_engine(device.threads);
     settings_.kernel = make_kernel_constants();
     settings_.iterations = options.iterations;
     settings_.warm_start = static_cast<float>(options.warm_start);
@@ -84,12 +88,13 @@ class Simulation::Impl {
     report_ = {};
     settings_.seconds = 0;
     report_.particles = static_cast<std::int64_t>(scene_.positions.size());
-    engine_->start(scene_, radius_);
+    state_ = {};  // its memory is used again
+    state_ = exec::visit(space(), [&](auto& ex) { return start_particles(ex, scene_, radius_); });
     describe();
   }
 
   void step(double seconds, const std::vector<Interaction>& interactions) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     if (!(seconds > 0 && seconds <= 1)) refuse("a frame's seconds must be in (0, 1]");
     set_forces(interactions);
     const int substeps = substeps_for(seconds);
@@ -102,32 +107,58 @@ class Simulation::Impl {
     settings_.seconds = static_cast<float>(part);
     for (int i = 1; i <= substeps; ++i) {
       place_obstacle(report_.seconds + part * i);
-      engine_->substep(settings_);
+      exec::visit(space(), [&](auto& ex) { substep(ex, state_.particles, settings_, state_.grid); });
       settings_.rescale = 1;
     }
     report_.substeps = substeps;
     report_.seconds += seconds;
     ++report_.frame;
     describe();
-    report_.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    report_.ms = watch.milliseconds();
   }
 
-  void surface(FluidOptions options, Mesh& mesh) {
+  void surface(const FluidOptions& given, Mesh& mesh) {
+    const FluidOptions options = settled(given);
+    surface_report_ = {};
+    exec::visit(space(), [&](auto& ex) {
+      fluid::FluidSurface made = surface_of(ex, state_, options, box_, surface_report_);
+      fluid::download_surface(ex, std::move(made), names(options), {}, mesh, surface_report_);
+    });
+  }
+
+  DeviceMesh surface_on_device(const FluidOptions& given) {
+    const FluidOptions options = settled(given);
+    surface_report_ = {};
+    return exec::visit(space(), [&](auto& ex) {
+      fluid::FluidSurface made = surface_of(ex, state_, options, box_, surface_report_);
+      surface_report_.device_peak_bytes = ex.pool()->peak_bytes();
+      return detail::handle_of(workspace_, {std::move(made.mesh), names(options), std::move(made.values)}, {});
+    });
+  }
+
+  [[nodiscard]] const exec::AnySpace& space() const { return workspace_.data().space; }
+
+  Scene scene_;
+  SimulationOptions options_;
+  Workspace workspace_;
+  SimulationReport report_;
+  FluidReport surface_report_;
+  FluidState state_;
+
+ private:
+  [[nodiscard]] FluidOptions settled(FluidOptions options) const {
     if (options.particle_radius == 0) options.particle_radius = 0.5 * double{scene_.spacing};
     if (options.surface_threshold == 0 && options.kernel == FluidKernel::isotropic)
       options.surface_threshold = kSurfaceThreshold;
     pointskin::validate(options);
-    engine_->surface(options, box_, mesh, surface_report_);
+    return options;
   }
 
-  Scene scene_;
-  SimulationOptions options_;
-  Device device_;
-  SimulationReport report_;
-  FluidReport surface_report_;
-  std::unique_ptr<Engine> engine_;
+  static std::vector<std::string> names(const FluidOptions& options) {
+    if (!options.attributes) return {};
+    return {std::begin(kVelocityNames), std::end(kVelocityNames)};
+  }
 
- private:
   void set_forces(const std::vector<Interaction>& interactions) {
     std::vector<Interaction> all = scene_.interactions_at(report_.seconds);
     all.insert(all.end(), interactions.begin(), interactions.end());
@@ -163,7 +194,8 @@ class Simulation::Impl {
   }
 
   void describe() {
-    const Totals totals = engine_->totals(settings_.solids);
+    const Totals totals =
+        exec::visit(space(), [&](auto& ex) { return totals_of(ex, state_.particles, settings_.solids); });
     const double n = static_cast<double>(report_.particles);
     const double radius = radius_;
     const double mass = kWaterDensity * double{scene_.spacing} * scene_.spacing * scene_.spacing;
@@ -182,8 +214,8 @@ class Simulation::Impl {
   Bounds box_;
 };
 
-Simulation::Simulation(Scene scene, const SimulationOptions& options, Device device)
-    : impl_(std::make_unique<Impl>(std::move(scene), options, device)) {}
+Simulation::Simulation(Scene scene, const SimulationOptions& options, Workspace workspace)
+    : impl_(std::make_unique<Impl>(std::move(scene), options, std::move(workspace))) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
@@ -193,13 +225,17 @@ void Simulation::step(double seconds, const std::vector<Interaction>& interactio
 }
 void Simulation::restart() { impl_->start(); }
 void Simulation::surface(const FluidOptions& options, Mesh& mesh) { impl_->surface(options, mesh); }
-ParticleStates Simulation::particles() const { return impl_->engine_->particles(); }
+DeviceMesh Simulation::surface_on_device(const FluidOptions& options) { return impl_->surface_on_device(options); }
+ParticleStates Simulation::particles() const {
+  return exec::visit(impl_->space(), [&](auto& ex) { return copy_particles(ex, impl_->state_); });
+}
 const Scene& Simulation::scene() const { return impl_->scene_; }
 const SimulationOptions& Simulation::options() const { return impl_->options_; }
 const FluidReport& Simulation::surface_report() const { return impl_->surface_report_; }
 const SimulationReport& Simulation::report() const { return impl_->report_; }
-const Device& Simulation::device() const { return impl_->device_; }
+const Workspace& Simulation::workspace() const { return impl_->workspace_; }
+const Device& Simulation::device() const { return impl_->workspace_.device(); }
 double Simulation::particle_radius() const { return 0.5 * double{impl_->scene_.spacing}; }
-std::int64_t Simulation::peak_bytes() const { return impl_->engine_->peak_bytes(); }
+std::int64_t Simulation::peak_bytes() const { return impl_->space().pool()->peak_bytes(); }
 
 }  // namespace pointskin::simulation

@@ -18,7 +18,7 @@
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
 #include "fluid/particle_tree.hpp"
-#include "kernels.hpp"
+#include "simulation/kernels.hpp"
 
 namespace pointskin::simulation {
 

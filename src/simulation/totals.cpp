@@ -1,10 +1,9 @@
-#pragma once
+#include "simulation/step.hpp"
 
-#include "exec/algorithms.hpp"
-#include "step.hpp"
+#include "exec/this_space.hpp"
 
 namespace pointskin::simulation {
-namespace step {
+namespace {
 
 struct AddTotals {
   PSK_HD static float least(float a, float b) { return b < a ? b : a; }
@@ -62,21 +61,24 @@ struct ToWorld {
   }
 };
 
-}  // namespace step
+}  // namespace
 
 template <exec::Space Exec>
 Totals totals_of(Exec& ex, const Particles& particles, const Solids& solids) {
   return exec::reduce<Totals>(
       ex, "simulation.totals", particles.position.size(),
-      step::TotalsOfParticle{particles.position.cview(), particles.velocity.cview(), particles.density.cview(),
-                             particles.neighbours.cview(), solids.tank, lanes_for(particles.position.size())},
-      step::AddTotals{});
+      TotalsOfParticle{particles.position.cview(), particles.velocity.cview(), particles.density.cview(),
+                       particles.neighbours.cview(), solids.tank, lanes_for(particles.position.size())},
+      AddTotals{});
 }
 
 template <exec::Space Exec>
 void to_world(Exec& ex, const Particles& particles, float radius_world, const WorldViews& out) {
   for_each(ex, "simulation.world", particles.position.size(),
-           step::ToWorld{radius_world, particles.position.cview(), particles.velocity.cview(), out});
+           ToWorld{radius_world, particles.position.cview(), particles.velocity.cview(), out});
 }
+
+PSK_INSTANTIATE(totals_of);
+PSK_INSTANTIATE(to_world);
 
 }  // namespace pointskin::simulation

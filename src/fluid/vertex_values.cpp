@@ -1,14 +1,13 @@
-#pragma once
+#include "fluid/vertex_values.hpp"
 
 #include <limits>
 
-#include "exec/algorithms.hpp"
-#include "fluid/vertex_values.hpp"
+#include "exec/this_space.hpp"
 
 namespace pointskin::fluid {
-namespace vertex_values {
+namespace {
 
-inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 struct AverageAtVertex {
   ParticlesView particles;
@@ -101,32 +100,36 @@ struct ToWeight {
   }
 };
 
-}  // namespace vertex_values
+}  // namespace
 
 template <exec::Space Exec>
 void average_at(Exec& ex, const ParticlesView& particles, ArrayView<const Vec3f> vertices, const VertexMeans& means) {
-  for_each(ex, "fluid.attributes", vertices.size, vertex_values::AverageAtVertex{particles, vertices, means});
+  for_each(ex, "fluid.attributes", vertices.size, AverageAtVertex{particles, vertices, means});
 }
 
 template <exec::Space Exec>
 exec::Buffer<std::int32_t> nearest_at(Exec& ex, const ParticlesView& particles, ArrayView<const std::int32_t> order,
                                       ArrayView<const std::uint8_t> missing, ArrayView<const Vec3f> vertices) {
   auto out = exec::make_buffer<std::int32_t>(ex, vertices.size);
-  for_each(ex, "fluid.labels", vertices.size,
-           vertex_values::NearestAtVertex{particles, order, missing, vertices, out.view()});
+  for_each(ex, "fluid.labels", vertices.size, NearestAtVertex{particles, order, missing, vertices, out.view()});
   return out;
 }
 
 template <exec::Space Exec>
 exec::Buffer<float> crowding(Exec& ex, const ParticlesView& particles) {
   auto out = exec::make_buffer<float>(ex, particles.positions.size);
-  for_each(ex, "fluid.crowding", out.size(), vertex_values::CrowdingOf{particles, out.view()});
+  for_each(ex, "fluid.crowding", out.size(), CrowdingOf{particles, out.view()});
   return out;
 }
 
 template <exec::Space Exec>
 void to_smoothing_weights(Exec& ex, float bulk, ArrayView<float> values) {
-  for_each(ex, "fluid.weights", values.size, vertex_values::ToWeight{1 / bulk, values});
+  for_each(ex, "fluid.weights", values.size, ToWeight{1 / bulk, values});
 }
+
+PSK_INSTANTIATE(average_at);
+PSK_INSTANTIATE(nearest_at);
+PSK_INSTANTIATE(crowding);
+PSK_INSTANTIATE(to_smoothing_weights);
 
 }  // namespace pointskin::fluid

@@ -1,13 +1,12 @@
-#pragma once
+#include "fluid/anisotropic.hpp"
 
 #include "core/double3.hpp"
 #include "core/eigen3.hpp"
-#include "exec/algorithms.hpp"
-#include "fluid/anisotropic.hpp"
-#include "fluid/particle_tree_impl.hpp"
+#include "exec/this_space.hpp"
+#include "fluid/particle_tree.hpp"
 
 namespace pointskin::fluid {
-namespace anisotropic {
+namespace {
 
 using Covariance = pointskin::Symmetric3;
 
@@ -84,7 +83,7 @@ struct FindEllipsoid {
   static constexpr double kLeast = 0.125;
 };
 
-}  // namespace anisotropic
+}  // namespace
 
 template <exec::Space Exec>
 Ellipsoids find_ellipsoids(Exec& ex, const ParticleTree& tree, ArrayView<const Vec3f> positions, float radius,
@@ -92,9 +91,8 @@ Ellipsoids find_ellipsoids(Exec& ex, const ParticleTree& tree, ArrayView<const V
   const std::int64_t n = positions.size;
   auto centres = exec::make_buffer<Vec3f>(ex, n);
   auto ellipsoids = exec::make_buffer<Ellipsoid>(ex, n);
-  for_each(
-      ex, "fluid.ellipsoids", n,
-      anisotropic::FindEllipsoid{tree.view(), positions, radius, volume_at_rest, centres.view(), ellipsoids.view()});
+  for_each(ex, "fluid.ellipsoids", n,
+           FindEllipsoid{tree.view(), positions, radius, volume_at_rest, centres.view(), ellipsoids.view()});
   Ellipsoids sorted;
   sorted.tree = build_particle_tree(ex, centres.cview(), tree.grid);
   sorted.centres = exec::make_buffer<Vec3f>(ex, n);
@@ -103,5 +101,7 @@ Ellipsoids find_ellipsoids(Exec& ex, const ParticleTree& tree, ArrayView<const V
   exec::gather(ex, ellipsoids.cview(), sorted.tree.order.cview(), sorted.ellipsoids.view());
   return sorted;
 }
+
+PSK_INSTANTIATE(find_ellipsoids);
 
 }  // namespace pointskin::fluid

@@ -1,18 +1,76 @@
-// Position-based fluids on the CPU or on a GPU: a scene, moved on frame by frame.
+// Position-based fluids on the CPU or on a GPU: a scene, moved on frame by frame, and the surface of its water.
+// Source: Macklin & Mueller, "Position based fluids", ACM Transactions on Graphics 32(4), 2013; docs/decisions/0025
+// says what differs. Metres and seconds, y upwards, the tank's lower corner at the origin.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include <pointskin/device.hpp>
+#include <pointskin/device_data.hpp>
 #include <pointskin/fluid.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/vector.hpp>
-
-#include "scene.hpp"
+#include <pointskin/workspace.hpp>
 
 namespace pointskin::simulation {
+
+enum class SceneKind {
+  dam_break,         ///< a block of water at one end of a tank
+  double_dam_break,  ///< two blocks in opposite corners
+  drop,              ///< a ball of water falls into a pool
+  obstacle,          ///< a ball of stone goes to and fro through a pool
+  stir,              ///< a pool is stirred about its vertical axis
+};
+
+/// "dam-break" and so on: the names of the command line.
+const char* name_of(SceneKind kind);
+std::optional<SceneKind> parse_scene(const std::string& name);
+/// All kinds, in the order of the enumeration.
+std::vector<SceneKind> all_scenes();
+
+/// A force field on the particles within a ball, strongest at its centre: with q = |x - centre| / radius < 1, the
+/// acceleration is strength (1 - q^2)^2 times `direction` (push), or times direction x (x - centre) / radius (swirl:
+/// about the axis `direction` through the centre).
+struct Interaction {
+  enum class Kind { push, swirl };
+  Kind kind = Kind::push;
+  Vec3f centre{};            ///< metres
+  Vec3f direction{1, 0, 0};  ///< of any length but zero; only where it points matters
+  float radius = 0.25F;      ///< metres, > 0
+  float strength = 20;       ///< metres / second^2, any sign
+};
+
+/// A moving ball that water flows around.
+struct Obstacle {
+  Vec3f centre{};    ///< metres
+  float radius = 0;  ///< metres; 0: there is none
+};
+
+/// A scene before its first step.
+struct Scene {
+  SceneKind kind = SceneKind::dam_break;
+  float spacing = 0;             ///< of the lattice: a particle stands for spacing^3 of water; metres
+  Vec3f tank{};                  ///< upper corner; every side is a multiple of the spacing
+  std::vector<Vec3f> positions;  ///< shape (n): the particles; layer by layer from below, body by body
+  float obstacle_radius = 0;     ///< metres; 0: no obstacle
+
+  /// Where the obstacle is. Piecewise polynomials of time: no libm.
+  [[nodiscard]] Obstacle obstacle_at(double seconds) const;
+  /// The forces that belong to the scene itself.
+  [[nodiscard]] std::vector<Interaction> interactions_at(double seconds) const;
+};
+
+/// Makes a scene of exactly `particles` particles: the spacing is chosen so that the water has its nominal volume, the
+/// tank is rounded to it, and the highest layer of the pool or of every block holds what is left. O(n).
+/// @param particles  in [kFewestParticles, kMostParticles]
+/// @throws Error usage if it is not
+Scene make_scene(SceneKind kind, std::int64_t particles);
+
+inline constexpr std::int64_t kFewestParticles = 200;
+inline constexpr std::int64_t kMostParticles = 64'000'000;
 
 struct SimulationOptions {
   int iterations = 4;       ///< of the density constraint, a substep; in [1, 100]
@@ -61,7 +119,7 @@ struct ParticleStates {
 class Simulation {
  public:
   /// @throws Error usage as validate(), device_unavailable, over_limit
-  explicit Simulation(Scene scene, const SimulationOptions& options = {}, Device device = Device::automatic());
+  explicit Simulation(Scene scene, const SimulationOptions& options = {}, Workspace workspace = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -89,11 +147,14 @@ class Simulation {
   /// each, to within 1 %. The same bytes whenever the steps were the same.
   /// @throws Error as FluidSurfacer::surface
   void surface(const FluidOptions& options, Mesh& mesh);
+  /// The same, left on the device.
+  [[nodiscard]] DeviceMesh surface_on_device(const FluidOptions& options);
   [[nodiscard]] const FluidReport& surface_report() const;
 
   [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] const SimulationOptions& options() const;
   [[nodiscard]] const SimulationReport& report() const;
+  [[nodiscard]] const Workspace& workspace() const;
   [[nodiscard]] const Device& device() const;
   /// Half of the spacing at rest, metres: what surfaces take as the particles' radius.
   [[nodiscard]] double particle_radius() const;

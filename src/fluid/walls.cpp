@@ -1,4 +1,4 @@
-#pragma once
+#include "fluid/walls.hpp"
 
 #include <pointskin/error.hpp>
 
@@ -7,12 +7,11 @@
 #include <string>
 #include <utility>
 
-#include "exec/algorithms.hpp"
+#include "exec/this_space.hpp"
 #include "fluid/surface.hpp"
-#include "fluid/walls.hpp"
 
 namespace pointskin::fluid {
-namespace images {
+namespace {
 
 /// The faces of a box that particles within `reach` see themselves in.
 struct Mirrors {
@@ -81,15 +80,15 @@ struct CopyValues {
   }
 };
 
-}  // namespace images
+}  // namespace
 
 template <exec::Space Exec>
 MirroredParticles add_images(Exec& ex, const Particles& particles, float reach) {
   constexpr const char* kLabel = "particles.images";
   const std::int64_t n = particles.positions.size;
-  const images::Mirrors mirrors{particles.walls->lower, particles.walls->upper, reach};
+  const Mirrors mirrors{particles.walls->lower, particles.walls->upper, reach};
   auto counts = exec::make_buffer<std::int32_t>(ex, n);
-  for_each(ex, kLabel, n, images::Count{mirrors, particles.positions, counts.view()});
+  for_each(ex, kLabel, n, Count{mirrors, particles.positions, counts.view()});
   const std::int64_t total = n + exec::sum_counts(ex, kLabel, counts.cview());
   if (total > std::numeric_limits<std::int32_t>::max())
     throw Error(ErrorCode::over_limit,
@@ -98,15 +97,17 @@ MirroredParticles add_images(Exec& ex, const Particles& particles, float reach) 
   exclusive_scan(ex, kLabel, counts.cview(), first.view());
   MirroredParticles out;
   out.positions = exec::make_buffer<Vec3f>(ex, total);
-  for_each(ex, kLabel, n, images::PlaceAll{mirrors, particles.positions, first.cview(), out.positions.view()});
+  for_each(ex, kLabel, n, PlaceAll{mirrors, particles.positions, first.cview(), out.positions.view()});
   for (const ParticleValues& from : particles.values) {
     auto values = exec::make_buffer<float>(ex, total);
     for_each(ex, kLabel, n,
-             images::CopyValues{mirrors, particles.positions, first.cview(), from.values,
-                                from.axis < 0 ? 0 : 1 << from.axis, values.view()});
+             CopyValues{mirrors, particles.positions, first.cview(), from.values, from.axis < 0 ? 0 : 1 << from.axis,
+                        values.view()});
     out.values.push_back(std::move(values));
   }
   return out;
 }
+
+PSK_INSTANTIATE(add_images);
 
 }  // namespace pointskin::fluid

@@ -1,4 +1,4 @@
-#include "scene.hpp"
+#include <pointskin/simulation.hpp>
 
 #include <pointskin/error.hpp>
 

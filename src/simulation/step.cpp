@@ -1,19 +1,21 @@
-#pragma once
+#include "simulation/step.hpp"
 
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
-#include "exec/algorithms.hpp"
 #include "fluid/particle_tree.hpp"
-#include "neighbours.hpp"
-#include "step.hpp"
-#include "velocity_impl.hpp"
+#include "simulation/neighbours.hpp"
+#include "simulation/velocity.hpp"
+
+#include "exec/this_space.hpp"
 
 namespace pointskin::simulation {
-namespace step {
+namespace {
 
-PSK_HD inline Vec3f acceleration_of(const Force& force, const Vec3f& p) {
+using namespace step;
+
+PSK_HD Vec3f acceleration_of(const Force& force, const Vec3f& p) {
   const Vec3f d = force.reach * (p - force.centre);
   const float t = 1 - dot(d, d);
   if (!(t > 0)) return {};
@@ -195,58 +197,57 @@ struct Correct {
   }
 };
 
-}  // namespace step
+}  // namespace
 
 template <int Lanes, exec::Space Exec>
 void substep_by_lanes(Exec& ex, Particles& particles, const StepSettings& settings, const fluid::CellGrid& grid) {
   const std::int64_t n = particles.position.size();
   auto predicted = exec::make_buffer<Vec3f>(ex, n);
   for_each(ex, "simulation.predict", n,
-           step::Predict{settings, particles.position.cview(), particles.velocity.cview(), predicted.view()});
+           Predict{settings, particles.position.cview(), particles.velocity.cview(), predicted.view()});
   const fluid::ParticleTree tree = fluid::build_particle_tree(ex, predicted.cview(), grid);
   auto start = exec::make_buffer<Vec3f>(ex, n);
-  auto now = exec::make_buffer<step::Placed>(ex, n);
-  auto next = exec::make_buffer<step::Placed>(ex, n);
+  auto now = exec::make_buffer<Placed>(ex, n);
+  auto next = exec::make_buffer<Placed>(ex, n);
   auto id = exec::make_buffer<std::int32_t>(ex, n);
   auto sum = exec::make_buffer<float>(ex, n);
   auto standing = exec::make_buffer<float>(ex, n);
   auto missing = exec::make_buffer<float>(ex, n);
   for_each(ex, "simulation.reorder", n,
-           step::Reorder{tree.order.cview(), particles.position.cview(), predicted.cview(), particles.id.cview(),
-                         particles.multiplier.cview(), particles.standing.cview(), particles.missing.cview(), settings,
-                         start.view(), now.view(), id.view(), sum.view(), standing.view(), missing.view()});
+           Reorder{tree.order.cview(), particles.position.cview(), predicted.cview(), particles.id.cview(),
+                   particles.multiplier.cview(), particles.standing.cview(), particles.missing.cview(), settings,
+                   start.view(), now.view(), id.view(), sum.view(), standing.view(), missing.view()});
   particles.id.swap(id);
   particles.multiplier.swap(sum);
   particles.standing.swap(standing);
   particles.missing.swap(missing);
 
   const std::int64_t lists = n * Lanes;
-  auto list = exec::make_buffer<std::int32_t>(ex, lists * step::NeighbourLists<Lanes>::kMost);
-  const step::NeighbourLists<Lanes> neighbours{list.view(), particles.neighbours.view(),
-                                               Exec::kManyThreads ? 1 : step::NeighbourLists<Lanes>::kMost,
-                                               Exec::kManyThreads ? lists : 1};
-  const step::FindNeighbours<Lanes> find{tree.view(), now.cview(), neighbours};
+  auto list = exec::make_buffer<std::int32_t>(ex, lists * NeighbourLists<Lanes>::kMost);
+  const NeighbourLists<Lanes> neighbours{list.view(), particles.neighbours.view(),
+                                         Exec::kManyThreads ? 1 : NeighbourLists<Lanes>::kMost,
+                                         Exec::kManyThreads ? lists : 1};
+  const FindNeighbours<Lanes> find{tree.view(), now.cview(), neighbours};
   if constexpr (Exec::kManyThreads)
-    for_each(ex, "simulation.neighbours", lists, step::FindNeighboursByLanes<Lanes>{find});
+    for_each(ex, "simulation.neighbours", lists, FindNeighboursByLanes<Lanes>{find});
   else
-    for_each(ex, "simulation.neighbours", n, step::FindNeighboursAtOnce<Lanes>{find});
+    for_each(ex, "simulation.neighbours", n, FindNeighboursAtOnce<Lanes>{find});
 
   const auto correct = [&] {
-    for_each_by_lanes(ex, "simulation.correct", n,
-                      step::Correct<Lanes>{settings, now.cview(), neighbours, next.view()});
+    for_each_by_lanes(ex, "simulation.correct", n, Correct<Lanes>{settings, now.cview(), neighbours, next.view()});
     now.swap(next);
   };
   if (settings.warm_start > 0 || settings.standing > 0) correct();
   for (int i = 0; i < settings.iterations; ++i) {
     for_each_by_lanes(ex, "simulation.multipliers", n,
-                      step::FindMultipliers<Lanes>{settings, now.cview(), neighbours, particles.missing.cview(),
-                                                   particles.multiplier.view(), next.view()});
+                      FindMultipliers<Lanes>{settings, now.cview(), neighbours, particles.missing.cview(),
+                                             particles.multiplier.view(), next.view()});
     now.swap(next);
     correct();
   }
 
   const ArrayView<Vec3f> velocity = predicted.view();  // its places are no longer needed
-  step::update_velocities(ex, particles, settings, neighbours, start.cview(), now.cview(), velocity);
+  update_velocities(ex, particles, settings, neighbours, start.cview(), now.cview(), velocity);
 }
 
 template <exec::Space Exec>
@@ -256,5 +257,7 @@ void substep(Exec& ex, Particles& particles, const StepSettings& settings, const
   else
     substep_by_lanes<4>(ex, particles, settings, grid);
 }
+
+PSK_INSTANTIATE(substep);
 
 }  // namespace pointskin::simulation

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "exec/algorithms.hpp"
-#include "neighbours.hpp"
-#include "step.hpp"
+#include "exec/space.hpp"
+#include "simulation/neighbours.hpp"
+#include "simulation/step.hpp"
 
 namespace pointskin::simulation::step {
 

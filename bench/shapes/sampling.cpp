@@ -85,7 +85,7 @@ void add_noise(SurfacePoint& point, const SamplingOptions& options, Random& rand
     point.normal[axis] += options.normal_noise * turn[axis];
     norm2 += point.normal[axis] * point.normal[axis];
   }
-  for (double& n : point.normal) n /= std::sqrt(norm2);
+  point.normal = point.normal / std::sqrt(norm2);
 }
 
 std::vector<SurfacePoint> sample_block(const Shape& shape, const Cells& cells, const SamplingOptions& options,

@@ -17,7 +17,6 @@ namespace pointskin::bench {
 namespace {
 
 Vec3d to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
-double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 class EveryShape : public testing::TestWithParam<const char*> {
  protected:

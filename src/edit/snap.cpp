@@ -79,7 +79,7 @@ bool step(const Equations& equations, const Vec3d& centre, double radius, Placem
     shift[i] = centre[i] + x[3 + i];
     for (std::size_t j = 0; j < 3; ++j) shift[i] += rotation[3 * i + j] * (motion.shift[j] - centre[j]);
   }
-  std::copy(shift.begin(), shift.end(), motion.shift);
+  for (std::size_t i = 0; i < 3; ++i) motion.shift[i] = shift[i];
   change = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + std::sqrt(x[3] * x[3] + x[4] * x[4] + x[5] * x[5]);
   return std::isfinite(change);
 }

@@ -57,9 +57,9 @@ ShadowMap::ShadowMap(exec::Cpu& ex, const Drawing& drawing, const Camera& light,
   };
   const double eye = viewer.perspective() ? viewer.distance() : 0;
   const Vec3d zero = on_light({0, 0, eye});
-  const Vec3d x = mesh_detail::minus(on_light({1, 0, eye}), zero);
-  const Vec3d y = mesh_detail::minus(on_light({0, 1, eye}), zero);
-  const Vec3d z = mesh_detail::minus(on_light({0, 0, eye + 1}), zero);
+  const Vec3d x = on_light({1, 0, eye}) - zero;
+  const Vec3d y = on_light({0, 1, eye}) - zero;
+  const Vec3d z = on_light({0, 0, eye + 1}) - zero;
   Row* const rows[3] = {&column_, &row_, &nearness_};
   for (std::size_t k = 0; k < 3; ++k) *rows[k] = {to_float({x[k], y[k], z[k]}), static_cast<float>(zero[k])};
 }

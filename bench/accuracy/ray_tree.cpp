@@ -80,7 +80,7 @@ RayTree::Box RayTree::enclose(std::int32_t begin, std::int32_t end) const {
   }
   // What range_of() accepts beside a triangle lies in its box too.
   const Vec3d extent = box.upper - box.lower;
-  const double margin = 2 * kMargin * *std::max_element(extent.begin(), extent.end());
+  const double margin = 2 * kMargin * std::max({extent.x, extent.y, extent.z});
   for (std::size_t axis = 0; axis < 3; ++axis) box.lower[axis] -= margin, box.upper[axis] += margin;
   return box;
 }
@@ -91,7 +91,8 @@ std::int32_t RayTree::build(std::int32_t begin, std::int32_t end, std::vector<Ve
   if (end - begin <= kLeafSize) return node;
   const Box box = nodes_.back().box;
   const Vec3d extent = box.upper - box.lower;
-  const auto axis = static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
+  const std::size_t of_two = extent.x < extent.y ? 1 : 0;
+  const std::size_t axis = extent[of_two] < extent.z ? 2 : of_two;
   // Sorts triangles and centroids together, by a permutation.
   std::vector<std::int32_t> order(static_cast<std::size_t>(end - begin));
   std::iota(order.begin(), order.end(), begin);

@@ -199,7 +199,8 @@ class Slab final : public Shape {
     return {std::abs(q[0]) - kHalf[0], std::abs(q[1]) - kHalf[1], std::abs(q[2]) - kHalf[2]};
   }
   static std::size_t most_beyond(const Vec3d& off) {
-    return static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
+    const std::size_t most = off.x < off.y ? 1 : 0;
+    return off[most] < off.z ? 2 : most;
   }
   static Vec3d face_normal(const Vec3d& q, std::size_t face) {
     Vec3d normal{0, 0, 0};

@@ -80,7 +80,7 @@ class Regions {
   static constexpr std::size_t kCount = 27 * 3;
   static std::size_t of(const Vec3d& q) {
     std::size_t region = 0;
-    for (const double x : q) region = region * 3 + (x < -0.3 ? 0U : x < 0.3 ? 1U : 2U);
+    for (const double x : {q.x, q.y, q.z}) region = region * 3 + (x < -0.3 ? 0U : x < 0.3 ? 1U : 2U);
     const double r = std::sqrt(dot(q, q));
     return region * 3 + (r < 0.97 ? 0U : r < 0.9995 ? 1U : 2U);
   }

@@ -64,7 +64,7 @@ struct Projector {
   PSK_HD bool project(Vec3f& p, float reach, Vec3f& gradient_there) const {
     for (int step = 0; step < 2; ++step) {
       const Vec3f g = gradient(p);
-      const float squared = g.x * g.x + g.y * g.y + g.z * g.z;
+      const float squared = squared_length(g);
       const float off = surface.field.isovalue - value(p);
       if (!(off * off <= reach * reach * squared) || !(squared > 0)) return false;
       const float t = off / squared;

@@ -153,7 +153,7 @@ PSK_HD AtPoint look_at(const field::FieldView& field, const Vec3f& p) {
     g = {g.x + (x != 0 ? u : -u) * wy * wz, g.y + (y != 0 ? u : -u) * wx * wz, g.z + (z != 0 ? u : -u) * wx * wy};
   }
   const auto finest = static_cast<float>(std::int64_t{1} << (field.tree.depth - leaf.depth));
-  return {value - field.isovalue, std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) / finest};
+  return {value - field.isovalue, length(g) / finest};
 }
 
 struct LookAtField {

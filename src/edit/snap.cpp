@@ -11,7 +11,7 @@ namespace {
 
 /// Rotation by the length of `turn`, in radians, about its direction (Rodrigues).
 std::array<double, 9> rotation_by(const Vec3d& turn) {
-  const double angle = std::sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+  const double angle = std::sqrt(squared_length(turn));
   const double s = angle > 0 ? std::sin(angle) / angle : 1;
   const double half = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
   const double c = 2 * half * half;  // (1 - cos(angle)) / angle^2

@@ -116,8 +116,7 @@ void parse_text_line(const Source& source, const Line& line, TextBlock& block) {
   const std::string_view word = values.word();
   block.ends = word == "endsolid";
   if (word == "vertex") {
-    Vec3d& corner = block.corners.emplace_back();
-    for (double& c : corner) c = values.number();
+    block.corners.push_back({values.number(), values.number(), values.number()});
     values.expect_end();
   } else if (word == "facet") {
     ++block.facets;

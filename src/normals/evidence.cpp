@@ -27,13 +27,13 @@ struct SeenFrom {
   }
   [[nodiscard]] PSK_HD Vec3d towards_nearest(std::int64_t i) const {
     const Vec3f u = positions[i];
-    const double p[3] = {frame.lower[0] + static_cast<double>(u.x) * frame.size,
-                         frame.lower[1] + static_cast<double>(u.y) * frame.size,
-                         frame.lower[2] + static_cast<double>(u.z) * frame.size};
+    const Vec3d p = {frame.lower[0] + static_cast<double>(u.x) * frame.size,
+                     frame.lower[1] + static_cast<double>(u.y) * frame.size,
+                     frame.lower[2] + static_cast<double>(u.z) * frame.size};
     Vec3d best{};
     double nearest = -1;
     for (std::int64_t s = 0; s < sensors.size; ++s) {
-      const Vec3d v{sensors[s][0] - p[0], sensors[s][1] - p[1], sensors[s][2] - p[2]};
+      const Vec3d v = sensors[s] - p;
       const double squared = dot(v, v);
       if (nearest >= 0 && squared >= nearest) continue;
       nearest = squared;

@@ -149,7 +149,7 @@ class Painter {
 
   [[nodiscard]] Vec3d normal_of(const Seen& seen, const CellBlend& cells) const {
     if (seen.relief >= 1) return seen.normal;
-    const Float3 smooth = cells.of(normals_, Float3{0, 0, 1});
+    const Vec3f smooth = cells.of(normals_, Vec3f{0, 0, 1});
     return normalized(seen.relief * seen.normal + (1 - seen.relief) * Vec3d{smooth.x, smooth.y, smooth.z});
   }
 
@@ -159,8 +159,8 @@ class Painter {
   Lighting lighting_;
   BandLists lists_;
   DepthMap map_;
-  std::vector<Float3> normals_;  // of the map; empty: not needed
-  CellFloats open_, key_;        // of the map; empty: 1
+  std::vector<Vec3f> normals_;  // of the map; empty: not needed
+  CellFloats open_, key_;       // of the map; empty: 1
   Colour edge_ = edge_colour();
   SrgbEncoder encode_;
 };

@@ -18,6 +18,7 @@
 #include "input.hpp"
 #include "json_text.hpp"
 #include "spacing.hpp"
+#include "vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {

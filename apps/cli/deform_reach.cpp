@@ -10,19 +10,13 @@
 namespace pointskin::cli {
 namespace {
 
-Vec3d minus(const Vec3d& a, const Vec3d& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// Whether a region holds the point x.
 struct Holds {
   const Vec3d& x;
 
-  bool operator()(const HalfSpace& region) const { return dot(minus(x, region.point), region.normal) >= 0; }
+  bool operator()(const HalfSpace& region) const { return dot(x - region.point, region.normal) >= 0; }
   bool operator()(const Ball& region) const {
-    const Vec3d away = minus(x, region.centre);
+    const Vec3d away = x - region.centre;
     return dot(away, away) <= region.radius * region.radius;
   }
   bool operator()(const AxisBox& region) const {
@@ -31,8 +25,8 @@ struct Holds {
     return true;
   }
   bool operator()(const Capsule& region) const {
-    const Vec3d axis = minus(region.to, region.from);
-    const Vec3d way = minus(x, region.from);
+    const Vec3d axis = region.to - region.from;
+    const Vec3d way = x - region.from;
     const double length2 = dot(axis, axis);
     const double share = length2 > 0 ? std::clamp(dot(way, axis) / length2, 0.0, 1.0) : 0;
     const Vec3d away = {way[0] - share * axis[0], way[1] - share * axis[1], way[2] - share * axis[2]};
@@ -44,7 +38,7 @@ struct Holds {
 /// Whether x lies in the block of a lattice: its coordinates along the three axes are in [0, 1].
 bool is_in_block(const Lattice& lattice, const Vec3d& x) {
   const std::array<Vec3d, 3>& axes = lattice.axes;
-  const Vec3d way = minus(x, lattice.origin);
+  const Vec3d way = x - lattice.origin;
   const double volume = dot(axes[0], cross(axes[1], axes[2]));
   for (std::size_t a = 0; a < 3; ++a) {
     const double share = dot(way, cross(axes[(a + 1) % 3], axes[(a + 2) % 3])) / volume;

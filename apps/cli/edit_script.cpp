@@ -9,6 +9,7 @@
 
 #include "json_reader.hpp"
 #include "render_args.hpp"
+#include "vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -121,7 +122,7 @@ std::array<double, 9> rotation_at(const JsonReader& json) {
   Vec3d axis = json.at("axis").vector();
   const double length = std::hypot(axis[0], axis[1], axis[2]);
   if (!(length > 0)) json.at("axis").refuse("must not be zero");
-  for (double& a : axis) a /= length;
+  axis = axis / length;
   const double angle = json.at("degrees").number() * std::numbers::pi / 180;
   const double s = std::sin(angle);
   const double c = 1 - std::cos(angle);
@@ -181,9 +182,7 @@ Json to_json(const Remove& remove, const std::filesystem::path& /*folder*/) {
 
 /// Numbers that are not finite are not written: JSON has none.
 Json box_json(const Insert& insert) {
-  const auto is_finite = [](const Vec3d& v) {
-    return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
-  };
+  const auto is_finite = [](const Vec3d& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
   Json box = Json::object();
   if (is_finite(insert.lower)) box["lower"] = insert.lower;
   if (is_finite(insert.upper)) box["upper"] = insert.upper;

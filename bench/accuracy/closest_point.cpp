@@ -7,16 +7,10 @@
 #include <array>
 #include <cmath>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::bench {
 namespace {
-
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::plus;
-using mesh_detail::squared_length;
-using mesh_detail::times;
 
 constexpr double kOnSurface = 1e-11;  // first-order distance of a point that counts as one of the surface
 
@@ -29,10 +23,10 @@ std::optional<SurfacePoint> project_if_possible(const Shape& shape, const Vec3d&
 
 /// Moves `at` along the surface in the direction of `along`, nearer to `q`. @returns false if no step is nearer
 bool step_nearer(const Shape& shape, const Vec3d& q, const Vec3d& along, SurfacePoint& at) {
-  const double squared = squared_length(minus(q, at.position));
+  const double squared = squared_length(q - at.position);
   for (double length = 1; length > 1e-4; length /= 2) {
-    const auto next = project_if_possible(shape, plus(at.position, times(length, along)));
-    if (!next || !(squared_length(minus(q, next->position)) < squared)) continue;
+    const auto next = project_if_possible(shape, at.position + length * along);
+    if (!next || !(squared_length(q - next->position) < squared)) continue;
     at = *next;
     return true;
   }
@@ -42,8 +36,8 @@ bool step_nearer(const Shape& shape, const Vec3d& q, const Vec3d& along, Surface
 /// Two unit vectors orthogonal to `normal` and to each other.
 std::array<Vec3d, 2> tangents(const Vec3d& normal) {
   const Vec3d aside = std::abs(normal[0]) < 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d u = mesh_detail::normalized(mesh_detail::cross(normal, aside));
-  return {u, mesh_detail::cross(normal, u)};
+  const Vec3d u = normalized(cross(normal, aside));
+  return {u, cross(normal, u)};
 }
 
 /// The part of `d` along the surface, and Newton's step towards the foot point where the squared distance is convex.
@@ -57,22 +51,22 @@ Vec3d newton_step(const Shape& shape, const SurfacePoint& at, const Vec3d& d, co
   const double multiplier = dot(d, gradient) / squared_length(gradient);
   const auto [u, v] = tangents(at.normal);
   const auto curved = [&](const Vec3d& t) {
-    return times(multiplier / (2 * kStep), minus(shape.at(plus(at.position, times(kStep, t))).gradient,
-                                                 shape.at(minus(at.position, times(kStep, t))).gradient));
+    return multiplier / (2 * kStep) *
+           (shape.at(at.position + kStep * t).gradient - shape.at(at.position - kStep * t).gradient);
   };
   const Vec3d cu = curved(u), cv = curved(v);
   const double uu = 1 + dot(u, cu), vv = 1 + dot(v, cv), uv = (dot(u, cv) + dot(v, cu)) / 2;
   const double det = uu * vv - uv * uv, du = dot(u, d), dv = dot(v, d);
   if (!(det > 1e-9 && uu + vv > 0)) return along;
-  const Vec3d step = plus(times((vv * du - uv * dv) / det, u), times((uu * dv - uv * du) / det, v));
-  return times(std::min(1.0, kLongest / mesh_detail::length(step)), step);
+  const Vec3d step = (vv * du - uv * dv) / det * u + (uu * dv - uv * du) / det * v;
+  return std::min(1.0, kLongest / length(step)) * step;
 }
 
 /// Descends from `at` until q - at has no part along the surface.
 SurfacePoint descend(const Shape& shape, const Vec3d& q, SurfacePoint at) {
   for (int step = 0; step < 100; ++step) {
-    const Vec3d d = minus(q, at.position);
-    const Vec3d along = minus(d, times(dot(d, at.normal), at.normal));
+    const Vec3d d = q - at.position;
+    const Vec3d along = d - dot(d, at.normal) * at.normal;
     // The distance is wrong by the square of this part over the distance.
     if (squared_length(along) <= 1e-10 * squared_length(d) || squared_length(along) < 1e-22) break;
     if (!step_nearer(shape, q, newton_step(shape, at, d, along), at) && !step_nearer(shape, q, along, at)) break;
@@ -93,7 +87,7 @@ SurfacePoint ClosestPoint::operator()(const Vec3d& q) const {
   if (!tree_) return shape_.closest(q);
   const mesh_detail::Nearest nearest = tree_->nearest(q);
   const auto straight = project_if_possible(shape_, q);
-  if (straight && squared_length(minus(q, straight->position)) <= nearest.squared_distance)
+  if (straight && squared_length(q - straight->position) <= nearest.squared_distance)
     return descend(shape_, q, *straight);
   const Vec3d seed = tree_->triangle(nearest.slot).a;
   return descend(shape_, q, project(shape_, seed, shape_.at(seed)));

@@ -8,17 +8,11 @@
 #include <limits>
 #include <string>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 #include "random.hpp"
 
 namespace pointskin::bench {
 namespace {
-
-using mesh_detail::dot;
-using mesh_detail::length;
-using mesh_detail::minus;
-using mesh_detail::plus;
-using mesh_detail::times;
 
 class ClosestPointOf : public testing::TestWithParam<const char*> {
  protected:
@@ -29,17 +23,17 @@ class ClosestPointOf : public testing::TestWithParam<const char*> {
 
   [[nodiscard]] double nearest_sample(const Vec3d& q) const {
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Vec3f& p : cloud_.positions) nearest = std::min(nearest, length(minus(q, mesh_detail::to_double(p))));
+    for (const Vec3f& p : cloud_.positions) nearest = std::min(nearest, length(q - to_double(p)));
     return nearest;
   }
 
   /// Everything that makes the point found the nearest to `q`, but for `slack`. @returns its distance
   [[nodiscard]] double check(const Vec3d& q, double slack) const {
     const SurfacePoint found = closest_(q);
-    const Vec3d d = minus(q, found.position);
+    const Vec3d d = q - found.position;
     EXPECT_LT(std::abs(signed_distance(*shape_, found.position)), 1e-10);  // so the distance is never too small
     EXPECT_LE(length(d), nearest_sample(q) + 2e-7 + slack);                // samples are floats
-    const Vec3d along = minus(d, times(dot(d, found.normal), found.normal));
+    const Vec3d along = d - dot(d, found.normal) * found.normal;
     EXPECT_LT(length(along), 2e-5 * length(d) + 1e-10) << q[0] << " " << q[1] << " " << q[2];
     return length(d);
   }
@@ -48,12 +42,12 @@ class ClosestPointOf : public testing::TestWithParam<const char*> {
 TEST_P(ClosestPointOf, IsTheNearestNearTheSurface) {
   Random random(5, 0);
   for (std::size_t i = 0; i < 300; ++i) {
-    const Vec3d surface = mesh_detail::to_double(cloud_.positions[i]);
-    const Vec3d normal = mesh_detail::to_double(cloud_.normals[i]);
+    const Vec3d surface = to_double(cloud_.positions[i]);
+    const Vec3d normal = to_double(cloud_.normals[i]);
     const double height = 0.004 * (2 * random.uniform() - 1);
     // Nothing is nearer than the foot of the normal as long as the height is below the radii of curvature and half of
     // what parts the sheets; float's rounding of the normal moves the foot a little.
-    EXPECT_NEAR(check(plus(surface, times(height, normal)), 0), std::abs(height), 1e-6);
+    EXPECT_NEAR(check(surface + height * normal, 0), std::abs(height), 1e-6);
   }
 }
 
@@ -77,9 +71,8 @@ TEST(ClosestPoint, HasFirstOrderDistancesThatAreWrongAtEdges) {
   const Cloud cloud = sample_surface(*shape, {.points = 2'000, .seed = 2});
   double largest = 0;
   for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
-    const Vec3d q =
-        plus(mesh_detail::to_double(cloud.positions[i]), times(0.02, mesh_detail::to_double(cloud.normals[i])));
-    const double exact = length(minus(q, closest(q).position));
+    const Vec3d q = to_double(cloud.positions[i]) + 0.02 * to_double(cloud.normals[i]);
+    const double exact = length(q - closest(q).position);
     largest = std::max(largest, std::abs(std::abs(signed_distance(*shape, q)) - exact));
   }
   EXPECT_GT(largest, 1e-3);

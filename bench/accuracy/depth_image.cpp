@@ -7,16 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::bench {
 namespace {
-
-using mesh_detail::cross;
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::plus;
-using mesh_detail::times;
 
 /// Sums of a least-squares fit t = a x + b y + c.
 struct PlaneFit {
@@ -42,13 +36,13 @@ struct PlaneFit {
 
 Vec3d Camera::direction(int row, int column) const {
   const double x = pixel() * (column + 0.5) - half_width, y = pixel() * (row + 0.5) - half_width;
-  return mesh_detail::normalized(plus(forward, plus(times(x, right), times(y, up))));
+  return normalized(forward + (x * right + y * up));
 }
 
 std::array<Vec3d, 2> Camera::direction_derivatives(int row, int column) const {
   const Vec3d d = direction(row, column);
   const double scale = dot(d, forward);  // 1 / |forward + x right + y up|
-  return {times(scale, minus(right, times(dot(d, right), d))), times(scale, minus(up, times(dot(d, up), d)))};
+  return {scale * (right - dot(d, right) * d), scale * (up - dot(d, up) * d)};
 }
 
 DepthImage::DepthImage(const Camera& camera) : camera_(camera) {
@@ -72,7 +66,7 @@ bool DepthImage::has(int row, int column) const {
 }
 
 Vec3d DepthImage::point(int row, int column) const {
-  return plus(camera_.position, times(range(row, column), camera_.direction(row, column)));
+  return camera_.position + range(row, column) * camera_.direction(row, column);
 }
 
 std::optional<Vec3d> DepthImage::fitted_normal(int row, int column, int window, const Jump& jump) const {
@@ -94,8 +88,8 @@ std::optional<Vec3d> DepthImage::fitted_normal(int row, int column, int window, 
   const Vec3d d = camera_.direction(row, column);
   const auto [d_x, d_y] = camera_.direction_derivatives(row, column);
   const double pixel = camera_.pixel();
-  const Vec3d p_x = plus(times((*slopes)[0] / pixel, d), times(here, d_x));
-  const Vec3d p_y = plus(times((*slopes)[1] / pixel, d), times(here, d_y));
+  const Vec3d p_x = (*slopes)[0] / pixel * d + here * d_x;
+  const Vec3d p_y = (*slopes)[1] / pixel * d + here * d_y;
   return cross(p_x, p_y);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "closest_point.hpp"
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "mesh/both_ways.hpp"
 #include "mesh/surface_samples.hpp"
@@ -18,8 +19,6 @@ namespace pointskin::bench {
 namespace {
 
 using mesh_detail::Direction;
-using mesh_detail::dot;
-using mesh_detail::minus;
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kBlock = 1024;
@@ -80,7 +79,7 @@ Direction mesh_to_shape(exec::Cpu& ex, const Mesh& mesh, const Shape& shape, con
   return measure_all(ex, options.samples, threshold, [&](std::int64_t i, std::int32_t& /*hint*/) {
     const mesh_detail::SurfaceSample sample = sampler.sample(i, options.samples);
     const SurfacePoint nearest = closest(sample.point);
-    return Found{mesh_detail::length(minus(sample.point, nearest.position)), cosine_of(sample.normal, nearest.normal)};
+    return Found{length(sample.point - nearest.position), cosine_of(sample.normal, nearest.normal)};
   });
 }
 
@@ -88,16 +87,16 @@ Direction shape_to_mesh(exec::Cpu& ex, const Cloud& surface, const Mesh& mesh, d
   const mesh_detail::TriangleTree tree(ex, mesh, mesh.origin);
   return measure_all(ex, surface.size(), threshold, [&](std::int64_t i, std::int32_t& hint) {
     const auto k = static_cast<std::size_t>(i);
-    const mesh_detail::Nearest nearest = tree.nearest(mesh_detail::to_double(surface.positions[k]), hint);
+    const mesh_detail::Nearest nearest = tree.nearest(to_double(surface.positions[k]), hint);
     hint = nearest.slot;
-    const Vec3d normal = mesh_detail::normalized(tree.triangle(nearest.slot).area_vector());
-    return Found{std::sqrt(nearest.squared_distance), cosine_of(mesh_detail::to_double(surface.normals[k]), normal)};
+    const Vec3d normal = normalized(tree.triangle(nearest.slot).area_vector());
+    return Found{std::sqrt(nearest.squared_distance), cosine_of(to_double(surface.normals[k]), normal)};
   });
 }
 
 double diagonal_of(const Cloud& cloud) {
   const Bounds box = bounds_of(cloud.positions);
-  return mesh_detail::length(minus(mesh_detail::to_double(box.upper), mesh_detail::to_double(box.lower)));
+  return length(to_double(box.upper) - to_double(box.lower));
 }
 
 Json distances_json(const DistanceStatistics& d, double diagonal, double spacing) {

@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::bench {
 namespace {
@@ -25,8 +25,7 @@ Mesh sphere_mesh(double radius, int levels, const Vec3d& origin = {0, 0, 0}) {
     const auto middle = [&](std::int32_t a, std::int32_t b) {
       const auto [at, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(corners.size()));
       if (fresh)
-        corners.push_back(mesh_detail::normalized(
-            mesh_detail::plus(corners[static_cast<std::size_t>(a)], corners[static_cast<std::size_t>(b)])));
+        corners.push_back(normalized(corners[static_cast<std::size_t>(a)] + corners[static_cast<std::size_t>(b)]));
       return at->second;
     };
     std::vector<Triangle> finer;

@@ -8,17 +8,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::bench {
 namespace {
 
-using mesh_detail::cross;
-using mesh_detail::dot;
 using mesh_detail::EdgedTriangle;
-using mesh_detail::minus;
-using mesh_detail::plus;
-using mesh_detail::times;
 
 constexpr std::int32_t kLeafSize = 4;
 constexpr double kMargin = 1e-9;  // in barycentric coordinates
@@ -29,7 +24,7 @@ double range_of(const Ray& ray, const EdgedTriangle& t) {
   const Vec3d p = cross(ray.direction, t.ac);
   const double det = dot(t.ab, p);
   if (det == 0) return kNone;
-  const Vec3d from = minus(ray.origin, t.a);
+  const Vec3d from = ray.origin - t.a;
   const double u = dot(from, p) / det;
   if (!(u >= -kMargin && u <= 1 + kMargin)) return kNone;
   const Vec3d q = cross(from, t.ab);
@@ -62,11 +57,11 @@ RayTree::RayTree(const Mesh& mesh) {
   std::vector<Vec3d> centroids;
   for (const Triangle& t : mesh.triangles) {
     const auto corner = [&](std::size_t k) {
-      return plus(mesh.origin, mesh_detail::to_double(mesh.vertices[static_cast<std::size_t>(t[k])]));
+      return mesh.origin + to_double(mesh.vertices[static_cast<std::size_t>(t[k])]);
     };
     const Vec3d a = corner(0);
-    triangles_.push_back({a, minus(corner(1), a), minus(corner(2), a)});
-    centroids.push_back(plus(a, times(1.0 / 3, plus(triangles_.back().ab, triangles_.back().ac))));
+    triangles_.push_back({a, corner(1) - a, corner(2) - a});
+    centroids.push_back(a + 1.0 / 3 * (triangles_.back().ab + triangles_.back().ac));
   }
   build(0, static_cast<std::int32_t>(triangles_.size()), centroids);
 }
@@ -76,7 +71,7 @@ RayTree::Box RayTree::enclose(std::int32_t begin, std::int32_t end) const {
   Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   for (std::int32_t i = begin; i < end; ++i) {
     const EdgedTriangle& t = triangles_[static_cast<std::size_t>(i)];
-    for (const Vec3d& corner : {t.a, plus(t.a, t.ab), plus(t.a, t.ac)}) {
+    for (const Vec3d& corner : {t.a, t.a + t.ab, t.a + t.ac}) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         box.lower[axis] = std::min(box.lower[axis], corner[axis]);
         box.upper[axis] = std::max(box.upper[axis], corner[axis]);
@@ -84,8 +79,8 @@ RayTree::Box RayTree::enclose(std::int32_t begin, std::int32_t end) const {
     }
   }
   // What range_of() accepts beside a triangle lies in its box too.
-  const Vec3d extent = minus(box.upper, box.lower);
-  const double margin = 2 * kMargin * *std::max_element(extent.begin(), extent.end());
+  const Vec3d extent = box.upper - box.lower;
+  const double margin = 2 * kMargin * std::max({extent.x, extent.y, extent.z});
   for (std::size_t axis = 0; axis < 3; ++axis) box.lower[axis] -= margin, box.upper[axis] += margin;
   return box;
 }
@@ -95,8 +90,9 @@ std::int32_t RayTree::build(std::int32_t begin, std::int32_t end, std::vector<Ve
   nodes_.push_back({enclose(begin, end), -1, begin, end - begin});
   if (end - begin <= kLeafSize) return node;
   const Box box = nodes_.back().box;
-  const Vec3d extent = minus(box.upper, box.lower);
-  const auto axis = static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
+  const Vec3d extent = box.upper - box.lower;
+  const std::size_t of_two = extent.x < extent.y ? 1 : 0;
+  const std::size_t axis = extent[of_two] < extent.z ? 2 : of_two;
   // Sorts triangles and centroids together, by a permutation.
   std::vector<std::int32_t> order(static_cast<std::size_t>(end - begin));
   std::iota(order.begin(), order.end(), begin);
@@ -148,7 +144,7 @@ std::optional<Hit> RayTree::first_hit(const Ray& ray) const {
     stack[height++] = near;
   }
   if (found == nullptr) return std::nullopt;
-  return Hit{nearest, mesh_detail::normalized(found->area_vector())};
+  return Hit{nearest, normalized(found->area_vector())};
 }
 
 }  // namespace pointskin::bench

@@ -12,19 +12,13 @@
 #include <optional>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "depth_image.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "mesh/vec3d.hpp"
 #include "random.hpp"
 
 namespace pointskin::bench {
 namespace {
-
-using mesh_detail::cross;
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::plus;
-using mesh_detail::times;
 
 /// Streams of random numbers that have nothing to do with each other.
 enum class Stream : std::uint64_t { cameras, motions, pixels, outliers };
@@ -40,16 +34,15 @@ Vec3d gaussian_vector(Random& random) {
 
 /// `v` turned about the direction of `turn` by its length in radians (Rodrigues).
 Vec3d turned(const Vec3d& v, const Vec3d& turn) {
-  const double angle = mesh_detail::length(turn);
-  const Vec3d axis = mesh_detail::normalized(turn);
-  return plus(plus(times(std::cos(angle), v), times(std::sin(angle), cross(axis, v))),
-              times((1 - std::cos(angle)) * dot(axis, v), axis));
+  const double angle = length(turn);
+  const Vec3d axis = normalized(turn);
+  return std::cos(angle) * v + std::sin(angle) * cross(axis, v) + (1 - std::cos(angle)) * dot(axis, v) * axis;
 }
 
 /// A random rotation, as the vector of turned().
 Vec3d random_turn(Random& random) {
   const Vec3d v = gaussian_vector(random);
-  return times(2 * std::atan2(mesh_detail::length(v), random.gaussian_pair()[0]), mesh_detail::normalized(v));
+  return 2 * std::atan2(length(v), random.gaussian_pair()[0]) * normalized(v);
 }
 
 Camera camera_of(const Scene& scene, const ScanOptions& options, int view) {
@@ -65,11 +58,11 @@ Camera camera_of(const Scene& scene, const ScanOptions& options, int view) {
   const double nearest = options.distance * (1 - options.spread);
   const double distance = options.distance * (1 + options.spread * (2 * random.uniform() - 1));
   Camera camera;
-  camera.position = plus(scene.centre(), times(distance * scene.diagonal(), outward));
-  camera.forward = times(-1, outward);
+  camera.position = scene.centre() + distance * scene.diagonal() * outward;
+  camera.forward = -1 * outward;
   const Vec3d aside = std::abs(outward[2]) < 0.9 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
-  camera.right = turned(mesh_detail::normalized(cross(camera.forward, aside)),
-                        times(2 * std::numbers::pi * random.uniform(), camera.forward));
+  camera.right =
+      turned(normalized(cross(camera.forward, aside)), 2 * std::numbers::pi * random.uniform() * camera.forward);
   camera.up = cross(camera.right, camera.forward);
   camera.half_width = std::tan(std::asin(0.5 / nearest));  // all cameras have the lens of the nearest
   camera.resolution = options.resolution;
@@ -86,13 +79,13 @@ std::vector<Motion> motions(const Scene& scene, const ScanOptions& options) {
   Motion mean{};
   for (int view = 0; view < options.views; ++view) {
     Random random = random_of(options, Stream::motions, static_cast<std::uint64_t>(view));
-    const Vec3d shift = times(options.misregistration * scene.diagonal(), gaussian_vector(random));
-    result.push_back({shift, times(2 * options.misregistration, gaussian_vector(random))});
-    mean = {plus(mean.shift, shift), plus(mean.turn, result.back().turn)};
+    const Vec3d shift = options.misregistration * scene.diagonal() * gaussian_vector(random);
+    result.push_back({shift, 2 * options.misregistration * gaussian_vector(random)});
+    mean = {mean.shift + shift, mean.turn + result.back().turn};
   }
   for (Motion& motion : result) {
-    motion.shift = minus(motion.shift, times(1.0 / options.views, mean.shift));
-    motion.turn = minus(motion.turn, times(1.0 / options.views, mean.turn));
+    motion.shift -= 1.0 / options.views * mean.shift;
+    motion.turn -= 1.0 / options.views * mean.turn;
   }
   return result;
 }
@@ -102,19 +95,15 @@ std::optional<Vec3d> normal_at(const DepthImage& image, const ScanOptions& optio
                                int column, Random& random) {
   std::optional<Vec3d> normal;
   if (options.normals == ScanNormals::exact)
-    normal = plus(image.normal(row, column), times(options.normal_noise, gaussian_vector(random)));
+    normal = image.normal(row, column) + options.normal_noise * gaussian_vector(random);
   else
     normal = image.fitted_normal(row, column, options.window,
                                  {std::tan(options.grazing * std::numbers::pi / 180), 6 * sigma_world});
   if (!normal) return std::nullopt;
-  *normal = mesh_detail::normalized(*normal);
+  *normal = normalized(*normal);
   const double facing = -dot(*normal, image.camera().direction(row, column));
   if (std::abs(facing) < std::cos(options.grazing * std::numbers::pi / 180)) return std::nullopt;
-  return facing < 0 ? times(-1, *normal) : *normal;
-}
-
-Vec3f to_float(const Vec3d& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+  return facing < 0 ? -1 * *normal : *normal;
 }
 
 /// Scans one view and appends its points to `cloud`.
@@ -141,8 +130,8 @@ void add_view(exec::Cpu& ex, const Scene& scene, const ScanOptions& options, int
       Random random = pixel_random(row, column, 1);
       const auto normal = normal_at(image, options, sigma_world, row, column, random);
       if (!normal) continue;
-      const Vec3d from_centre = minus(image.point(row, column), scene.centre());
-      const Vec3d moved = plus(scene.centre(), plus(motion.shift, turned(from_centre, motion.turn)));
+      const Vec3d from_centre = image.point(row, column) - scene.centre();
+      const Vec3d moved = scene.centre() + (motion.shift + turned(from_centre, motion.turn));
       rows[static_cast<std::size_t>(row)].push_back({moved, turned(*normal, motion.turn)});
     }
   });
@@ -156,13 +145,13 @@ void add_view(exec::Cpu& ex, const Scene& scene, const ScanOptions& options, int
 
 void add_outliers(const Scene& scene, const ScanOptions& options, Cloud& cloud) {
   const auto count = std::llround(static_cast<double>(cloud.size()) * options.outliers / (1 - options.outliers));
-  const Vec3d half = times(0.6, minus(scene.upper, scene.lower));
+  const Vec3d half = 0.6 * (scene.upper - scene.lower);
   for (long long i = 0; i < count; ++i) {
     Random random = random_of(options, Stream::outliers, static_cast<std::uint64_t>(i));
     Vec3d p = scene.centre();
     for (std::size_t axis = 0; axis < 3; ++axis) p[axis] += half[axis] * (2 * random.uniform() - 1);
     cloud.positions.push_back(to_float(p));
-    cloud.normals.push_back(to_float(mesh_detail::normalized(gaussian_vector(random))));
+    cloud.normals.push_back(to_float(normalized(gaussian_vector(random))));
   }
 }
 

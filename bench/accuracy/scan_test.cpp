@@ -9,27 +9,16 @@
 #include <cmath>
 #include <string>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 #include "random.hpp"
 
 namespace pointskin::bench {
 namespace {
 
-using mesh_detail::dot;
-using mesh_detail::length;
-using mesh_detail::minus;
-using mesh_detail::plus;
-using mesh_detail::times;
-using mesh_detail::to_double;
-
 constexpr ScanOptions kQuick{.views = 6, .resolution = 60};
 
 Vec3d random_point(Random& random) {
   return {2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1};
-}
-
-Vec3f to_float(const Vec3d& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
 Mesh random_triangles(int count) {
@@ -38,8 +27,7 @@ Mesh random_triangles(int count) {
   Random random(1, 0);
   for (std::int32_t i = 0; i < count; ++i) {
     const Vec3d centre = random_point(random);
-    for (int corner = 0; corner < 3; ++corner)
-      mesh.vertices.push_back(to_float(plus(centre, times(0.2, random_point(random)))));
+    for (int corner = 0; corner < 3; ++corner) mesh.vertices.push_back(to_float(centre + 0.2 * random_point(random)));
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   return mesh;
@@ -51,7 +39,7 @@ TEST(RayTree, FindsTheFirstTriangleOfMany) {
   Random random(2, 0);
   int hits = 0;
   for (int i = 0; i < 2'000; ++i) {
-    const Ray ray{plus(mesh.origin, times(3, random_point(random))), mesh_detail::normalized(random_point(random))};
+    const Ray ray{mesh.origin + 3 * random_point(random), normalized(random_point(random))};
     double nearest = std::numeric_limits<double>::infinity();
     for (const Triangle& t : mesh.triangles) {  // a tree of one triangle has no boxes to go wrong
       Mesh alone;
@@ -77,9 +65,9 @@ TEST(RayTree, LetsNoRaySlipThroughEdgesAndCorners) {
   for (int i = -9; i <= 9; ++i) {
     for (const double sign : {-1.0, 1.0}) {
       const Vec3d target = {i / 10.0, sign * i / 10.0, 0}, from = {0.3, 0.2, 2};
-      const auto hit = tree.first_hit({from, mesh_detail::normalized(minus(target, from))});
+      const auto hit = tree.first_hit({from, normalized(target - from)});
       ASSERT_TRUE(hit) << i;
-      EXPECT_NEAR(hit->range, length(minus(target, from)), 1e-12);
+      EXPECT_NEAR(hit->range, length(target - from), 1e-12);
       EXPECT_EQ(hit->normal, (Vec3d{0, 0, 1}));
     }
   }
@@ -91,15 +79,15 @@ TEST(Scene, TracesASphereAsTheFormulaHasIt) {
   const auto scene = scene_of(*shape);
   Random random(3, 0);
   for (int i = 0; i < 2'000; ++i) {
-    const Vec3d from = times(4, mesh_detail::normalized(random_point(random)));
-    const Vec3d along = mesh_detail::normalized(minus(times(1.2, random_point(random)), from));
+    const Vec3d from = 4 * normalized(random_point(random));
+    const Vec3d along = normalized(1.2 * random_point(random) - from);
     const double middle = -dot(from, along), under = 1 - (16 - middle * middle);
     const auto hit = scene->first_hit({from, along});
     if (std::abs(under) < 1e-3) continue;  // grazing
     ASSERT_EQ(hit.has_value(), under > 0);
     if (!hit) continue;
     EXPECT_NEAR(hit->range, middle - std::sqrt(under), 1e-6);
-    EXPECT_GT(dot(hit->normal, plus(from, times(hit->range, along))), 1 - 1e-6);
+    EXPECT_GT(dot(hit->normal, from + hit->range * along), 1 - 1e-6);
   }
 }
 
@@ -121,7 +109,7 @@ TEST_P(ScanOf, HasNormalsThatFaceOutwards) {
   options.normals = ScanNormals::exact;
   const Cloud cloud = scan(*scene_, options);
   for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
-    const Vec3d gradient = mesh_detail::normalized(shape_->at(to_double(cloud.positions[i])).gradient);
+    const Vec3d gradient = normalized(shape_->at(to_double(cloud.positions[i])).gradient);
     ASSERT_GT(dot(gradient, to_double(cloud.normals[i])), 0.99);
   }
 }
@@ -161,7 +149,7 @@ TEST_F(ScanOfSphere, FitsNormalsToTheImage) {
     const Cloud cloud = scan(*scene_, options);
     double sum = 0;
     for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
-      const double cosine = dot(mesh_detail::normalized(to_double(cloud.positions[i])), to_double(cloud.normals[i]));
+      const double cosine = dot(normalized(to_double(cloud.positions[i])), to_double(cloud.normals[i]));
       sum += std::acos(std::min(1.0, cosine));
     }
     return sum / static_cast<double>(cloud.size());
@@ -211,8 +199,8 @@ TEST_F(ScanOfSphere, DropsGrazingPoints) {
   const Cloud cloud = scan(*scene_, options);
   // All seen points are within 40 degrees less the camera's parallax of the middle of the cap.
   Vec3d middle{0, 0, 0};
-  for (const Vec3f& p : cloud.positions) middle = plus(middle, to_double(p));
-  middle = mesh_detail::normalized(middle);
+  for (const Vec3f& p : cloud.positions) middle += to_double(p);
+  middle = normalized(middle);
   double widest = 1;
   for (const Vec3f& p : cloud.positions) widest = std::min(widest, dot(middle, to_double(p)));
   EXPECT_GT(widest, std::cos(40 * 3.14159 / 180));
@@ -252,7 +240,7 @@ TEST(Scan, OfAMeshIsThatOfItsTriangles) {
     const double on_face = std::min(
         {std::abs(p[0]), std::abs(p[0] - 2), std::abs(p[1]), std::abs(p[1] - 1), std::abs(p[2]), std::abs(p[2] - 1)});
     EXPECT_LT(on_face, 1e-6);
-    EXPECT_GT(dot(minus(p, {1, 0.5, 0.5}), to_double(cloud.normals[i])), 0);
+    EXPECT_GT(dot(p - Vec3d{1, 0.5, 0.5}, to_double(cloud.normals[i])), 0);
   }
 }
 

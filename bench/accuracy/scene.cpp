@@ -6,24 +6,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::bench {
 namespace {
 
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::plus;
-using mesh_detail::times;
-
 class MeshScene final : public Scene {
  public:
   explicit MeshScene(const Mesh& mesh) : tree_(mesh) {
-    lower.fill(std::numeric_limits<double>::infinity());
-    upper.fill(-std::numeric_limits<double>::infinity());
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    lower = {kInfinity, kInfinity, kInfinity};
+    upper = -lower;
     for (const Triangle& t : mesh.triangles) {
       for (const std::int32_t vertex : t) {
-        const Vec3d p = plus(mesh.origin, mesh_detail::to_double(mesh.vertices[static_cast<std::size_t>(vertex)]));
+        const Vec3d p = mesh.origin + to_double(mesh.vertices[static_cast<std::size_t>(vertex)]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           lower[axis] = std::min(lower[axis], p[axis]);
           upper[axis] = std::max(upper[axis], p[axis]);
@@ -42,8 +38,8 @@ class ShapeScene final : public Scene {
  public:
   explicit ShapeScene(const Shape& shape) : shape_(shape) {
     const Bounds box = bounds_of(sample_surface(shape, {.points = 100'000, .seed = 1}).positions);
-    lower = mesh_detail::to_double(box.lower);
-    upper = mesh_detail::to_double(box.upper);
+    lower = to_double(box.lower);
+    upper = to_double(box.upper);
   }
 
   [[nodiscard]] std::optional<Hit> first_hit(const Ray& ray) const override {
@@ -56,13 +52,13 @@ class ShapeScene final : public Scene {
     const double end = middle + std::sqrt(half2);
     Sample sample;
     for (int step = 0; step < kSteps && range < end; ++step) {
-      sample = shape_.at(plus(ray.origin, times(range, ray.direction)));
+      sample = shape_.at(ray.origin + range * ray.direction);
       const double safe = sample.value / shape_.lipschitz();
-      if (safe < kTouch) return Hit{range, mesh_detail::normalized(sample.gradient)};
+      if (safe < kTouch) return Hit{range, normalized(sample.gradient)};
       range += safe;
     }
     if (range >= end || sample.value > kGrazing) return std::nullopt;
-    return Hit{range, mesh_detail::normalized(sample.gradient)};
+    return Hit{range, normalized(sample.gradient)};
   }
 
  private:
@@ -74,8 +70,8 @@ class ShapeScene final : public Scene {
 
 }  // namespace
 
-Vec3d Scene::centre() const { return times(0.5, plus(lower, upper)); }
-double Scene::diagonal() const { return mesh_detail::length(minus(upper, lower)); }
+Vec3d Scene::centre() const { return 0.5 * (lower + upper); }
+double Scene::diagonal() const { return length(upper - lower); }
 
 std::unique_ptr<Scene> scene_of(const Mesh& mesh) {
   measure(mesh);  // checks the indices

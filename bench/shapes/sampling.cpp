@@ -68,10 +68,10 @@ Cells cells_near_surface(const Shape& shape, int threads) {
 bool draw(const Shape& shape, const Cells& cells, Random& random, Vec3d& q, Sample& sample) {
   const auto pick = static_cast<std::size_t>(random.uniform() * static_cast<double>(cells.lower.size()));
   q = cells.lower[std::min(pick, cells.lower.size() - 1)];
-  for (double& x : q) x += cells.side * random.uniform();
+  for (std::size_t a = 0; a < 3; ++a) q[a] += cells.side * random.uniform();
   sample = shape.at(q);
   const Vec3d& g = sample.gradient;
-  return sample.value * sample.value < kBand * kBand * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+  return sample.value * sample.value < kBand * kBand * squared_length(g);
 }
 
 void add_noise(SurfacePoint& point, const SamplingOptions& options, Random& random) {
@@ -85,7 +85,7 @@ void add_noise(SurfacePoint& point, const SamplingOptions& options, Random& rand
     point.normal[axis] += options.normal_noise * turn[axis];
     norm2 += point.normal[axis] * point.normal[axis];
   }
-  for (double& n : point.normal) n /= std::sqrt(norm2);
+  point.normal = point.normal / std::sqrt(norm2);
 }
 
 std::vector<SurfacePoint> sample_block(const Shape& shape, const Cells& cells, const SamplingOptions& options,

@@ -16,16 +16,12 @@
 namespace pointskin::bench {
 namespace {
 
-double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
-Vec3d scaled(const Vec3d& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-Vec3d sum(const Vec3d& a, const Vec3d& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Vec3d difference(const Vec3d& a, const Vec3d& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 /// A direction even where `a` vanishes, so that gradients stay finite.
 Vec3d direction(const Vec3d& a) {
   const double norm = length(a);
-  return norm > 0 ? scaled(a, 1 / norm) : Vec3d{0, 0, 1};
+  return norm > 0 ? a * (1 / norm) : Vec3d{0, 0, 1};
 }
 
 /// Smooth maximum: max(a, b) + k/4 (max(k - |a - b|, 0) / k)^2, once differentiable, exact where |a - b| >= k.
@@ -33,7 +29,7 @@ Sample smooth_max(const Sample& a, const Sample& b, double k) {
   const double gap = a.value - b.value;
   const double h = std::max(k - std::abs(gap), 0.0) / k;
   const double weight = gap >= 0 ? 1 - h / 2 : h / 2;  // d smooth_max / d a
-  return {std::max(a.value, b.value) + k / 4 * h * h, sum(scaled(a.gradient, weight), scaled(b.gradient, 1 - weight))};
+  return {std::max(a.value, b.value) + k / 4 * h * h, a.gradient * weight + b.gradient * (1 - weight)};
 }
 
 class Gyroid final : public Shape {
@@ -62,7 +58,7 @@ class Gyroid final : public Shape {
     const double g = s[0] * c[1] + s[1] * c[2] + s[2] * c[0];
     // grad ((g^2 - 0.16) / 9) = 2 g grad g / 9; the 9 of grad g cancels.
     const Vec3d gradient = {c[0] * c[1] - s[2] * s[0], c[1] * c[2] - s[0] * s[1], c[2] * c[0] - s[1] * s[2]};
-    return {(g * g - 0.16) / 9, scaled(gradient, 2 * g)};
+    return {(g * g - 0.16) / 9, gradient * (2 * g)};
   }
 };
 
@@ -79,7 +75,7 @@ class Torus final : public Shape {
   [[nodiscard]] Sample at(const Vec3d& q) const override {
     const double from_axis = std::hypot(q[0], q[1]);
     const Vec3d out = from_axis > 0 ? Vec3d{q[0] / from_axis, q[1] / from_axis, 0} : Vec3d{1, 0, 0};
-    const Vec3d from_core = difference(q, scaled(out, 0.7));
+    const Vec3d from_core = q - out * 0.7;
     return {length(from_core) - 0.25, direction(from_core)};
   }
   [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
@@ -97,12 +93,12 @@ class Knot final : public Shape {
   [[nodiscard]] double lipschitz() const override { return 1 + kBump * kWaves; }
 
   [[nodiscard]] Sample at(const Vec3d& q) const override {
-    const Vec3d from_curve = difference(q, curve(nearest(q)));
+    const Vec3d from_curve = q - curve(nearest(q));
     const Vec3d s = {std::sin(kWaves * q[0]), std::sin(kWaves * q[1]), std::sin(kWaves * q[2])};
     const Vec3d c = {std::cos(kWaves * q[0]), std::cos(kWaves * q[1]), std::cos(kWaves * q[2])};
     const Vec3d bump = {c[0] * s[1] * s[2], s[0] * c[1] * s[2], s[0] * s[1] * c[2]};
     return {length(from_curve) - kRadius - kBump * s[0] * s[1] * s[2],
-            sum(direction(from_curve), scaled(bump, -kBump * kWaves))};
+            direction(from_curve) + bump * (-kBump * kWaves)};
   }
 
   [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override {
@@ -123,7 +119,7 @@ class Knot final : public Shape {
   [[nodiscard]] double nearest(const Vec3d& q) const {
     std::array<double, kPieces> squared;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const Vec3d d = difference(nodes_[i], q);
+      const Vec3d d = nodes_[i] - q;
       squared[i] = dot(d, d);
     }
     double t = static_cast<double>(std::min_element(squared.begin(), squared.end()) - squared.begin()) * kStep;
@@ -134,7 +130,7 @@ class Knot final : public Shape {
       const double bend = -2.25 * std::cos(3 * t);
       const Vec3d second = {(bend - 4 * reach) * c - 4 * slope * s, (bend - 4 * reach) * s + 4 * slope * c,
                             -2.25 * std::sin(3 * t)};
-      const Vec3d off = difference(curve(t), q);
+      const Vec3d off = curve(t) - q;
       const double curvature = dot(first, first) + dot(off, second);
       if (curvature <= 0) break;  // far from the curve: no minimum to refine
       const double move = std::clamp(dot(off, first) / curvature, -kStep, kStep);
@@ -203,7 +199,8 @@ class Slab final : public Shape {
     return {std::abs(q[0]) - kHalf[0], std::abs(q[1]) - kHalf[1], std::abs(q[2]) - kHalf[2]};
   }
   static std::size_t most_beyond(const Vec3d& off) {
-    return static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
+    const std::size_t most = off.x < off.y ? 1 : 0;
+    return off[most] < off.z ? 2 : most;
   }
   static Vec3d face_normal(const Vec3d& q, std::size_t face) {
     Vec3d normal{0, 0, 0};
@@ -221,7 +218,7 @@ class Nested final : public Shape {
     const double r = length(q);
     const double ball = r - 0.3, cavity = 0.6 - r, rim = r - 0.95;
     if (ball <= std::max(cavity, rim)) return {ball, direction(q)};
-    return cavity >= rim ? Sample{cavity, scaled(direction(q), -1)} : Sample{rim, direction(q)};
+    return cavity >= rim ? Sample{cavity, -direction(q)} : Sample{rim, direction(q)};
   }
 
   [[nodiscard]] double variation(const Vec3d& /*centre*/, double radius) const override { return radius; }
@@ -231,7 +228,7 @@ class Nested final : public Shape {
 
 SurfacePoint Shape::closest(const Vec3d& q) const {
   const Sample sample = at(q);
-  return {difference(q, scaled(sample.gradient, sample.value)), sample.gradient};
+  return {q - sample.gradient * sample.value, sample.gradient};
 }
 
 SurfacePoint Shape::draw(Random& /*random*/) const {

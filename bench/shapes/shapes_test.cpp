@@ -17,7 +17,6 @@ namespace pointskin::bench {
 namespace {
 
 Vec3d to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
-double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 class EveryShape : public testing::TestWithParam<const char*> {
  protected:
@@ -81,7 +80,7 @@ class Regions {
   static constexpr std::size_t kCount = 27 * 3;
   static std::size_t of(const Vec3d& q) {
     std::size_t region = 0;
-    for (const double x : q) region = region * 3 + (x < -0.3 ? 0U : x < 0.3 ? 1U : 2U);
+    for (const double x : {q.x, q.y, q.z}) region = region * 3 + (x < -0.3 ? 0U : x < 0.3 ? 1U : 2U);
     const double r = std::sqrt(dot(q, q));
     return region * 3 + (r < 0.97 ? 0U : r < 0.9995 ? 1U : 2U);
   }

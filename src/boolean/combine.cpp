@@ -294,9 +294,7 @@ class Combination {
     clock.read();
   }
 
-  [[nodiscard]] Vec3d move_from(const Vec3d& origin) const {
-    return {origin[0] - origin_[0], origin[1] - origin_[1], origin[2] - origin_[2]};
-  }
+  [[nodiscard]] Vec3d move_from(const Vec3d& origin) const { return origin - origin_; }
   void rebase(const Vec3d& origin, PointBuffers& points) {
     if (origin == origin_) return;
     for_each(ex_, "boolean.rebase", points.positions.size(), Rebase{move_from(origin), points.positions.view()});

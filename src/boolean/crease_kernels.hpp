@@ -16,8 +16,6 @@ using field::SurfaceDistance;
 /// A point counts as on a surface within this distance, in leaves.
 inline constexpr float kOnSurface = 0.02F;
 
-PSK_HD inline float dot(const Vec3f& a, const Vec3f& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 PSK_HD inline Vec3f plus(const Vec3f& a, float t, const Vec3f& b) {
   return {a.x + t * b.x, a.y + t * b.y, a.z + t * b.z};
 }

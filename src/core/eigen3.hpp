@@ -5,14 +5,14 @@
 
 #include <cmath>
 
-#include "core/double3.hpp"
+#include "core/matrix3.hpp"
 
 namespace pointskin {
 
 /// Eigenvalues, ascending, and their unit eigenvectors.
 struct Eigen3 {
   double values[3];
-  Double3 vectors[3];
+  Vec3d vectors[3];
 };
 
 namespace eigen3 {

@@ -13,7 +13,7 @@ namespace {
 
 /// Moves the origin to `origin`; world positions stay, to float.
 void rebase(Cloud& cloud, const Vec3d& origin) {
-  const Vec3d move = {cloud.origin[0] - origin[0], cloud.origin[1] - origin[1], cloud.origin[2] - origin[2]};
+  const Vec3d move = cloud.origin - origin;
   for (Vec3f& p : cloud.positions)
     p = {static_cast<float>(p.x + move[0]), static_cast<float>(p.y + move[1]), static_cast<float>(p.z + move[2])};
   cloud.origin = origin;

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "core/array_view.hpp"
-#include "core/double3.hpp"
+#include "core/matrix3.hpp"
 #include "deform/rotation.hpp"
 
 namespace pointskin::deform {
@@ -24,19 +24,19 @@ enum class RegionShape : std::int32_t { half_space, ball, box, capsule, points }
 struct HandleData {
   RegionShape shape = RegionShape::half_space;
   std::int32_t nearest_row = -1;  ///< of MapView::nearest, for points
-  Double3 a;                      ///< point of the plane, centre, lower corner, an end
-  Double3 b;                      ///< unit normal into the half-space, upper corner, the other end
+  Vec3d a;                        ///< point of the plane, centre, lower corner, an end
+  Vec3d b;                        ///< unit normal into the half-space, upper corner, the other end
   double radius = 0;
-  Double3 rotation;    ///< axis times angle
+  Vec3d rotation;      ///< axis times angle
   Symmetric3 stretch;  ///< S - I
-  Double3 translation, pivot;
+  Vec3d translation, pivot;
   double pivot_weight = 0;  ///< how much its pivot matters: angle and size of the stretch
 };
 
 /// A lattice as kernels read it.
 struct LatticeData {
-  Double3 origin;
-  Double3 inverse[3];  ///< rows: s_a = inverse[a] . (x - origin)
+  Vec3d origin;
+  Vec3d inverse[3];  ///< rows: s_a = inverse[a] . (x - origin)
   std::int32_t spans[3] = {1, 1, 1};
   std::int32_t stay_outside = 0;
   std::int64_t first_move = 0;  ///< of its control points in MapView::moves
@@ -45,20 +45,20 @@ struct LatticeData {
 /// Distance to a region and where it grows.
 struct RegionDistance {
   double distance = 0;  ///< >= 0
-  Double3 gradient;     ///< unit length; 0 inside
+  Vec3d gradient;       ///< unit length; 0 inside
 };
 
 PSK_HD inline double clamp(double v, double lower, double upper) { return v < lower ? lower : v > upper ? upper : v; }
 
-PSK_HD inline RegionDistance distance_beyond(const Double3& x, const Double3& core, double radius) {
-  const Double3 away = x - core;
+PSK_HD inline RegionDistance distance_beyond(const Vec3d& x, const Vec3d& core, double radius) {
+  const Vec3d away = x - core;
   const double length = std::sqrt(dot(away, away));
   if (!(length > radius)) return {};
   return {length - radius, away * (1 / length)};
 }
 
 /// @param nearest  for points: the nearest of them
-PSK_HD inline RegionDistance distance_to(const HandleData& handle, const Double3& x, const Double3& nearest) {
+PSK_HD inline RegionDistance distance_to(const HandleData& handle, const Vec3d& x, const Vec3d& nearest) {
   switch (handle.shape) {
     case RegionShape::half_space: {
       const double inside = dot(x - handle.a, handle.b);
@@ -73,7 +73,7 @@ PSK_HD inline RegionDistance distance_to(const HandleData& handle, const Double3
           {clamp(x.x, handle.a.x, handle.b.x), clamp(x.y, handle.a.y, handle.b.y), clamp(x.z, handle.a.z, handle.b.z)},
           0);
     case RegionShape::capsule: {
-      const Double3 along = handle.b - handle.a;
+      const Vec3d along = handle.b - handle.a;
       const double squared = dot(along, along);
       const double t = squared > 0 ? clamp(dot(x - handle.a, along) / squared, 0, 1) : 0;
       return distance_beyond(x, handle.a + along * t, handle.radius);
@@ -86,14 +86,14 @@ PSK_HD inline RegionDistance distance_to(const HandleData& handle, const Double3
 
 /// A point's image and the derivative there.
 struct Mapped {
-  Double3 position;
+  Vec3d position;
   Matrix3 jacobian;
 };
 
 /// Weights of the handles at a point, with their gradients.
 struct HandleWeights {
   double weight[kMostHandles];
-  Double3 gradient[kMostHandles];
+  Vec3d gradient[kMostHandles];
 };
 
 /// t^2 (3 - 2 t) and its slope.
@@ -118,14 +118,14 @@ PSK_HD inline bool weigh_handles(int count, const RegionDistance* distances, Han
   double shares = 0;
   for (int k = 0; k < count; ++k) shares += nearest / distances[k].distance;
   double blends = 0;
-  Double3 mean;
+  Vec3d mean;
   for (int k = 0; k < count; ++k) {
     const double t = nearest / distances[k].distance / shares;
     out.weight[k] = t;
     mean = mean + distances[k].gradient * (t / distances[k].distance);
     blends += blend(t);
   }
-  Double3 slopes;
+  Vec3d slopes;
   for (int k = 0; k < count; ++k) {
     const double t = out.weight[k];
     out.gradient[k] = (mean - distances[k].gradient * (1 / distances[k].distance)) * (t * blend_slope(t));
@@ -140,7 +140,7 @@ PSK_HD inline bool weigh_handles(int count, const RegionDistance* distances, Han
 
 /// The mean transform of weighted handles: x = c + v goes to x + (R (I + E) - I) v + d.
 struct MeanTransform {
-  Double3 rotation, translation, pivot;
+  Vec3d rotation, translation, pivot;
   Symmetric3 stretch;
   double pivots = 0;  ///< sum of weights times pivot weights
 };
@@ -191,12 +191,12 @@ struct Bernstein {
 struct MapView {
   ArrayView<const HandleData> handles;
   ArrayView<const LatticeData> lattices;
-  ArrayView<const Double3> moves;   ///< of all control points from where they rest
+  ArrayView<const Vec3d> moves;     ///< of all control points from where they rest
   ArrayView<const Vec3f> nearest;   ///< (rows, points) nearest chosen point, for regions that are point sets
   std::int64_t nearest_stride = 0;  ///< points a row
 
   /// @param point  index of x in the rows of `nearest`
-  PSK_HD Mapped operator()(const Double3& x, std::int64_t point) const {
+  PSK_HD Mapped operator()(const Vec3d& x, std::int64_t point) const {
     Mapped mapped{x, {}};
     if (!handles.empty()) by_handles(point, mapped);
     for (std::int64_t l = 0; l < lattices.size; ++l) by_lattice(lattices[l], mapped);
@@ -205,36 +205,36 @@ struct MapView {
 
  private:
   PSK_HD void by_handles(std::int64_t point, Mapped& mapped) const {
-    const Double3 x = mapped.position;
+    const Vec3d x = mapped.position;
     RegionDistance distances[kMostHandles];
     const auto count = static_cast<int>(handles.size);
     for (int k = 0; k < count; ++k) {
       const std::int32_t row = handles[k].nearest_row;
-      distances[k] = distance_to(handles[k], x, row < 0 ? Double3{} : to_double(nearest[row * nearest_stride + point]));
+      distances[k] = distance_to(handles[k], x, row < 0 ? Vec3d{} : to_double(nearest[row * nearest_stride + point]));
     }
     HandleWeights weights;
     const bool weights_change = weigh_handles(count, distances, weights);
 
     const MeanTransform mean = mean_transform(handles, weights);
     const Rotation rotation(mean.rotation);
-    const Double3 v = x - mean.pivot;
-    const Double3 stretching = mean.stretch * v;
-    const Double3 stretched = v + stretching;
-    const Double3 turning = rotation.moved_by(stretched);
+    const Vec3d v = x - mean.pivot;
+    const Vec3d stretching = mean.stretch * v;
+    const Vec3d stretched = v + stretching;
+    const Vec3d turning = rotation.moved_by(stretched);
     mapped.position = x + (stretching + turning + mean.translation);
 
-    const auto image_of = [&](const Double3& axis) { return rotation * (axis + mean.stretch * axis); };
+    const auto image_of = [&](const Vec3d& axis) { return rotation * (axis + mean.stretch * axis); };
     Matrix3& jacobian = mapped.jacobian;
     jacobian = {image_of({1, 0, 0}), image_of({0, 1, 0}), image_of({0, 0, 1})};
     if (!weights_change) return;
-    const Double3 rotated = stretched + turning;
+    const Vec3d rotated = stretched + turning;
     const Matrix3 linear = jacobian;
     for (int k = 0; k < count; ++k) {  // the weights change from place to place
       const HandleData& handle = handles[k];
-      Double3 change =
+      Vec3d change =
           handle.translation + rotation * (handle.stretch * v) + rotation.derivative(handle.rotation, rotated);
       if (mean.pivots > 0 && handle.pivot_weight > 0) {
-        const Double3 pivot = (handle.pivot - mean.pivot) * (handle.pivot_weight / mean.pivots);
+        const Vec3d pivot = (handle.pivot - mean.pivot) * (handle.pivot_weight / mean.pivots);
         change = change + pivot - linear * pivot;
       }
       add_outer(jacobian, change, weights.gradient[k]);
@@ -242,7 +242,7 @@ struct MapView {
   }
 
   PSK_HD void by_lattice(const LatticeData& lattice, Mapped& mapped) const {
-    const Double3 from = mapped.position - lattice.origin;
+    const Vec3d from = mapped.position - lattice.origin;
     const double s[3] = {dot(lattice.inverse[0], from), dot(lattice.inverse[1], from), dot(lattice.inverse[2], from)};
     if (lattice.stay_outside != 0)
       for (int a = 0; a < 3; ++a)
@@ -250,13 +250,13 @@ struct MapView {
     const Bernstein first(lattice.spans[0], s[0]);
     const Bernstein second(lattice.spans[1], s[1]);
     const Bernstein third(lattice.spans[2], s[2]);
-    Double3 move;
-    Double3 along[3];
-    const Double3* control = moves.data + lattice.first_move;
+    Vec3d move;
+    Vec3d along[3];
+    const Vec3d* control = moves.data + lattice.first_move;
     for (int i = 0; i <= lattice.spans[0]; ++i) {
       for (int j = 0; j <= lattice.spans[1]; ++j) {
-        Double3 value;
-        Double3 slope;
+        Vec3d value;
+        Vec3d slope;
         for (int k = 0; k <= lattice.spans[2]; ++k, ++control) {
           value = value + *control * third.value[k];
           slope = slope + *control * third.slope[k];

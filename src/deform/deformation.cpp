@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -28,6 +29,7 @@ class Checker {
         std::all_of(numbers.begin(), numbers.end(), [](double v) { return v >= -kLargest && v <= kLargest; });
     if (!good) throw Error(ErrorCode::usage, fmt::format("{}: {} must be finite, at most 1e12", part_, name));
   }
+  void finite(const Vec3d& v, const char* name) const { finite(std::array{v.x, v.y, v.z}, name); }
 
  private:
   std::string part_;
@@ -37,7 +39,7 @@ double length_of(const Vec3d& v) { return std::hypot(v[0], v[1], v[2]); }
 
 /// Determinant of three vectors over the product of their lengths.
 double independence(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const double volume = dot(to_double(a), cross(to_double(b), to_double(c)));
+  const double volume = dot(a, cross(b, c));
   const double lengths = length_of(a) * length_of(b) * length_of(c);
   return lengths > 0 ? volume / lengths : 0;
 }
@@ -119,7 +121,7 @@ struct ScaleTransform {
 
   HandleTransform operator()(RigidMotion motion) const {
     motion.angle *= share;
-    for (double& way : motion.translation) way *= share;
+    motion.translation = motion.translation * share;
     return motion;
   }
   HandleTransform operator()(AffineMap map) const {
@@ -128,10 +130,10 @@ struct ScaleTransform {
     if (parts.identity) return map;
     const deform::HandleData& data = parts.handles.front();
     const deform::Rotation rotation(data.rotation * share);
-    const auto image = [&](const Double3& axis) { return rotation * (axis + data.stretch * axis * share); };
+    const auto image = [&](const Vec3d& axis) { return rotation * (axis + data.stretch * axis * share); };
     const Matrix3 linear{image({1, 0, 0}), image({0, 1, 0}), image({0, 0, 1})};
-    const Double3 pivot = to_double(map.pivot);
-    const Double3 shift = data.translation * share + pivot - linear * pivot;
+    const Vec3d& pivot = map.pivot;
+    const Vec3d shift = data.translation * share + pivot - linear * pivot;
     map.matrix = {linear.x.x, linear.y.x, linear.z.x, shift.x,    linear.x.y, linear.y.y,
                   linear.z.y, shift.y,    linear.x.z, linear.y.z, linear.z.z, shift.z};
     return map;

@@ -61,7 +61,7 @@ void resample_and_map(Exec& ex, const PreparedDeformation& prepared, MovingCloud
   const RestCloud& rest = moving.rest;
   const exec::Buffer<HandleData> handles = on_device(ex, prepared.handles);
   const exec::Buffer<LatticeData> lattices = on_device(ex, prepared.lattices);
-  const exec::Buffer<Double3> moves = on_device(ex, prepared.moves);
+  const exec::Buffer<Vec3d> moves = on_device(ex, prepared.moves);
   choose_points(ex, rest, prepared.point_sets, moving.chosen);
   MapView map{handles.cview(), lattices.cview(), moves.cview(), {}, 0};
 

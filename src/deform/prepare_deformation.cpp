@@ -22,7 +22,7 @@ Rows inverse_transposed(const Rows& m) {
 }
 
 /// Axis times angle of a rotation matrix, by way of its quaternion: exact near 0 and near half a turn.
-Double3 rotation_vector(const Rows& r) {
+Vec3d rotation_vector(const Rows& r) {
   // Four times the products of the quaternion's parts with its largest one. Shepperd, "Quaternion from rotation
   // matrix", J. Guidance and Control 1, 1978.
   const std::array<double, 4> squares = {1 + r[0] + r[4] + r[8], 1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8],
@@ -53,9 +53,9 @@ Double3 rotation_vector(const Rows& r) {
 HandleData transform_data(const RigidMotion& motion, const Vec3d& origin) {
   HandleData data;
   const double length = std::hypot(motion.axis[0], motion.axis[1], motion.axis[2]);
-  if (motion.angle != 0) data.rotation = to_double(motion.axis) * (motion.angle / length);
-  data.translation = to_double(motion.translation);
-  data.pivot = to_double(motion.point) - to_double(origin);
+  if (motion.angle != 0) data.rotation = motion.axis * (motion.angle / length);
+  data.translation = motion.translation;
+  data.pivot = motion.point - origin;
   data.pivot_weight = std::abs(motion.angle);
   return data;
 }
@@ -74,7 +74,7 @@ HandleData transform_data(const AffineMap& map, const Vec3d& origin) {
     return change[0] * c[0] + change[1] * c[1] + change[2] * c[2] + at[3];
   };
   data.translation = {moved(0), moved(1), moved(2)};
-  data.pivot = to_double(c) - to_double(origin);
+  data.pivot = c - origin;
   const Symmetric3& e = data.stretch;
   data.pivot_weight =
       std::sqrt(dot(data.rotation, data.rotation)) +
@@ -85,28 +85,28 @@ HandleData transform_data(const AffineMap& map, const Vec3d& origin) {
 /// Fills in a region.
 struct FillRegion {
   HandleData& data;
-  Double3 origin;
+  Vec3d origin;
   std::vector<std::vector<std::int64_t>>& point_sets;
 
   void operator()(const HalfSpace& region) const {
     data.shape = RegionShape::half_space;
-    data.a = to_double(region.point) - origin;
-    data.b = to_double(region.normal) * (1 / std::hypot(region.normal[0], region.normal[1], region.normal[2]));
+    data.a = region.point - origin;
+    data.b = region.normal * (1 / std::hypot(region.normal[0], region.normal[1], region.normal[2]));
   }
   void operator()(const Ball& region) const {
     data.shape = RegionShape::ball;
-    data.a = to_double(region.centre) - origin;
+    data.a = region.centre - origin;
     data.radius = region.radius;
   }
   void operator()(const AxisBox& region) const {
     data.shape = RegionShape::box;
-    data.a = to_double(region.lower) - origin;
-    data.b = to_double(region.upper) - origin;
+    data.a = region.lower - origin;
+    data.b = region.upper - origin;
   }
   void operator()(const Capsule& region) const {
     data.shape = RegionShape::capsule;
-    data.a = to_double(region.from) - origin;
-    data.b = to_double(region.to) - origin;
+    data.a = region.from - origin;
+    data.b = region.to - origin;
     data.radius = region.radius;
   }
   void operator()(const PointSet& region) const {
@@ -118,18 +118,18 @@ struct FillRegion {
 };
 
 bool moves_nothing(const HandleData& data) {
-  const Double3& t = data.translation;
+  const Vec3d& t = data.translation;
   return data.pivot_weight == 0 && t.x == 0 && t.y == 0 && t.z == 0;
 }
 
 LatticeData lattice_data(const Lattice& lattice, const Vec3d& origin) {
   LatticeData data;
-  data.origin = to_double(lattice.origin) - to_double(origin);
-  const Double3 axes[3] = {to_double(lattice.axes[0]), to_double(lattice.axes[1]), to_double(lattice.axes[2])};
+  data.origin = lattice.origin - origin;
+  const std::array<Vec3d, 3>& axes = lattice.axes;
   const double scale = 1 / dot(axes[0], cross(axes[1], axes[2]));
-  for (int a = 0; a < 3; ++a) {
+  for (std::size_t a = 0; a < 3; ++a) {
     data.inverse[a] = cross(axes[(a + 1) % 3], axes[(a + 2) % 3]) * scale;
-    data.spans[a] = lattice.spans[static_cast<std::size_t>(a)];
+    data.spans[a] = lattice.spans[a];
   }
   data.stay_outside = lattice.outside == Lattice::Outside::stay ? 1 : 0;
   return data;
@@ -166,7 +166,7 @@ PreparedDeformation prepare(const Deformation& deformation, const Vec3d& origin)
   PreparedDeformation out;
   for (const Handle& handle : deformation.handles) {
     HandleData data = std::visit([&](const auto& t) { return transform_data(t, origin); }, handle.transform);
-    std::visit(FillRegion{data, to_double(origin), out.point_sets}, handle.region);
+    std::visit(FillRegion{data, origin, out.point_sets}, handle.region);
     out.identity = out.identity && moves_nothing(data);
     out.handles.push_back(data);
   }
@@ -176,8 +176,7 @@ PreparedDeformation prepare(const Deformation& deformation, const Vec3d& origin)
     for (int i = 0; i <= lattice.spans[0]; ++i)
       for (int j = 0; j <= lattice.spans[1]; ++j)
         for (int k = 0; k <= lattice.spans[2]; ++k) {
-          const Double3 move =
-              to_double(lattice.control[lattice.index(i, j, k)]) - to_double(lattice.rest_point(i, j, k));
+          const Vec3d move = lattice.control[lattice.index(i, j, k)] - lattice.rest_point(i, j, k);
           out.identity = out.identity && move.x == 0 && move.y == 0 && move.z == 0;
           out.moves.push_back(move);
         }

@@ -12,7 +12,7 @@ namespace pointskin::deform {
 
 /// A linear map as rotation and stretch: M = R(rotation) (I + stretch).
 struct PolarParts {
-  Double3 rotation;    ///< axis times angle, at most pi
+  Vec3d rotation;      ///< axis times angle, at most pi
   Symmetric3 stretch;  ///< S - I
 };
 
@@ -25,7 +25,7 @@ PolarParts polar_parts(const std::array<double, 9>& matrix);
 struct PreparedDeformation {
   std::vector<HandleData> handles;
   std::vector<LatticeData> lattices;
-  std::vector<Double3> moves;
+  std::vector<Vec3d> moves;
   std::vector<std::vector<std::int64_t>> point_sets;
   bool identity = true;  ///< nothing moves anything
 };

@@ -24,9 +24,9 @@ struct Stretch {
     return static_cast<std::int64_t>((stretch < kMostCopies ? stretch : kMostCopies) * kOne + 0.5);
   }
   PSK_HD void operator()(std::int64_t i) const {
-    const Double3 n = to_double(samples.normals[i]);
+    const Vec3d n = to_double(samples.normals[i]);
     const double squared = dot(n, n);
-    const Double3 area = cofactor_times(map(to_double(samples.positions[i]), i).jacobian, n);
+    const Vec3d area = cofactor_times(map(to_double(samples.positions[i]), i).jacobian, n);
     out[i] = squared > 0 ? fixed(std::sqrt(dot(area, area) / squared)) : kOne;
   }
 };
@@ -64,7 +64,7 @@ struct Projector {
   PSK_HD bool project(Vec3f& p, float reach, Vec3f& gradient_there) const {
     for (int step = 0; step < 2; ++step) {
       const Vec3f g = gradient(p);
-      const float squared = g.x * g.x + g.y * g.y + g.z * g.z;
+      const float squared = squared_length(g);
       const float off = surface.field.isovalue - value(p);
       if (!(off * off <= reach * reach * squared) || !(squared > 0)) return false;
       const float t = off / squared;
@@ -77,8 +77,8 @@ struct Projector {
 
 /// An orthonormal basis of a tangent plane. Source: Duff et al., "Building an orthonormal basis, revisited", JCGT 2017.
 struct TangentPlane {
-  Double3 u, v;
-  PSK_HD explicit TangentPlane(const Double3& n) {
+  Vec3d u, v;
+  PSK_HD explicit TangentPlane(const Vec3d& n) {
     const double sign = n.z >= 0 ? 1 : -1;
     const double a = -1 / (sign + n.z);
     const double b = n.x * n.y * a;
@@ -87,8 +87,8 @@ struct TangentPlane {
   }
   /// Turns the basis so that `jacobian` stretches u most and v least.
   PSK_HD void turn_to_principal(const Matrix3& jacobian) {
-    const Double3 a = jacobian * u;
-    const Double3 b = jacobian * v;
+    const Vec3d a = jacobian * u;
+    const Vec3d b = jacobian * v;
     const double half = (dot(a, a) - dot(b, b)) / 2;
     const double mixed = dot(a, b);
     const double root = std::sqrt(half * half + mixed * mixed);
@@ -96,7 +96,7 @@ struct TangentPlane {
     const double s = half >= 0 ? mixed : root - half;
     const double length = std::sqrt(c * c + s * s);
     if (!(length > 0)) return;
-    const Double3 first = u * (c / length) + v * (s / length);
+    const Vec3d first = u * (c / length) + v * (s / length);
     v = v * (c / length) - u * (s / length);
     u = first;
   }
@@ -116,8 +116,8 @@ struct Place {
     const auto count = static_cast<int>(copies.before(i + 1) - first);
     if (count == 0) return;
     if (count == 1) return write(first, i, samples.positions[i], samples.normals[i]);
-    const Double3 x = to_double(samples.positions[i]);
-    const Double3 n = to_double(samples.normals[i]);
+    const Vec3d x = to_double(samples.positions[i]);
+    const Vec3d n = to_double(samples.normals[i]);
     TangentPlane plane(n * (1 / std::sqrt(dot(n, n))));
     plane.turn_to_principal(map(x, i).jacobian);
     const auto side = static_cast<double>(samples.spacings[i]);
@@ -126,7 +126,7 @@ struct Place {
       const double steps = j - 0.5 * (count - 1);
       const double turns = steps * 0.6180339887498949 + 64.5;
       const double across = turns - static_cast<double>(static_cast<std::int64_t>(turns)) - 0.5;
-      const Double3 offset = plane.u * (steps / count * side) + plane.v * (across * side);
+      const Vec3d offset = plane.u * (steps / count * side) + plane.v * (across * side);
       Vec3f position = to_float(x + offset);
       Vec3f normal = samples.normals[i];
       if (steps != 0) settle(position, normal, side);
@@ -147,8 +147,8 @@ struct Place {
     Vec3f unit = frame.to_unit(position);
     Vec3f gradient;
     if (!projector.project(unit, static_cast<float>(0.5 * side / frame.size), gradient)) return;
-    const Double3 outward = to_double(gradient) * -1;
-    const Double3 n = to_double(normal);
+    const Vec3d outward = to_double(gradient) * -1;
+    const Vec3d n = to_double(normal);
     const double lengths = std::sqrt(dot(n, n) * dot(outward, outward));
     if (!(dot(n, outward) > 0.5 * lengths)) return;
     position = frame.to_world(unit);
@@ -162,8 +162,8 @@ struct MapSample {
 
   PSK_HD void operator()(std::int64_t i) const {
     const Mapped mapped = map(to_double(positions[i]), i);
-    const Double3 n = to_double(normals[i]);
-    Double3 area = cofactor_times(mapped.jacobian, n);
+    const Vec3d n = to_double(normals[i]);
+    Vec3d area = cofactor_times(mapped.jacobian, n);
     if (dot(mapped.jacobian.x, cross(mapped.jacobian.y, mapped.jacobian.z)) < 0) area = area * -1;
     const double squared = dot(area, area);
     positions[i] = to_float(mapped.position);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/double3.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::deform {
 
@@ -65,21 +65,21 @@ PSK_HD inline RotationTerms rotation_terms(double squared) {
 
 /// exp([w]x) for a rotation vector w: axis times angle.
 struct Rotation {
-  Double3 vector;
+  Vec3d vector;
   RotationTerms terms;
 
-  PSK_HD explicit Rotation(const Double3& w) : vector(w), terms(rotation_terms(dot(w, w))) {}
+  PSK_HD explicit Rotation(const Vec3d& w) : vector(w), terms(rotation_terms(dot(w, w))) {}
 
   /// R v - v, without cancellation; exactly 0 for w = 0.
-  PSK_HD Double3 moved_by(const Double3& v) const {
-    const Double3 once = cross(vector, v);
+  PSK_HD Vec3d moved_by(const Vec3d& v) const {
+    const Vec3d once = cross(vector, v);
     return once * terms.one + cross(vector, once) * terms.two;
   }
-  PSK_HD Double3 operator*(const Double3& v) const { return v + moved_by(v); }
+  PSK_HD Vec3d operator*(const Vec3d& v) const { return v + moved_by(v); }
 
   /// Derivative of R v when w changes by `change`, given R v: (J change) x R v with the left Jacobian J of SO(3).
-  PSK_HD Double3 derivative(const Double3& change, const Double3& rotated) const {
-    const Double3 spin =
+  PSK_HD Vec3d derivative(const Vec3d& change, const Vec3d& rotated) const {
+    const Vec3d spin =
         change * terms.one + vector * (terms.three * dot(vector, change)) + cross(vector, change) * terms.two;
     return cross(spin, rotated);
   }

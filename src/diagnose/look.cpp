@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/double3.hpp"
+#include "core/vec3.hpp"
 #include "diagnose/spread.hpp"
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
@@ -85,9 +85,9 @@ struct LookAtSample {
   PSK_HD void compare(std::int64_t i, std::int64_t j, Sums& tally) const {
     constexpr double kAlikeCosine = 0.5;
     constexpr double kSteep = 0.35;  // across an edge, or from sheet to sheet
-    const Double3 n = to_double(samples.normals[i]);
-    const Double3 m = to_double(samples.normals[j]);
-    const Double3 d = to_double(samples.positions[j]) - to_double(samples.positions[i]);
+    const Vec3d n = to_double(samples.normals[i]);
+    const Vec3d m = to_double(samples.normals[j]);
+    const Vec3d d = to_double(samples.positions[j]) - to_double(samples.positions[i]);
     const double along_n = dot(n, d);
     const double along_m = dot(m, d);
     const double limit = kSteep * kSteep * dot(d, d);
@@ -105,8 +105,8 @@ struct LookAtSample {
   PSK_HD void scatter(int k, std::int64_t i, std::int64_t j, Sums& tally) const {
     constexpr double kAgreement = 0.8;
     constexpr double kMost = 512;  // finest cells^2
-    const Double3 n = to_double(samples.normals[i]);
-    const Double3 m = to_double(samples.normals[j]);
+    const Vec3d n = to_double(samples.normals[i]);
+    const Vec3d m = to_double(samples.normals[j]);
     if (!(dot(n, m) > kAgreement)) return;
     const double across = 0.5 * static_cast<double>(std::int64_t{1} << tree.depth) *
                           dot(n + m, to_double(samples.positions[j]) - to_double(samples.positions[i]));
@@ -121,12 +121,12 @@ struct LookAtSample {
     const double stands_for = samples.areas.empty() ? 1.0 / static_cast<double>(samples.positions.size)
                                                     : static_cast<double>(samples.areas[i]) * cell * cell;
     const double area = stands_for < 1 ? stands_for : 1.0;
-    const Double3 n = to_double(samples.normals[i]) * area;
+    const Vec3d n = to_double(samples.normals[i]) * area;
     tally.add_fraction(kArea, area);
     tally.add_fraction(kVectorX, n.x);
     tally.add_fraction(kVectorY, n.y);
     tally.add_fraction(kVectorZ, n.z);
-    tally.add_fraction(kFlux, dot(n, to_double(samples.positions[i]) - Double3{0.5, 0.5, 0.5}));
+    tally.add_fraction(kFlux, dot(n, to_double(samples.positions[i]) - Vec3d{0.5, 0.5, 0.5}));
   }
 };
 
@@ -153,7 +153,7 @@ PSK_HD AtPoint look_at(const field::FieldView& field, const Vec3f& p) {
     g = {g.x + (x != 0 ? u : -u) * wy * wz, g.y + (y != 0 ? u : -u) * wx * wz, g.z + (z != 0 ? u : -u) * wx * wy};
   }
   const auto finest = static_cast<float>(std::int64_t{1} << (field.tree.depth - leaf.depth));
-  return {value - field.isovalue, std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) / finest};
+  return {value - field.isovalue, length(g) / finest};
 }
 
 struct LookAtField {
@@ -204,7 +204,7 @@ struct LookAtTriangle {
     const Vec3f a = positions[v[0]];
     const Vec3f b = positions[v[1]];
     const Vec3f c = positions[v[2]];
-    const Double3 normal = cross(to_double(b) - to_double(a), to_double(c) - to_double(a));
+    const Vec3d normal = cross(to_double(b) - to_double(a), to_double(c) - to_double(a));
     const double area = 0.5 * std::sqrt(dot(normal, normal));
     tally.add_fraction(kSurface, area);
     if (is_far({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3}))

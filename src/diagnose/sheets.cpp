@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/double3.hpp"
 #include "core/eigen3.hpp"
+#include "core/matrix3.hpp"
 #include "diagnose/spread.hpp"
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
@@ -19,15 +19,15 @@ constexpr int kLevels = 5;
 /// Moments of the samples around one, in cells of a level, relative to it.
 struct Moments {
   double count = 0;
-  Double3 sum{};
+  Vec3d sum{};
   Symmetric3 squares;
 
-  PSK_HD void add(const Double3& d) {
+  PSK_HD void add(const Vec3d& d) {
     count += 1;
     sum = sum + d;
     squares = squares + outer(d);
   }
-  [[nodiscard]] PSK_HD Double3 mean() const { return sum * (1 / count); }
+  [[nodiscard]] PSK_HD Vec3d mean() const { return sum * (1 / count); }
   [[nodiscard]] PSK_HD Symmetric3 covariance() const { return squares * (1 / count) + outer(mean()) * -1; }
 };
 
@@ -87,11 +87,11 @@ struct MeasureThickness {
   [[nodiscard]] PSK_HD float across_normals(std::int64_t i, int depth, std::int32_t step) const {
     constexpr double kAgreement = 0.75;  // what faces elsewhere is another sheet, or bends away
     constexpr double kTypical = 1.18;    // the median sample lies 2/3 of a standard deviation off itself
-    const Double3 n = to_double(normals[i]);
+    const Vec3d n = to_double(normals[i]);
     double count = 0;
     double sum = 0;
-    for_samples_around(i, depth, step, [&](std::int32_t j, const Double3& d) {
-      const Double3 m = to_double(normals[j]);
+    for_samples_around(i, depth, step, [&](std::int32_t j, const Vec3d& d) {
+      const Vec3d m = to_double(normals[j]);
       if (!(dot(n, m) > kAgreement)) return;
       const double across = 0.5 * dot(n + m, d);
       sum += 0.5 * across * across;
@@ -102,14 +102,14 @@ struct MeasureThickness {
 
   [[nodiscard]] PSK_HD float across_plane(std::int64_t i, int depth, std::int32_t step) const {
     Moments moments;
-    for_samples_around(i, depth, step, [&](std::int32_t, const Double3& d) { moments.add(d); });
+    for_samples_around(i, depth, step, [&](std::int32_t, const Vec3d& d) { moments.add(d); });
     if (moments.count < kFewestForPlane) return -1;
     const Eigen3 axes = eigen_of(moments.covariance());
     const double variance = axes.values[0] > 0 ? axes.values[0] : 0;
     const double mean = dot(axes.vectors[0], moments.mean());
     double third = 0;
     double fourth = 0;
-    for_samples_around(i, depth, step, [&](std::int32_t, const Double3& d) {
+    for_samples_around(i, depth, step, [&](std::int32_t, const Vec3d& d) {
       const double height = dot(axes.vectors[0], d) - mean;
       third += height * height * height;
       fourth += height * height * height * height;

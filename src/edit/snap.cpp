@@ -11,7 +11,7 @@ namespace {
 
 /// Rotation by the length of `turn`, in radians, about its direction (Rodrigues).
 std::array<double, 9> rotation_by(const Vec3d& turn) {
-  const double angle = std::sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+  const double angle = std::sqrt(squared_length(turn));
   const double s = angle > 0 ? std::sin(angle) / angle : 1;
   const double half = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
   const double c = 2 * half * half;  // (1 - cos(angle)) / angle^2
@@ -79,7 +79,7 @@ bool step(const Equations& equations, const Vec3d& centre, double radius, Placem
     shift[i] = centre[i] + x[3 + i];
     for (std::size_t j = 0; j < 3; ++j) shift[i] += rotation[3 * i + j] * (motion.shift[j] - centre[j]);
   }
-  std::copy(shift.begin(), shift.end(), motion.shift);
+  for (std::size_t i = 0; i < 3; ++i) motion.shift[i] = shift[i];
   change = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + std::sqrt(x[3] * x[3] + x[4] * x[4] + x[5] * x[5]);
   return std::isfinite(change);
 }

@@ -55,7 +55,8 @@ void check(const Insert& insert) {
     require(insert.lower[a] <= insert.upper[a], "the box of a part must have its lower corner below its upper one");
   const Similarity& s = insert.placement;
   require(s.scale > 0 && std::isfinite(s.scale), "the scale of a part's placement must be above 0");
-  for (const double t : s.translation) require(std::isfinite(t), "the translation of a part must be finite");
+  for (const double t : {s.translation.x, s.translation.y, s.translation.z})
+    require(std::isfinite(t), "the translation of a part must be finite");
   Camera as_camera;  // whose view must be a rotation, too
   for (std::size_t i = 0; i < 9; ++i) as_camera.view[4 * (i / 3) + i % 3] = s.rotation[i];
   try {

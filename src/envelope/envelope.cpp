@@ -8,19 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "mesh/mesh_checks.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin::envelope {
 namespace {
 
-using mesh_detail::length;
-using mesh_detail::minus;
-using mesh_detail::plus;
 using mesh_detail::SignedDistance;
 using mesh_detail::SurfacePlace;
-using mesh_detail::times;
 
 constexpr std::int64_t kBlock = 256;
 
@@ -41,12 +37,10 @@ void check(exec::Cpu& ex, const Mesh& mesh) {
   if (!(report.volume > 0)) refuse("encloses no volume or is turned inside out");
 }
 
-Vec3d to_world(const octree::Frame& frame, const Vec3f& unit) {
-  return plus(frame.lower, times(frame.size, mesh_detail::to_double(unit)));
-}
+Vec3d to_world(const octree::Frame& frame, const Vec3f& unit) { return frame.lower + frame.size * to_double(unit); }
 
 Vec3f to_unit(const octree::Frame& frame, const Vec3d& world) {
-  const Vec3d unit = times(1 / frame.size, minus(world, frame.lower));
+  const Vec3d unit = 1 / frame.size * (world - frame.lower);
   return {static_cast<float>(unit[0]), static_cast<float>(unit[1]), static_cast<float>(unit[2])};
 }
 
@@ -59,7 +53,7 @@ class Walk {
   /// True if the signed distance of `p` is above `limit`.
   bool is_inside(const Vec3d& p, double limit) {
     if (place_.slot >= 0) {
-      const double reach = (1 + 1e-9) * length(minus(p, at_));
+      const double reach = (1 + 1e-9) * length(p - at_);
       if (place_.distance - reach > limit) return true;
       if (place_.distance + reach < limit) return false;
     }
@@ -102,7 +96,7 @@ Moved move_outside(exec::Cpu& ex, const SignedDistance& distance, const octree::
       if (!to) continue;
       vertices[i] = to_unit(frame, *to);
       ++moved.vertices;
-      moved.farthest = std::max(moved.farthest, length(minus(*to, p)));
+      moved.farthest = std::max(moved.farthest, length(*to - p));
     }
     return moved;
   });
@@ -118,18 +112,18 @@ Moved move_outside(exec::Cpu& ex, const SignedDistance& distance, const octree::
 Vec3d crossing(const SignedDistance& distance, const Vec3d& inside, const SurfacePlace& at_inside, const Vec3d& outside,
                const SurfacePlace& at_outside, double accuracy) {
   constexpr int kMostSteps = 64;
-  const Vec3d way = minus(outside, inside);
+  const Vec3d way = outside - inside;
   double low = 0, high = 1;
   double depth = at_inside.distance, height = at_outside.distance;  // at these, > 0 and < 0
   std::int32_t hint = at_inside.slot;
   for (int step = 0; step < kMostSteps && depth > accuracy && (high - low) * length(way) > accuracy; ++step) {
     const double t = step % 2 == 0 ? low + (high - low) * (depth / (depth - height)) : (low + high) / 2;
-    const SurfacePlace here = distance.at(plus(inside, times(t, way)), hint);
+    const SurfacePlace here = distance.at(inside + t * way, hint);
     hint = here.slot;
     (here.distance >= 0 ? low : high) = t;
     (here.distance >= 0 ? depth : height) = here.distance;
   }
-  return plus(inside, times(low, way));
+  return inside + low * way;
 }
 
 }  // namespace
@@ -137,7 +131,7 @@ Vec3d crossing(const SignedDistance& distance, const Vec3d& inside, const Surfac
 Envelope::Envelope(std::shared_ptr<const Mesh> mesh, const Vec3d& origin, int threads)
     : mesh_(std::move(mesh)), ex_(std::make_unique<exec::Cpu>(threads)) {
   check(*ex_, *mesh_);
-  distance_ = std::make_unique<SignedDistance>(*ex_, *mesh_, minus(mesh_->origin, origin));
+  distance_ = std::make_unique<SignedDistance>(*ex_, *mesh_, mesh_->origin - origin);
 }
 
 Envelope::~Envelope() = default;
@@ -172,7 +166,7 @@ void Envelope::hold_outside(const octree::Frame& frame, const octree::LevelView&
         const Vec3d corner{static_cast<double>(2 * c.x + octree::slot_x(s)),
                            static_cast<double>(2 * c.y + octree::slot_y(s)),
                            static_cast<double>(2 * c.z + octree::slot_z(s))};
-        if (!walk.is_inside(plus(frame.lower, times(cell, corner)), kCornerMargin * cell))
+        if (!walk.is_inside(frame.lower + cell * corner, kCornerMargin * cell))
           free[b] = static_cast<std::uint8_t>(free[b] & ~(1U << s));
       }
     }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/vec3.hpp"
 #include "exec/algorithms.hpp"
 #include "field/offset.hpp"
 #include "octree/octree_data.hpp"
@@ -15,36 +16,25 @@
 
 namespace pointskin::field::offset {
 
-struct Vector {
-  double x, y, z;
-  PSK_HD friend Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  PSK_HD friend Vector operator*(double f, const Vector& v) { return {f * v.x, f * v.y, f * v.z}; }
-};
-PSK_HD inline double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-PSK_HD inline Vector cross(const Vector& a, const Vector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-PSK_HD inline Vector between(const Vec3f& from, const Vec3f& to) {
-  return {double{to.x} - double{from.x}, double{to.y} - double{from.y}, double{to.z} - double{from.z}};
-}
+PSK_HD inline Vec3d between(const Vec3f& from, const Vec3f& to) { return to_double(to) - to_double(from); }
 
 /// Squared distance from a + p to the segment from a to a + edge.
-PSK_HD inline double squared_to_edge(const Vector& p, const Vector& edge) {
+PSK_HD inline double squared_to_edge(const Vec3d& p, const Vec3d& edge) {
   const double along = dot(p, edge);
   const double squared = dot(edge, edge);
   const double t = !(along > 0) ? 0.0 : along >= squared ? 1.0 : along / squared;
-  const Vector off = p - t * edge;
-  return dot(off, off);
+  const Vec3d off = p - t * edge;
+  return squared_length(off);
 }
 
 /// Squared distance from q to a triangle, which may have no area. In double: the triangles are small.
 PSK_HD inline double squared_to_triangle(const Vec3f& q, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
-  const Vector ab = between(a, b);
-  const Vector ac = between(a, c);
-  const Vector bc = ac - ab;
-  const Vector ap = between(a, q);
-  const Vector bp = ap - ab;
-  const Vector n = cross(ab, ac);
+  const Vec3d ab = between(a, b);
+  const Vec3d ac = between(a, c);
+  const Vec3d bc = ac - ab;
+  const Vec3d ap = between(a, q);
+  const Vec3d bp = ap - ab;
+  const Vec3d n = cross(ab, ac);
   const double area = dot(n, n);
   const bool above = area > 0 && dot(cross(ab, ap), n) > 0 && dot(cross(bc, bp), n) > 0 && dot(cross(ap, ac), n) > 0;
   if (above) {

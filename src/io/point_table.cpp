@@ -213,7 +213,7 @@ AttributeValues make_values(exec::Cpu& ex, AttributeType type, std::size_t size)
 }
 
 void check_shift(const Vec3d& shift) {
-  for (const double s : shift)
+  for (const double s : {shift.x, shift.y, shift.z})
     if (!(std::abs(s) <= kLargestCoordinate)) throw Error(ErrorCode::usage, "the shift must be three finite numbers");
 }
 

@@ -28,7 +28,7 @@ class Welder {
   explicit Welder(std::size_t corners) : slots_(std::bit_ceil(corners / 2 + 16), -1) {}
 
   std::int32_t id_of(Vec3d corner) {
-    for (double& c : corner) c += 0.0;  // -0 and 0 are the same place
+    corner += Vec3d{0, 0, 0};  // -0 and 0 are the same place
     if (2 * (vertices_.size() + 1) > slots_.size()) grow();
     const std::size_t slot = slot_of(corner);
     if (slots_[slot] < 0) {
@@ -116,8 +116,7 @@ void parse_text_line(const Source& source, const Line& line, TextBlock& block) {
   const std::string_view word = values.word();
   block.ends = word == "endsolid";
   if (word == "vertex") {
-    Vec3d& corner = block.corners.emplace_back();
-    for (double& c : corner) c = values.number();
+    block.corners.push_back({values.number(), values.number(), values.number()});
     values.expect_end();
   } else if (word == "facet") {
     ++block.facets;

@@ -21,7 +21,8 @@ void append_position(std::string& bytes, const VertexArrays& v, std::size_t i) {
     for (const float x : {p.x, p.y, p.z}) append_number(bytes, x);
     return;
   }
-  for (const double x : world(v.origin, p)) append_number(bytes, x);
+  const Vec3d at = world(v.origin, p);
+  for (const double x : {at.x, at.y, at.z}) append_number(bytes, x);
 }
 
 /// As a property of type `type` holds it. Bytes are numbers, not characters.

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/vec3.hpp"
 #include "io/scalar.hpp"
 #include "io/writers.hpp"
 
@@ -20,15 +21,10 @@ constexpr std::string_view kTitle = "binary STL of pointskin";  // must not star
 
 /// Unit normal of the triangle, from coordinates relative to the origin; zero for a triangle without area.
 Vec3f normal_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
-  const auto difference = [](const Vec3f& to, const Vec3f& from) {
-    return Vec3d{double{to.x} - from.x, double{to.y} - from.y, double{to.z} - from.z};
-  };
-  const Vec3d u = difference(b, a);
-  const Vec3d v = difference(c, a);
-  const Vec3d n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  if (!(length > 0)) return {};
-  return {to_float(n[0] / length), to_float(n[1] / length), to_float(n[2] / length)};
+  const Vec3d n = cross(to_double(b) - to_double(a), to_double(c) - to_double(a));
+  const double size = length(n);
+  if (!(size > 0)) return {};
+  return {to_float(n.x / size), to_float(n.y / size), to_float(n.z / size)};
 }
 
 void store_triangle(const Mesh& mesh, const Triangle& triangle, char* out) {

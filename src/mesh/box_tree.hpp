@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "core/array_view.hpp"
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin::mesh_detail {
 

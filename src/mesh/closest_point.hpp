@@ -4,8 +4,8 @@
 
 #include <limits>
 
+#include "core/vec3.hpp"
 #include "mesh/triangle_distance.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin::mesh_detail {
 
@@ -26,15 +26,14 @@ inline ClosestPoint closest_on_edge(const Vec3d& ap, const Vec3d& ab, int index)
   const double along = dot(ap, ab);
   const double squared = squared_length(ab);
   if (along <= 0) return {ap, {Feature::corner, index}};
-  if (along >= squared) return {minus(ap, ab), {Feature::corner, (index + 1) % 3}};
-  return {minus(ap, times(along / squared, ab)), {Feature::edge, index}};
+  if (along >= squared) return {ap - ab, {Feature::corner, (index + 1) % 3}};
+  return {ap - along / squared * ab, {Feature::edge, index}};
 }
 
 /// Closest point of the border of `t` to the point at `ap`, relative to corner 0.
 inline ClosestPoint closest_on_border(const Vec3d& ap, const EdgedTriangle& t) {
-  const ClosestPoint on_edges[3] = {closest_on_edge(ap, t.ab, 0),
-                                    closest_on_edge(minus(ap, t.ab), minus(t.ac, t.ab), 1),
-                                    closest_on_edge(minus(ap, t.ac), times(-1, t.ac), 2)};
+  const ClosestPoint on_edges[3] = {closest_on_edge(ap, t.ab, 0), closest_on_edge(ap - t.ab, t.ac - t.ab, 1),
+                                    closest_on_edge(ap - t.ac, -1 * t.ac, 2)};
   ClosestPoint best;
   double least = std::numeric_limits<double>::infinity();
   for (const ClosestPoint& candidate : on_edges) {
@@ -47,15 +46,15 @@ inline ClosestPoint closest_on_border(const Vec3d& ap, const EdgedTriangle& t) {
 
 /// The point of `t` nearest to `p`, up to rounding; triangles without a plane have their three edges only.
 inline ClosestPoint closest_point(const Vec3d& p, const EdgedTriangle& t) {
-  const Vec3d ap = minus(p, t.a);
+  const Vec3d ap = p - t.a;
   const Vec3d n = t.area_vector();
   if (!has_plane(t, n)) return closest_on_border(ap, t);
-  const Vec3d bp = minus(ap, t.ab), cp = minus(ap, t.ac);
+  const Vec3d bp = ap - t.ab, cp = ap - t.ac;
   // Above the inside of the face: on the inner side of all three edges.
   const bool above =
-      dot(cross(t.ab, ap), n) > 0 && dot(cross(minus(t.ac, t.ab), bp), n) > 0 && dot(cross(times(-1, t.ac), cp), n) > 0;
+      dot(cross(t.ab, ap), n) > 0 && dot(cross(t.ac - t.ab, bp), n) > 0 && dot(cross(-1 * t.ac, cp), n) > 0;
   if (!above) return closest_on_border(ap, t);
-  return {times(dot(ap, n) / squared_length(n), n), {Feature::face, 0}};
+  return {dot(ap, n) / squared_length(n) * n, {Feature::face, 0}};
 }
 
 }  // namespace pointskin::mesh_detail

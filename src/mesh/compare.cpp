@@ -20,8 +20,6 @@ namespace {
 using exec::Cpu;
 using mesh_detail::ComparedSide;
 using mesh_detail::Direction;
-using mesh_detail::dot;
-using mesh_detail::minus;
 using mesh_detail::SurfaceSample;
 
 /// Samples per block: neighbours in a block start their search at each other's nearest triangle or point.
@@ -123,7 +121,7 @@ MeshComparison compare(const ComparedSurface& surface, const ComparedSurface& re
   const double threshold = options.tau * diagonal;
 
   // Both live in the reference's coordinates; only a difference of origins, taken in double, enters them.
-  const auto ours = mesh_detail::prepare(ex, surface, minus(surface.origin(), reference.origin()));
+  const auto ours = mesh_detail::prepare(ex, surface, surface.origin() - reference.origin());
   const auto theirs = mesh_detail::prepare(ex, reference, Vec3d{0, 0, 0});
   const Direction there = OneWay(*ours, *theirs, options.samples, threshold).measure(ex);
   const Direction back = OneWay(*theirs, *ours, options.samples, threshold).measure(ex);

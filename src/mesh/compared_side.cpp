@@ -70,7 +70,7 @@ double diagonal_of(const Cloud& cloud, const std::string& role) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       throw Error(ErrorCode::invalid_input, role + " has a point that is not finite");
   const Bounds box = bounds_of(cloud.positions);
-  return length(minus(to_double(box.upper), to_double(box.lower)));
+  return length(to_double(box.upper) - to_double(box.lower));
 }
 
 }  // namespace

@@ -12,11 +12,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/algorithms.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "exec/disjoint_sets.hpp"
 #include "mesh/mesh_checks.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin {
 namespace {
@@ -24,10 +24,6 @@ namespace {
 using exec::Buffer;
 using exec::Cpu;
 using exec::DisjointSets;
-using mesh_detail::cross;
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::to_double;
 
 std::int64_t vertex_count(const Mesh& mesh) { return static_cast<std::int64_t>(mesh.vertices.size()); }
 std::int64_t triangle_count(const Mesh& mesh) { return static_cast<std::int64_t>(mesh.triangles.size()); }
@@ -132,11 +128,11 @@ std::vector<Run> measure_runs(const Mesh& mesh, const MeshComponents& pieces, co
     const std::int32_t piece = pieces.of(t);
     if (runs.empty() || runs.back().piece != piece) runs.push_back({piece});
     const auto corner = [&](std::size_t k) {
-      return minus(to_double(mesh.vertices[static_cast<std::size_t>(t[k])]), centre);
+      return to_double(mesh.vertices[static_cast<std::size_t>(t[k])]) - centre;
     };
     const Vec3d a = corner(0), b = corner(1), c = corner(2);
     ++runs.back().triangles;
-    runs.back().area += 0.5 * mesh_detail::length(cross(minus(b, a), minus(c, a)));
+    runs.back().area += 0.5 * length(cross(b - a, c - a));
     runs.back().volume += dot(a, cross(b, c)) / 6;
   }
   return runs;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "mesh/compared_side.hpp"
 #include "mesh/signed_distance.hpp"
@@ -36,8 +37,8 @@ std::vector<double> measure_all(Cpu& ex, const std::vector<Vec3f>& positions, co
     for (std::int64_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
       const Vec3f& p = positions[static_cast<std::size_t>(i)];
       const bool finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-      result[static_cast<std::size_t>(i)] = finite ? measure(mesh_detail::plus(offset, mesh_detail::to_double(p)), hint)
-                                                   : std::numeric_limits<double>::quiet_NaN();
+      result[static_cast<std::size_t>(i)] =
+          finite ? measure(offset + to_double(p), hint) : std::numeric_limits<double>::quiet_NaN();
     }
   });
   return result;
@@ -59,7 +60,7 @@ std::vector<double> distances(const ComparedSurface& surface, const ComparedSurf
   mesh_detail::checked_diagonal(ex, surface, surface.mesh() != nullptr ? "the mesh" : "the cloud");
   mesh_detail::checked_diagonal(ex, reference, "the reference");
   // In the reference's coordinates, as compare().
-  const Vec3d offset = mesh_detail::minus(surface.origin(), reference.origin());
+  const Vec3d offset = surface.origin() - reference.origin();
   if (options.with_sign) {
     const mesh_detail::SignedDistance field(ex, watertight_mesh(reference, options.threads), Vec3d{0, 0, 0});
     return measure_all(ex, positions_of(surface), offset, [&](const Vec3d& p, std::int32_t& hint) {

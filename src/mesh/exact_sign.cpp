@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::mesh_detail {
 namespace {
@@ -149,9 +149,9 @@ int exact_turn(const Point2& a, const Point2& b, const Point2& c) {
 }  // namespace
 
 int side_of_plane(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
-  const Vec3d u = minus(to_double(b), to_double(a));
-  const Vec3d v = minus(to_double(c), to_double(a));
-  const Vec3d w = minus(to_double(d), to_double(a));
+  const Vec3d u = to_double(b) - to_double(a);
+  const Vec3d v = to_double(c) - to_double(a);
+  const Vec3d w = to_double(d) - to_double(a);
   const double uv = u[0] * v[1], vu = v[0] * u[1];
   const double vw = v[0] * w[1], wv = w[0] * v[1];
   const double wu = w[0] * u[1], uw = u[0] * w[1];

@@ -12,11 +12,11 @@
 #include <numeric>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/algorithms.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "exec/disjoint_sets.hpp"
 #include "mesh/mesh_checks.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin {
 namespace {
@@ -24,10 +24,6 @@ namespace {
 using exec::Buffer;
 using exec::Cpu;
 using exec::DisjointSets;
-using mesh_detail::cross;
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::to_double;
 
 bool degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
@@ -159,10 +155,10 @@ MeshReport sum_triangles(const Mesh& mesh, const Vec3d& centre, std::int64_t beg
   for (std::int64_t i = begin; i < end; ++i) {
     const Triangle& t = mesh.triangles[static_cast<std::size_t>(i)];
     const auto corner = [&](std::size_t k) {
-      return minus(to_double(mesh.vertices[static_cast<std::size_t>(t[k])]), centre);
+      return to_double(mesh.vertices[static_cast<std::size_t>(t[k])]) - centre;
     };
     const Vec3d a = corner(0), b = corner(1), c = corner(2);
-    part.area += 0.5 * mesh_detail::length(cross(minus(b, a), minus(c, a)));
+    part.area += 0.5 * length(cross(b - a, c - a));
     part.volume += dot(a, cross(b, c)) / 6;
     if (degenerate(t)) ++part.degenerate_triangles;
   }

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin::mesh_detail {
 namespace {
@@ -89,8 +89,8 @@ CornerBounds corner_bounds(exec::Cpu& ex, const Mesh& mesh) {
   return all;
 }
 
-Vec3d CornerBounds::centre() const { return times(0.5, plus(lower, upper)); }
+Vec3d CornerBounds::centre() const { return 0.5 * (lower + upper); }
 
-double CornerBounds::diagonal() const { return length(minus(upper, lower)); }
+double CornerBounds::diagonal() const { return length(upper - lower); }
 
 }  // namespace pointskin::mesh_detail

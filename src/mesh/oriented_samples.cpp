@@ -1,4 +1,5 @@
 #include "mesh/oriented_samples.hpp"
+#include "core/vec3.hpp"
 
 #include <pointskin/error.hpp>
 
@@ -11,13 +12,7 @@
 #include "mesh/surface_samples.hpp"
 
 namespace pointskin::mesh_detail {
-namespace {
-
-Vec3f to_float(const Vec3d& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Bounds bounds_of_solid(const Mesh& mesh, int threads) {
   const auto fail = [](const char* what) { throw Error(ErrorCode::invalid_input, what); };

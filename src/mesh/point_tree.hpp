@@ -25,7 +25,7 @@ class PointTree {
   /// About O(log n) for places near the points.
   [[nodiscard]] Nearest nearest(const Vec3d& p, std::int32_t hint = -1) const;
 
-  [[nodiscard]] Vec3d point(std::int32_t slot) const { return plus(offset_, to_double(positions_.data()[slot])); }
+  [[nodiscard]] Vec3d point(std::int32_t slot) const { return offset_ + to_double(positions_.data()[slot]); }
   [[nodiscard]] std::int32_t id(std::int32_t slot) const { return tree_.id(slot); }
 
  private:

@@ -170,7 +170,7 @@ SelfIntersections find_self_intersections(const Mesh& mesh, const SelfIntersecti
   result.listed = std::move(found.first);
   for (IntersectingPair& pair : result.listed) {
     const Vec3d place = place_of_contact(triangle_of(mesh, pair.triangles[0]), triangle_of(mesh, pair.triangles[1]));
-    pair.place_world = mesh_detail::plus(mesh.origin, place);
+    pair.place_world = mesh.origin + place;
   }
   return result;
 }

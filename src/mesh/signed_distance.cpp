@@ -17,7 +17,7 @@ SignedDistance::SignedDistance(exec::Cpu& ex, const Mesh& mesh, const Vec3d& off
   exec::for_each(ex, "normals", face_normals_.size(), [&](std::int64_t t) {
     const EdgedTriangle triangle = edged_triangle(mesh_, Vec3d{0, 0, 0}, t);
     const Vec3d n = triangle.area_vector();
-    face_normals_.data()[t] = has_plane(triangle, n) ? times(1 / length(n), n) : Vec3d{0, 0, 0};
+    face_normals_.data()[t] = has_plane(triangle, n) ? 1 / length(n) * n : Vec3d{0, 0, 0};
   });
   find_neighbours(ex);
   sum_corner_normals();
@@ -47,10 +47,10 @@ void SignedDistance::sum_corner_normals() {
     const Triangle& t = mesh_.triangles[static_cast<std::size_t>(i)];
     for (std::size_t k = 0; k < 3; ++k) {
       const auto corner = [&](std::size_t c) { return to_double(mesh_.vertices[static_cast<std::size_t>(t[c % 3])]); };
-      const Vec3d a = minus(corner(k + 1), corner(k)), b = minus(corner(k + 2), corner(k));
+      const Vec3d a = corner(k + 1) - corner(k), b = corner(k + 2) - corner(k);
       const double angle = std::atan2(length(cross(a, b)), dot(a, b));
       Vec3d& sum = corner_normals_.data()[t[k]];
-      sum = plus(sum, times(angle, face_normals_.data()[i]));
+      sum += angle * face_normals_.data()[i];
     }
   }
 }
@@ -62,9 +62,9 @@ Vec3d SignedDistance::pseudonormal(std::int32_t triangle, const Feature& feature
   const auto k = static_cast<std::size_t>(feature.index);
   const Vec3d& corner = corner_normals_.data()[t[k]];
   if (feature.kind == Feature::corner) return corner;
-  const Vec3d both = plus(own, face_normals_.data()[neighbours_.data()[3 * std::int64_t{triangle} + feature.index]]);
+  const Vec3d both = own + face_normals_.data()[neighbours_.data()[3 * std::int64_t{triangle} + feature.index]];
   if (squared_length(both) > 0) return both;
-  return plus(corner, corner_normals_.data()[t[(k + 1) % 3]]);  // neither triangle has a plane
+  return corner + corner_normals_.data()[t[(k + 1) % 3]];  // neither triangle has a plane
 }
 
 SurfacePlace SignedDistance::at(const Vec3d& p, std::int32_t hint) const {
@@ -72,7 +72,7 @@ SurfacePlace SignedDistance::at(const Vec3d& p, std::int32_t hint) const {
   const ClosestPoint closest = closest_point(p, tree_.triangle(nearest.slot));
   const bool outside = dot(closest.offset, pseudonormal(tree_.id(nearest.slot), closest.feature)) > 0;
   const double distance = length(closest.offset);
-  return {outside ? -distance : distance, minus(p, closest.offset), nearest.slot};
+  return {outside ? -distance : distance, p - closest.offset, nearest.slot};
 }
 
 }  // namespace pointskin::mesh_detail

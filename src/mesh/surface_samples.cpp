@@ -56,8 +56,8 @@ SurfaceSample SurfaceSampler::sample(std::int64_t i, std::int64_t n) const {
   const EdgedTriangle t = edged_triangle(mesh_, offset_, id);
   const auto [u, v] = quasirandom(i);
   const double root = std::sqrt(u);
-  const Vec3d inside = plus(times(root * (1 - v), t.ab), times(root * v, t.ac));
-  return {plus(t.a, inside), normalized(t.area_vector())};
+  const Vec3d inside = root * (1 - v) * t.ab + root * v * t.ac;
+  return {t.a + inside, normalized(t.area_vector())};
 }
 
 }  // namespace pointskin::mesh_detail

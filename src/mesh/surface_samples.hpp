@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin::mesh_detail {
 

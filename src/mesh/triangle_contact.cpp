@@ -18,8 +18,8 @@
 #include <optional>
 #include <tuple>
 
+#include "core/vec3.hpp"
 #include "mesh/exact_sign.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin::mesh_detail {
 namespace {
@@ -234,7 +234,7 @@ struct Mean {
   int count = 0;
 
   void add(const Vec3d& p) {
-    sum = plus(sum, p);
+    sum += p;
     ++count;
   }
 };
@@ -246,11 +246,11 @@ void add_common(const Shape& s, const Shape& t, Mean& mean) {
     if (t.contains(a)) mean.add(to_double(a));
     if (t.side_of(a) * t.side_of(b) >= 0 || !t.meets(a, b)) continue;
     const Vec3d p = to_double(t.corner(0)), q = to_double(t.corner(1)), r = to_double(t.corner(2));
-    const Vec3d normal = cross(minus(q, p), minus(r, p));
-    const double at_a = std::abs(dot(minus(to_double(a), p), normal));
-    const double at_b = std::abs(dot(minus(to_double(b), p), normal));
+    const Vec3d normal = cross(q - p, r - p);
+    const double at_a = std::abs(dot(to_double(a) - p, normal));
+    const double at_b = std::abs(dot(to_double(b) - p, normal));
     const double share = at_a + at_b > 0 ? at_a / (at_a + at_b) : 0.5;
-    mean.add(plus(to_double(a), times(share, minus(to_double(b), to_double(a)))));
+    mean.add(to_double(a) + share * (to_double(b) - to_double(a)));
   }
 }
 
@@ -287,7 +287,7 @@ Vec3d place_of_contact(const MeshTriangle& s, const MeshTriangle& t) {
   Mean mean;
   add_common(s_shape, t_shape, mean);
   add_common(t_shape, s_shape, mean);
-  if (mean.count > 0) return times(1.0 / mean.count, mean.sum);
+  if (mean.count > 0) return 1.0 / mean.count * mean.sum;
   // In one plane, no corner of one in the other: only edges cross.
   const auto& [a, b, c] = s.corners;
   const auto& [d, e, f] = t.corners;

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::mesh_detail {
 
@@ -23,7 +23,7 @@ inline double squared_distance_to_segment(const Vec3d& ap, const Vec3d& ab) {
   const double along = dot(ap, ab);
   const double squared = squared_length(ab);
   const double t = along <= 0 ? 0 : along >= squared ? 1 : along / squared;
-  return squared_length(minus(ap, times(t, ab)));
+  return squared_length(ap - t * ab);
 }
 
 /// Below this squared sine of the angle at a, the normal is no better known than the triangle is wide.
@@ -37,29 +37,29 @@ inline bool has_plane(const EdgedTriangle& t, const Vec3d& area_vector) {
 /// Squared distance of the point at `ap` (relative to corner a) from the border of `t`.
 inline double squared_distance_to_border(const Vec3d& ap, const EdgedTriangle& t) {
   return std::min({squared_distance_to_segment(ap, t.ab), squared_distance_to_segment(ap, t.ac),
-                   squared_distance_to_segment(minus(ap, t.ab), minus(t.ac, t.ab))});
+                   squared_distance_to_segment(ap - t.ab, t.ac - t.ab)});
 }
 
 /// Squared distance of `p` from the nearest point of `t`. Exact up to rounding, for triangles without area too.
 inline double squared_distance(const Vec3d& p, const EdgedTriangle& t) {
-  const Vec3d ap = minus(p, t.a);
+  const Vec3d ap = p - t.a;
   const double d1 = dot(t.ab, ap), d2 = dot(t.ac, ap);
   if (d1 <= 0 && d2 <= 0) return squared_length(ap);
-  const Vec3d bp = minus(ap, t.ab);
+  const Vec3d bp = ap - t.ab;
   const double d3 = dot(t.ab, bp), d4 = dot(t.ac, bp);
   if (d3 >= 0 && d4 <= d3) return squared_length(bp);
-  const Vec3d cp = minus(ap, t.ac);
+  const Vec3d cp = ap - t.ac;
   const double d5 = dot(t.ab, cp), d6 = dot(t.ac, cp);
   if (d6 >= 0 && d5 <= d6) return squared_length(cp);
 
   const Vec3d n = t.area_vector();
   const double nn = squared_length(n);
   if (!has_plane(t, n)) return squared_distance_to_border(ap, t);
-  if (d1 * d4 - d3 * d2 <= 0 && d1 >= 0 && d3 <= 0) return squared_length(minus(ap, times(d1 / (d1 - d3), t.ab)));
-  if (d5 * d2 - d1 * d6 <= 0 && d2 >= 0 && d6 <= 0) return squared_length(minus(ap, times(d2 / (d2 - d6), t.ac)));
+  if (d1 * d4 - d3 * d2 <= 0 && d1 >= 0 && d3 <= 0) return squared_length(ap - d1 / (d1 - d3) * t.ab);
+  if (d5 * d2 - d1 * d6 <= 0 && d2 >= 0 && d6 <= 0) return squared_length(ap - d2 / (d2 - d6) * t.ac);
   if (d3 * d6 - d5 * d4 <= 0 && d4 >= d3 && d5 >= d6) {
     const double s = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return squared_length(minus(bp, times(s, minus(t.ac, t.ab))));
+    return squared_length(bp - s * (t.ac - t.ab));
   }
   const double height = dot(ap, n);
   return height * height / nn;

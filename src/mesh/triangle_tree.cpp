@@ -30,7 +30,7 @@ bool meets_triangle(const Vec3d& from, const Vec3d& line, const EdgedTriangle& t
   const Vec3d p = cross(line, t.ac);
   const double determinant = dot(t.ab, p);
   if (determinant == 0) return false;
-  const Vec3d s = minus(from, t.a);
+  const Vec3d s = from - t.a;
   const double u = dot(s, p) / determinant;
   const Vec3d q = cross(s, t.ab);
   const double v = dot(line, q) / determinant;
@@ -44,20 +44,20 @@ EdgedTriangle edged_triangle(const Mesh& mesh, const Vec3d& offset, std::int64_t
   const Triangle& t = mesh.triangles[static_cast<std::size_t>(id)];
   const auto corner = [&](std::size_t k) { return to_double(mesh.vertices[static_cast<std::size_t>(t[k])]); };
   // Edges are differences of floats, exact in double; they do not pass through the offset.
-  return {plus(offset, corner(0)), minus(corner(1), corner(0)), minus(corner(2), corner(0))};
+  return {offset + corner(0), corner(1) - corner(0), corner(2) - corner(0)};
 }
 
 BoxTree tree_of_triangles(exec::Cpu& ex, const Mesh& mesh, const Vec3d& offset) {
   exec::Buffer<Vec3f> centroids(ex.pool(), static_cast<std::int64_t>(mesh.triangles.size()));
   exec::for_each(ex, "tree", centroids.size(), [&](std::int64_t i) {
     const EdgedTriangle t = edged_triangle(mesh, Vec3d{0, 0, 0}, i);
-    const Vec3d centroid = plus(t.a, times(1.0 / 3, plus(t.ab, t.ac)));
+    const Vec3d centroid = t.a + 1.0 / 3 * (t.ab + t.ac);
     centroids.data()[i] = {static_cast<float>(centroid[0]), static_cast<float>(centroid[1]),
                            static_cast<float>(centroid[2])};
   });
   return {ex, centroids.cview(), [&](std::int32_t id, BoxTree::Node& node) {
             for (const std::int32_t vertex : mesh.triangles[static_cast<std::size_t>(id)])
-              include_point(plus(offset, to_double(mesh.vertices[static_cast<std::size_t>(vertex)])), node);
+              include_point(offset + to_double(mesh.vertices[static_cast<std::size_t>(vertex)]), node);
           }};
 }
 
@@ -73,7 +73,7 @@ Nearest TriangleTree::nearest(const Vec3d& p, std::int32_t hint) const {
 }
 
 bool TriangleTree::is_between(const Vec3d& from, const Vec3d& to) const {
-  const Vec3d line = minus(to, from);
+  const Vec3d line = to - from;
   const Vec3d inverse{1 / line[0], 1 / line[1], 1 / line[2]};
   std::array<std::int32_t, BoxTree::kMaxDepth>
       stack;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled as it grows

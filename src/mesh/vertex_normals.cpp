@@ -6,17 +6,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu.hpp"
 #include "mesh/mesh_checks.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin {
-
-using mesh_detail::cross;
-using mesh_detail::minus;
-using mesh_detail::normalized;
-using mesh_detail::plus;
-using mesh_detail::to_double;
 
 void add_vertex_normals(Mesh& mesh) {
   exec::Cpu ex(1);
@@ -25,10 +19,10 @@ void add_vertex_normals(Mesh& mesh) {
   std::vector<Vec3d> sums(mesh.vertices.size(), Vec3d{0, 0, 0});
   for (const Triangle& t : mesh.triangles) {
     const Vec3d a = at(t[0]);
-    const Vec3d face = cross(minus(at(t[1]), a), minus(at(t[2]), a));
+    const Vec3d face = cross(at(t[1]) - a, at(t[2]) - a);
     for (const std::int32_t v : t) {
       Vec3d& sum = sums[static_cast<std::size_t>(v)];
-      sum = plus(sum, face);
+      sum += face;
     }
   }
   mesh.normals.resize(sums.size());

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/double3.hpp"
 #include "core/eigen3.hpp"
+#include "core/matrix3.hpp"
 #include "exec/this_space.hpp"
 #include "normals/nearest_list.hpp"
 #include "normals/neighbours.hpp"
@@ -18,7 +18,7 @@ template <int kMost>
 struct Neighbourhood {
   int count = 0;
   double radius = 0;  // in the unit cube; 0: all are at one place
-  Double3 at[kMost + 1];
+  Vec3d at[kMost + 1];
   double weight[kMost + 1];  // by distance alone
 };
 
@@ -26,12 +26,12 @@ struct Neighbourhood {
 template <int kMost, class Ids>
 PSK_HD void gather(ArrayView<const Vec3f> positions, std::int64_t i, const Ids& ids, int count,
                    Neighbourhood<kMost>& out) {
-  const Double3 centre = to_double(positions[i]);
+  const Vec3d centre = to_double(positions[i]);
   out.count = 1;
   out.at[0] = {};
   double farthest = 0;
   for (int j = 0; j < count; ++j) {
-    const Double3 d = to_double(positions[ids[j]]) - centre;
+    const Vec3d d = to_double(positions[ids[j]]) - centre;
     out.at[out.count++] = d;
     const double squared = dot(d, d);
     if (squared > farthest) farthest = squared;
@@ -49,7 +49,7 @@ PSK_HD void gather(ArrayView<const Vec3f> positions, std::int64_t i, const Ids& 
 /// A plane with what its points say of it.
 struct Plane {
   Eigen3 axes;  // the normal is axes.vectors[0]; values: mean squares
-  Double3 centre;
+  Vec3d centre;
   double variance = 0;        // of the residuals, robust, per radius^2
   double whole_variance = 0;  // the same with nothing left out
 };
@@ -58,7 +58,7 @@ struct Plane {
 template <int kMost>
 PSK_HD void fit_plane(const Neighbourhood<kMost>& points, const double* weight, Plane& plane) {
   double sum = 0;
-  Double3 centre{};
+  Vec3d centre{};
   for (int j = 0; j < points.count; ++j) {
     sum += weight[j];
     centre = centre + points.at[j] * weight[j];
@@ -66,7 +66,7 @@ PSK_HD void fit_plane(const Neighbourhood<kMost>& points, const double* weight, 
   plane.centre = centre * (1 / sum);
   Symmetric3 m;
   for (int j = 0; j < points.count; ++j) {
-    const Double3 d = points.at[j] - plane.centre;
+    const Vec3d d = points.at[j] - plane.centre;
     m = m + outer(d) * (weight[j] / sum);
   }
   plane.axes = eigen_of(m);
@@ -127,10 +127,10 @@ PSK_HD bool find_sheet(const Neighbourhood<kMost>& points, double variance, doub
   constexpr double kFlat = 0.025 * 0.025;  // largest variance in the sheet, which noise alone does not come below
   constexpr double kClearer = 0.08;        // variance in the sheet / variance of all
   double best = 0;
-  Double3 best_normal{};
+  Vec3d best_normal{};
   for (int a = 1; a <= kTried && a < points.count; ++a) {
     for (int b = a + 1; b <= kTried && b < points.count; ++b) {
-      const Double3 n = cross(points.at[a], points.at[b]);
+      const Vec3d n = cross(points.at[a], points.at[b]);
       const double squared = dot(n, n);
       if (!(squared > 0.05 * dot(points.at[a], points.at[a]) * dot(points.at[b], points.at[b]))) continue;
       double score = 0;
@@ -231,7 +231,7 @@ PSK_HD Quadric fit_quadric(const Neighbourhood<kMost>& points, const Plane& plan
   double sum = 0;
   double squares = 0;
   for (int j = 0; j < points.count; ++j) {
-    const Double3 d = points.at[j];
+    const Vec3d d = points.at[j];
     const double x = dot(plane.axes.vectors[2], d);
     const double y = dot(plane.axes.vectors[1], d);
     const double z = dot(plane.axes.vectors[0], d - plane.centre);
@@ -256,7 +256,7 @@ PSK_HD Quadric fit_quadric(const Neighbourhood<kMost>& points, const Plane& plan
   return out;
 }
 
-PSK_HD Double3 with_largest_positive(const Double3& n) {
+PSK_HD Vec3d with_largest_positive(const Vec3d& n) {
   const double x = n.x < 0 ? -n.x : n.x;
   const double y = n.y < 0 ? -n.y : n.y;
   const double z = n.z < 0 ? -n.z : n.z;
@@ -283,7 +283,7 @@ PSK_HD double better_share(int count) { return count > kNeighbours + 1 ? 0.5 : 0
 /// Line and curvature, once the plane is there. @param weight  those of the plane
 template <int kMost>
 PSK_HD void describe(const Neighbourhood<kMost>& points, const Plane& plane, const double* weight, Line& line) {
-  Double3 normal = plane.axes.vectors[0];
+  Vec3d normal = plane.axes.vectors[0];
   const double middle = plane.axes.values[1];
   const double flatness = middle > 0 ? 1 - plane.axes.values[0] / middle : 0.0;
   line.flatness = static_cast<float>(flatness > 0 ? flatness : 0.0);
@@ -301,7 +301,7 @@ PSK_HD void describe(const Neighbourhood<kMost>& points, const Plane& plane, con
       }
     }
   }
-  const Double3 canonical = with_largest_positive(normal);
+  const Vec3d canonical = with_largest_positive(normal);
   const double sign = dot(canonical, normal) < 0 ? -1 : 1;
   line.normal = to_float(canonical);
   line.curvature = static_cast<float>(sign * bend / points.radius);
@@ -330,7 +330,7 @@ PSK_HD bool fit_sheet(ArrayView<const Vec3f> positions, std::int64_t i, const Id
   if (!find_sheet(near, variance, weight, plane)) return false;
   int on_it = 0;
   for (int j = 0; j < count; ++j) {
-    const Double3 d = (to_double(positions[ids[j]]) - to_double(positions[i])) * (1 / near.radius) - plane.centre;
+    const Vec3d d = (to_double(positions[ids[j]]) - to_double(positions[i])) * (1 / near.radius) - plane.centre;
     const double along = dot(plane.axes.vectors[0], d);
     if (along * along < kSheetNear) ++on_it;
   }

@@ -1,6 +1,6 @@
 #include "normals/evidence.hpp"
 
-#include "core/double3.hpp"
+#include "core/vec3.hpp"
 #include "exec/this_space.hpp"
 #include "normals/arrays.hpp"
 #include "octree/frame.hpp"
@@ -19,21 +19,21 @@ struct SeenFrom {
 
   PSK_HD void operator()(std::int64_t i) const {
     constexpr double kGrazing = 0.1;  // below this cosine the line's error decides
-    const Double3 n = to_double(lines[i]);
-    const Double3 view = towards.empty() ? towards_nearest(i) : to_double(towards[order[i]]);
+    const Vec3d n = to_double(lines[i]);
+    const Vec3d view = towards.empty() ? towards_nearest(i) : to_double(towards[order[i]]);
     const double along = dot(n, view);
     const double limit = kGrazing * kGrazing * dot(view, view);
     evidence[i] = along * along > limit ? (along > 0 ? 1 : -1) : 0;
   }
-  [[nodiscard]] PSK_HD Double3 towards_nearest(std::int64_t i) const {
+  [[nodiscard]] PSK_HD Vec3d towards_nearest(std::int64_t i) const {
     const Vec3f u = positions[i];
-    const double p[3] = {frame.lower[0] + static_cast<double>(u.x) * frame.size,
-                         frame.lower[1] + static_cast<double>(u.y) * frame.size,
-                         frame.lower[2] + static_cast<double>(u.z) * frame.size};
-    Double3 best{};
+    const Vec3d p = {frame.lower[0] + static_cast<double>(u.x) * frame.size,
+                     frame.lower[1] + static_cast<double>(u.y) * frame.size,
+                     frame.lower[2] + static_cast<double>(u.z) * frame.size};
+    Vec3d best{};
     double nearest = -1;
     for (std::int64_t s = 0; s < sensors.size; ++s) {
-      const Double3 v{sensors[s][0] - p[0], sensors[s][1] - p[1], sensors[s][2] - p[2]};
+      const Vec3d v = sensors[s] - p;
       const double squared = dot(v, v);
       if (nearest >= 0 && squared >= nearest) continue;
       nearest = squared;
@@ -49,7 +49,7 @@ struct GivenSide {
   ArrayView<std::int32_t> evidence;
   PSK_HD void operator()(std::int64_t i) const {
     constexpr double kAcross = 0.1;
-    const Double3 g = to_double(given[i]);
+    const Vec3d g = to_double(given[i]);
     const double along = dot(g, to_double(lines[i]));
     evidence[i] = along * along > kAcross * kAcross * dot(g, g) ? (along > 0 ? 1 : -1) : 0;
   }

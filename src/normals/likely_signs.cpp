@@ -31,8 +31,8 @@ struct CountCoherent {
   ArrayView<const std::int32_t> evidence;
   PSK_HD Coherence operator()(std::int64_t i) const {
     Coherence sum;
-    const Double3 p = to_double(lines.positions[i]);
-    const Double3 n = to_double(lines.normals[i]);
+    const Vec3d p = to_double(lines.positions[i]);
+    const Vec3d n = to_double(lines.normals[i]);
     double height = 0;
     double scale = 0;
     int other = 0;
@@ -49,7 +49,7 @@ struct CountCoherent {
       if (before >= 0) sum.triangles = sum.triangles + around(vote, vote_before, vote_of(lines, j, before));
       before = j;
       vote_before = vote;
-      const Double3 d = to_double(lines.positions[j]) - p;
+      const Vec3d d = to_double(lines.positions[j]) - p;
       height -= dot(n, d);
       scale += dot(d, d);
       other += dot(n, to_double(lines.normals[j])) < 0 ? -evidence[j] : evidence[j];

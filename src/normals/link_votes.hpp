@@ -10,8 +10,8 @@
 #include <pointskin/vector.hpp>
 
 #include "core/array_view.hpp"
-#include "core/double3.hpp"
 #include "core/host_device.hpp"
+#include "core/vec3.hpp"
 #include "normals/neighbours.hpp"
 
 namespace pointskin::normals {
@@ -65,9 +65,9 @@ PSK_HD inline double beyond_noise(double along, double noise) {
 /// other in the plane between them. Less where the link runs along the normals: it may be noise; and where no circle
 /// has these normals at these places: it may join two sheets.
 PSK_HD inline std::int64_t vote_of(const LinkedLines& lines, std::int64_t i, std::int32_t j) {
-  const Double3 a = to_double(lines.normals[i]);
-  const Double3 b = to_double(lines.normals[j]);
-  const Double3 d = to_double(lines.positions[j]) - to_double(lines.positions[i]);
+  const Vec3d a = to_double(lines.normals[i]);
+  const Vec3d b = to_double(lines.normals[j]);
+  const Vec3d d = to_double(lines.positions[j]) - to_double(lines.positions[i]);
   const double squared = dot(d, d);
   double agreement = dot(a, b);
   double level = 1;

@@ -46,8 +46,7 @@ const ViewNames* find_views(const Cloud& cloud, std::array<const Attribute*, 3>&
 
 normals::Views find_views(const Cloud& cloud, const NormalOptions& options) {
   normals::Views views;
-  for (const Vec3d& sensor : options.sensors)
-    views.sensors.push_back({sensor[0] - cloud.origin[0], sensor[1] - cloud.origin[1], sensor[2] - cloud.origin[2]});
+  for (const Vec3d& sensor : options.sensors) views.sensors.push_back(sensor - cloud.origin);
   if (!views.sensors.empty()) return views;
   std::array<const Attribute*, 3> values{};
   const ViewNames* const triple = find_views(cloud, values);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/announce.hpp"
-#include "core/double3.hpp"
+#include "core/vec3.hpp"
 #include "exec/this_space.hpp"
 #include "normals/estimate_normals.hpp"
 #include "normals/likely_signs.hpp"
@@ -39,7 +39,7 @@ struct WriteNormals {
     Fate fate = estimated;
     if (!given.empty()) {
       const Vec3f g = given[i];
-      const Double3 exact = to_double(g);
+      const Vec3d exact = to_double(g);
       const double squared = dot(exact, exact);
       const double along = dot(exact, to_double(result));
       fate = replaced;

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/array_view.hpp"
-#include "core/double3.hpp"
+#include "core/vec3.hpp"
 #include "exec/atomic.hpp"
 #include "normals/trial_field.hpp"
 

@@ -42,12 +42,10 @@ struct TrustInCells {
     const auto scale = static_cast<float>(std::int64_t{1} << depth);
     const Vec3f n = samples.normals[i];
     const Vec3f m = samples.normals[i + 1];
-    const Vec3f p = samples.positions[i];
-    const Vec3f q = samples.positions[i + 1];
-    const Vec3f step{scale * (p.x - q.x), scale * (p.y - q.y), scale * (p.z - q.z)};
-    const float across = 0.5F * ((n.x + m.x) * step.x + (n.y + m.y) * step.y + (n.z + m.z) * step.z);
-    const float along2 = (step.x * step.x + step.y * step.y + step.z * step.z) - across * across;
-    const bool counts = n.x * m.x + n.y * m.y + n.z * m.z > kPairAgreement && along2 < kPairReach * kPairReach;
+    const Vec3f step = scale * (samples.positions[i] - samples.positions[i + 1]);
+    const float across = 0.5F * dot(n + m, step);
+    const float along2 = squared_length(step) - across * across;
+    const bool counts = dot(n, m) > kPairAgreement && along2 < kPairReach * kPairReach;
     return {counts ? 0.5F * (across * across) : 0, counts ? 1.0F : 0.0F};
   }
 

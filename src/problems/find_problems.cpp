@@ -9,7 +9,7 @@
 #include <numeric>
 #include <utility>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 #include "problems/views.hpp"
 
 namespace pointskin {
@@ -47,10 +47,10 @@ Piece piece_of(const Mesh& mesh, const std::vector<float>& weakness, const Trian
   for (std::size_t k = 0; k < 3; ++k) {
     const auto id = static_cast<std::size_t>(t[k]);
     corner[k] = to_double(mesh.vertices[id]);
-    piece.centre = plus(piece.centre, times(1.0 / 3, corner[k]));
+    piece.centre += 1.0 / 3 * corner[k];
     piece.weakness += weakness[id] / 3.0;
   }
-  piece.area_vector = times(0.5, cross(minus(corner[1], corner[0]), minus(corner[2], corner[0])));
+  piece.area_vector = 0.5 * cross(corner[1] - corner[0], corner[2] - corner[0]);
   piece.area = length(piece.area_vector);
   return piece;
 }
@@ -87,8 +87,8 @@ void add(const Piece& piece, Sums& sums) {
   sums.region.score += score;
   sums.region.area += piece.area;
   ++sums.region.triangles;
-  sums.weighted_centre = plus(sums.weighted_centre, times(score, piece.centre));
-  sums.weighted_normal = plus(sums.weighted_normal, times(piece.weakness, piece.area_vector));
+  sums.weighted_centre += score * piece.centre;
+  sums.weighted_normal += piece.weakness * piece.area_vector;
   if (score <= sums.score_of_weakest) return;
   sums.score_of_weakest = score;
   sums.weakest_normal = normalized(piece.area_vector);
@@ -97,9 +97,9 @@ void add(const Piece& piece, Sums& sums) {
 /// The views are left out.
 ProblemRegion finished(const Mesh& mesh, const std::vector<float>& weakness, const Sums& sums) {
   ProblemRegion region = sums.region;
-  const Vec3d centre = times(1 / region.score, sums.weighted_centre);
-  region.centroid_world = plus(mesh.origin, centre);
-  region.mean_normal = times(1 / region.score, sums.weighted_normal);
+  const Vec3d centre = 1 / region.score * sums.weighted_centre;
+  region.centroid_world = mesh.origin + centre;
+  region.mean_normal = 1 / region.score * sums.weighted_normal;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3d lower{kInfinity, kInfinity, kInfinity}, upper{-kInfinity, -kInfinity, -kInfinity};
   for (const std::size_t t : sums.triangles)
@@ -111,8 +111,8 @@ ProblemRegion finished(const Mesh& mesh, const std::vector<float>& weakness, con
       }
       region.peak = std::max(region.peak, double{weakness[static_cast<std::size_t>(id)]});
     }
-  region.lower_world = plus(mesh.origin, lower);
-  region.upper_world = plus(mesh.origin, upper);
+  region.lower_world = mesh.origin + lower;
+  region.upper_world = mesh.origin + upper;
   return region;
 }
 
@@ -121,14 +121,14 @@ problems::Place place_of(const Mesh& mesh, const std::vector<float>& weakness, c
                          const ProblemRegion& region) {
   constexpr double kLeastMean = 0.2;  // a shorter mean normal says nothing: sides face away from each other
   problems::Place place;
-  place.centre = minus(region.centroid_world, mesh.origin);
+  place.centre = region.centroid_world - mesh.origin;
   place.towards = length(region.mean_normal) > kLeastMean ? normalized(region.mean_normal) : sums.weakest_normal;
   for (const std::size_t t : sums.triangles) {
     const Piece piece = piece_of(mesh, weakness, mesh.triangles[t]);
     place.patches.push_back({piece.centre, piece.area_vector, piece.area * piece.weakness});
     for (const std::int32_t id : mesh.triangles[t])
       place.radius =
-          std::max(place.radius, length(minus(to_double(mesh.vertices[static_cast<std::size_t>(id)]), place.centre)));
+          std::max(place.radius, length(to_double(mesh.vertices[static_cast<std::size_t>(id)]) - place.centre));
   }
   return place;
 }

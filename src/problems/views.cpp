@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/vec3.hpp"
 #include "mesh/mesh_checks.hpp"
-#include "mesh/vec3d.hpp"
 #include "render/view_axes.hpp"
 
 namespace pointskin::problems {
@@ -60,7 +60,7 @@ double radius_about(const Mesh& mesh, const Vec3d& centre) {
   double squared = 0;
   for (const Triangle& t : mesh.triangles)
     for (const std::int32_t id : t) {
-      const double d = squared_length(minus(to_double(mesh.vertices[static_cast<std::size_t>(id)]), centre));
+      const double d = squared_length(to_double(mesh.vertices[static_cast<std::size_t>(id)]) - centre);
       if (std::isfinite(d)) squared = std::max(squared, d);
     }
   return std::sqrt(squared);
@@ -86,7 +86,7 @@ std::vector<Sample> samples_of(const Place& place) {
     // A little above the surface, which is not to be in its own way.
     const Vec3d normal = normalized(patch.area_vector);
     const double lift = 0.25 * std::sqrt(length(patch.area_vector));
-    samples.push_back({plus(patch.centre, times(lift, normal)), normal, weight});
+    samples.push_back({patch.centre + lift * normal, normal, weight});
   }
   return samples;
 }
@@ -103,7 +103,7 @@ Sight sight_from(const Vec3d& back, const Vec3d& viewer, const std::vector<Sampl
   double total = 0;
   for (const Sample& sample : samples) {
     total += sample.weight;
-    const double facing = dot(sample.normal, normalized(minus(viewer, sample.at)));
+    const double facing = dot(sample.normal, normalized(viewer - sample.at));
     if (facing <= 0 || (tree != nullptr && tree->is_between(sample.at, viewer))) continue;
     sight.score += sample.weight * facing;
     sight.visible += sample.weight;
@@ -146,14 +146,14 @@ std::vector<ProblemView> ViewFinder::views_of(exec::Cpu& ex, const Place& place)
   std::vector<Sight> sights(kDirections + 1);
   ex.run_blocks(static_cast<std::int64_t>(sights.size()), [&](std::int64_t i) {
     const Vec3d back = i == 0 ? place.towards : around[static_cast<std::size_t>(i) - 1];
-    const Vec3d viewer = plus(place.centre, times(distance, back));
+    const Vec3d viewer = place.centre + distance * back;
     sights[static_cast<std::size_t>(i)] = sight_from(back, viewer, samples, tree_ ? &*tree_ : nullptr);
   });
   std::vector<ProblemView> views;
   for (const Sight& sight : chosen(sights)) {
     const render_detail::ViewAngles angles = render_detail::view_angles(up_, sight.back);
     ProblemView view{angles.azimuth / kDegree,           angles.elevation / kDegree,
-                     plus(mesh_.origin, place.centre),   {},
+                     mesh_.origin + place.centre,        {},
                      zoom_of(place.radius, mesh_radius), sight.visible};
     view.matrix =
         matrix_of(render_detail::view_axes(up_, angles.azimuth, angles.elevation), view.target_world, place.radius);

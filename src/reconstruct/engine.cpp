@@ -52,14 +52,10 @@ FieldImpl::FieldImpl(Workspace workspace, FieldData data, Options options, const
   options_.progress = nullptr;  // it may refer to what the caller no longer has
 }
 
-Vec3d FieldImpl::cube_lower_world() const {
-  const octree::Frame& cube = data_.frame;
-  return {origin_[0] + cube.lower[0], origin_[1] + cube.lower[1], origin_[2] + cube.lower[2]};
-}
+Vec3d FieldImpl::cube_lower_world() const { return origin_ + data_.frame.lower; }
 
 std::vector<float> FieldImpl::values(std::span<const Vec3d> points_world) const {
-  return exec::visit(workspace_.data().space,
-                     [&](auto& ex) { return values_at(ex, data_, origin_, points_world); });
+  return exec::visit(workspace_.data().space, [&](auto& ex) { return values_at(ex, data_, origin_, points_world); });
 }
 
 Options FieldImpl::with(const ExtractOptions& options) const {

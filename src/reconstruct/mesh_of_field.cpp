@@ -24,7 +24,6 @@
 namespace pointskin::detail {
 namespace {
 
-
 /// Share of curvature that a crossing takes (surface/edge_vertex.hpp). The screening pulls the trilinear function to
 /// the samples, whose own crossing is linear; the smooth function that it stands for is curved. Halfway is nearest to
 /// the surface (docs/decisions/0017-noise-and-smoothness.md).
@@ -52,7 +51,6 @@ TrimRule trim_rule(Exec& ex, const FieldData& field, const Options& options) {
   return {share, trim_limit(ex, field.tree, field.density, field.samples.positions.cview(),
                             field.samples.normals.cview(), share)};
 }
-
 
 /// False if the trim was to be chosen, and the surface is near the samples everywhere.
 template <exec::Space Exec>
@@ -83,18 +81,18 @@ surface::Surface without_pieces(Exec& ex, surface::Surface surface, const Option
 
 }  // namespace
 
-
 template <exec::Space Exec>
 surface::Surface extract(Exec& ex, const FieldData& field, const Options& options, RunReport& report) {
   const TrimRule rule = trim_rule(ex, field, options);
   const bool trim = rule.share > 0;  // which needs normals
   surface::ExtractOptions extraction{options.linear_fit ? 0 : kCurvature, options.normals || trim};
   if (field.envelope != nullptr) extraction.move_vertices = clip_to(ex, *field.envelope, field.frame, report.envelope);
-  surface::Surface surface = surface::extract_surface(ex, field.view(domain_faces(field, options), options.isovalue.value_or(field.isovalue)), extraction);
+  surface::Surface surface = surface::extract_surface(
+      ex, field.view(domain_faces(field, options), options.isovalue.value_or(field.isovalue)), extraction);
   if (trim && is_worth_trimming(ex, field, surface, options)) {
     surface::TrimCounts counts;
-    surface = trim_to_samples(ex, field.tree, field.density, std::move(surface),
-                              {rule.limit, options.island_ratio}, counts);
+    surface =
+        trim_to_samples(ex, field.tree, field.density, std::move(surface), {rule.limit, options.island_ratio}, counts);
     report.trim = trim_report(counts, field.frame, field.tree.depth, rule.limit);
     report.trim.quantile = rule.share;
   }
@@ -128,7 +126,6 @@ surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& o
 }
 
 namespace {
-
 
 /// Samples per finest cell face to samples per unit of area.
 struct PerArea {
@@ -202,9 +199,7 @@ std::vector<Attribute> attributes_at(Exec& ex, const FieldData& field, const Opt
   return attributes;
 }
 
-
 }  // namespace
-
 
 template <exec::Space Exec>
 void download_mesh(Exec& ex, const FieldData& field, surface::Surface surface, const Options& options,
@@ -278,7 +273,7 @@ Mesh download_mesh_of(Exec& ex, const DeviceMesh& mesh) {
 template <exec::Space Exec>
 std::vector<float> values_at(Exec& ex, const FieldData& field, const Vec3d& origin, std::span<const Vec3d> points) {
   const octree::Frame& cube = field.frame;
-  const Vec3d lower{origin[0] + cube.lower[0], origin[1] + cube.lower[1], origin[2] + cube.lower[2]};
+  const Vec3d lower = origin + cube.lower;
   std::vector<Vec3f> unit(points.size());
   const auto to_unit = [&](const Vec3d& p, std::size_t a) {
     return static_cast<float>(std::clamp((p[a] - lower[a]) / cube.size, 0.0, 1.0));
@@ -295,7 +290,6 @@ std::vector<float> values_at(Exec& ex, const FieldData& field, const Vec3d& orig
   copy_to_host(ex, out.cview(), result.data());
   return result;
 }
-
 
 PSK_INSTANTIATE(extract);
 PSK_INSTANTIATE(look_at_surface);

@@ -1,4 +1,5 @@
 #include "render/camera.hpp"
+#include "core/vec3.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,11 +11,6 @@
 
 namespace pointskin::render_detail {
 namespace {
-
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::plus;
-using mesh_detail::times;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -36,7 +32,7 @@ Viewport viewport_of(const RenderOptions& options) {
 
 Camera::Camera(exec::Cpu& ex, const FitPoints& points, const Vec3d& origin, const RenderOptions& options)
     : origin_(origin),
-      centre_(options.target_world ? minus(*options.target_world, origin) : points.centre(ex)),
+      centre_(options.target_world ? *options.target_world - origin : points.centre(ex)),
       perspective_(options.projection == Projection::perspective) {
   orient(options);
   const double radius = points.radius_about(ex, centre_);
@@ -78,7 +74,7 @@ void Camera::fit_box(exec::Cpu& ex, const FitPoints& points, const Viewport& vie
     distance_ = 1 / std::sin(kHalfAngle);
     focal_pixels_ = view.per_radius;
   }
-  centre_ = plus(centre_, times(radius_, plus(times(view.x, axes_.right), times(view.y, axes_.up))));
+  centre_ += radius_ * (view.x * axes_.right + view.y * axes_.up);
 }
 
 void Camera::choose_steps(const Viewport& viewport, const RenderOptions& options) {
@@ -99,7 +95,7 @@ pointskin::Camera Camera::matrices(const RenderOptions& options) const {
   camera.width = options.width;
   camera.height = options.height;
   const std::array<Vec3d, 3> axes = {axes_.right, axes_.up, axes_.back};
-  const Vec3d centre_world = plus(origin_, centre_);
+  const Vec3d centre_world = origin_ + centre_;
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t a = 0; a < 3; ++a) camera.view[4 * row + a] = axes[row][a];
     camera.view[4 * row + 3] = -dot(axes[row], centre_world) - (row == 2 ? distance_ * radius_ : 0);
@@ -134,16 +130,16 @@ Vec3d Camera::to_view(const Vec3d& direction) const {
 }
 
 Vec3d Camera::to_world(const Vec3d& direction) const {
-  return plus(plus(times(direction[0], axes_.right), times(direction[1], axes_.up)), times(direction[2], axes_.back));
+  return direction[0] * axes_.right + direction[1] * axes_.up + direction[2] * axes_.back;
 }
 
-Vec3d Camera::place(const Vec3d& point) const { return to_view(times(1 / radius_, minus(point, centre_))); }
+Vec3d Camera::place(const Vec3d& point) const { return to_view(1 / radius_ * (point - centre_)); }
 
-Vec3d Camera::point_at(const Vec3d& place) const { return plus(centre_, times(radius_, to_world(place))); }
+Vec3d Camera::point_at(const Vec3d& place) const { return centre_ + radius_ * to_world(place); }
 
 ProjectedVertex Camera::project(const Vec3f& point) const {
   constexpr double kFarOff = 1 << 29;  // steps
-  const Vec3d p = place(mesh_detail::to_double(point));
+  const Vec3d p = place(to_double(point));
   // Of what the camera is fitted to nothing is left out here; an orthographic nearness is 2 in the middle.
   const double depth = perspective_ ? distance_ - p[2] : p[2] + 2;
   if (!(depth > kLeastDistance / 2)) return {};

@@ -6,8 +6,8 @@
 
 #include <cstdint>
 
+#include "core/vec3.hpp"
 #include "exec/cpu.hpp"
-#include "mesh/vec3d.hpp"
 #include "render/fit_points.hpp"
 #include "render/view_axes.hpp"
 

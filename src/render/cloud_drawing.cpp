@@ -1,4 +1,5 @@
 #include "render/cloud_drawing.hpp"
+#include "core/vec3.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +9,6 @@
 
 namespace pointskin::render_detail {
 namespace {
-
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::normalized;
-using mesh_detail::plus;
-using mesh_detail::times;
 
 /// Diameter of a point, in spacings: of points at random, discs of radius r spacings leave exp(-pi r^2) uncovered, here
 /// 1.6 %, and larger ones hide details of noisy scans.
@@ -82,8 +77,7 @@ double CloudDrawing::usual_size_world() const {
 /// In the viewer's frame, of unit length; zero if there is none.
 Vec3d CloudDrawing::normal_of(std::int64_t id) const {
   if (!normals_) return {0, 0, 0};
-  const Vec3d normal =
-      normalized(camera_.to_view(mesh_detail::to_double(cloud_.normals[static_cast<std::size_t>(id)])));
+  const Vec3d normal = normalized(camera_.to_view(to_double(cloud_.normals[static_cast<std::size_t>(id)])));
   return std::isfinite(normal[0] + normal[1] + normal[2]) ? normal : Vec3d{0, 0, 0};
 }
 
@@ -100,20 +94,20 @@ ScreenDisc CloudDrawing::disc_of(std::int64_t id) const {
   const Vec3d viewer = to_viewer(at);
   Vec3d normal = normal_of(id);
   const double facing = dot(normal, viewer);
-  if (facing < 0) normal = times(-1, normal);
+  if (facing < 0) normal = -1 * normal;
   const bool flat = normals_ && facing != 0 && radius > kGrain * steps_;
   if (!flat) normal = viewer;
   const double least = facing > 0 ? kLeastTilt : kLeastTiltAway;
   if (std::abs(facing) < least && flat) {
-    const Vec3d along = normalized(minus(normal, times(std::abs(facing), viewer)));
-    normal = plus(times(least, viewer), times(std::sqrt(1 - least * least), along));
+    const Vec3d along = normalized(normal - std::abs(facing) * viewer);
+    normal = least * viewer + std::sqrt(1 - least * least) * along;
   }
   // A step on the picture to the right moves the point of the plane by (1, 0, z), downwards by (0, -1, z'), in steps at
   // the depth of the disc; a perspective line of sight is not along z.
-  const Vec3d sight = times(1 / viewer[2], viewer);
+  const Vec3d sight = 1 / viewer[2] * viewer;
   const double across = dot(normal, sight);
-  const Vec3d right = minus({1, 0, 0}, times(normal[0] / across, sight));
-  const Vec3d down = minus({0, -1, 0}, times(-normal[1] / across, sight));
+  const Vec3d right = Vec3d{1, 0, 0} - normal[0] / across * sight;
+  const Vec3d down = Vec3d{0, -1, 0} - (-normal[1] / across) * sight;
   const double per = 1 / (radius * radius);
   ScreenDisc disc;
   disc.x = at.x;
@@ -149,7 +143,7 @@ Seen CloudDrawing::seen(std::int32_t id, std::int64_t x, std::int64_t y) const {
   seen.normal = normal_of(id);
   const double facing = dot(seen.normal, to_viewer(at));
   seen.front = facing >= 0;
-  if (!seen.front) seen.normal = times(-1, seen.normal);
+  if (!seen.front) seen.normal = -1 * seen.normal;
   seen.albedo = seen.front ? paint_.at(static_cast<std::size_t>(id)) : behind();
   if (facing != 0) return seen;
   // A ball, as far as it is large enough to look like one.

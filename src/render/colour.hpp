@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::render_detail {
 
@@ -19,9 +19,7 @@ double encode_srgb(double linear);
 
 inline Colour from_srgb(double r, double g, double b) { return {decode_srgb(r), decode_srgb(g), decode_srgb(b)}; }
 inline Colour multiply(const Colour& a, const Colour& b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2]}; }
-inline Colour mix(const Colour& a, const Colour& b, double t) {
-  return mesh_detail::plus(mesh_detail::times(1 - t, a), mesh_detail::times(t, b));
-}
+inline Colour mix(const Colour& a, const Colour& b, double t) { return (1 - t) * a + t * b; }
 
 /// Turns linear light into sRGB bytes by a table.
 class SrgbEncoder {

@@ -46,7 +46,7 @@ double distance(const Lab& p, const Lab& q) { return std::hypot(p.l - q.l, p.a -
 
 Colour colour_of(const Lab& lab) {
   Colour colour = from_oklab(lab.l, lab.a, lab.b);
-  for (double& channel : colour) channel = std::clamp(channel, 0.0, 1.0);
+  for (std::size_t c = 0; c < 3; ++c) colour[c] = std::clamp(colour[c], 0.0, 1.0);
   return colour;
 }
 

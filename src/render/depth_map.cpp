@@ -70,7 +70,7 @@ DepthMap::DepthMap(exec::Cpu& ex, const Drawing& drawing, const BandLists& lists
   });
 }
 
-Float3 DepthMap::to_viewer(const Float3& place) const {
+Vec3f DepthMap::to_viewer(const Vec3f& place) const {
   if (!perspective_) return {0, 0, 1};
   return (-1 / std::sqrt(dot(place, place))) * place;
 }

@@ -12,19 +12,6 @@
 
 namespace pointskin::render_detail {
 
-/// Three floats with the arithmetic that maps need, which are made in float: millions of cells, and small angles only.
-struct Float3 {
-  float x = 0, y = 0, z = 0;
-
-  friend Float3 operator+(const Float3& a, const Float3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend Float3 operator-(const Float3& a, const Float3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend Float3 operator*(float s, const Float3& a) { return {s * a.x, s * a.y, s * a.z}; }
-};
-inline float dot(const Float3& a, const Float3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Float3 cross(const Float3& a, const Float3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// How large a map is to be.
 struct MapSize {
   std::int32_t width = 1, height = 1;  ///< of the picture, pixels
@@ -53,10 +40,10 @@ class DepthMap {
   [[nodiscard]] float nearness(std::size_t cell) const { return nearness_[cell]; }
   /// What a cell sees, in the viewer's frame: radii from the viewer (perspective), or from the plane through the
   /// middle.
-  [[nodiscard]] Float3 place(std::int32_t column, std::int32_t row) const {
+  [[nodiscard]] Vec3f place(std::int32_t column, std::int32_t row) const {
     return place(column, row, nearness_[index(column, row)]);
   }
-  [[nodiscard]] Float3 place(std::int32_t column, std::int32_t row, float nearness) const {
+  [[nodiscard]] Vec3f place(std::int32_t column, std::int32_t row, float nearness) const {
     const float x = (static_cast<float>(column) - middle_x_) * per_cell_;
     const float y = (middle_y_ - static_cast<float>(row)) * per_cell_;
     if (!perspective_) return {x, y, nearness - 2};
@@ -64,7 +51,7 @@ class DepthMap {
     return {x * depth, y * depth, -depth};
   }
   /// Unit vector from a place towards the viewer.
-  [[nodiscard]] Float3 to_viewer(const Float3& place) const;
+  [[nodiscard]] Vec3f to_viewer(const Vec3f& place) const;
   /// By how much the nearness changes from a cell to the next where what is seen slants by 45 degrees.
   [[nodiscard]] float slant(float nearness) const { return perspective_ ? nearness * per_cell_ : per_cell_; }
   /// Cells that a length of one radius spans at a nearness.
@@ -83,13 +70,13 @@ class DepthMap {
 
 /// Normals that the depth has, shape as the map, in the viewer's frame; zero where nothing is seen.
 /// @param reach  cells to either side whose plane is taken: 1 for surfaces, more for surfaces made of points
-std::vector<Float3> normals_of(exec::Cpu& ex, const DepthMap& map, int reach);
+std::vector<Vec3f> normals_of(exec::Cpu& ex, const DepthMap& map, int reach);
 
 /// Shape as the map.
 using CellFloats = std::vector<float>;
 
 /// Share of the light of all sides that reaches each cell; 1 where nothing is in its way.
-CellFloats openness_of(exec::Cpu& ex, const DepthMap& map, const std::vector<Float3>& normals, float radius_cells);
+CellFloats openness_of(exec::Cpu& ex, const DepthMap& map, const std::vector<Vec3f>& normals, float radius_cells);
 
 /// value(column, row) of every cell, in parallel.
 template <class F>

@@ -42,19 +42,19 @@ class NormalsOfDepth {
  public:
   NormalsOfDepth(const DepthMap& map, int reach) : map_(map), reach_(reach) {}
 
-  [[nodiscard]] Float3 at(std::int32_t column, std::int32_t row) const {
+  [[nodiscard]] Vec3f at(std::int32_t column, std::int32_t row) const {
     const float near = map_.nearness(map_.index(column, row));
     if (near == 0) return {};
     const Slope slope = reach_ == 1 ? Slope{least_change(column, row, 1, 0), least_change(column, row, 0, 1)}
                                     : plane(column, row, near).slope();
     // Nearness is linear on a plane, so its slope gives two directions along the plane.
-    const Float3 here = map_.place(column, row, near);
-    const Float3 right = map_.place(column + 1, row, std::max(near + slope.x, 0.5F * near)) - here;
-    const Float3 down = map_.place(column, row + 1, std::max(near + slope.y, 0.5F * near)) - here;
-    Float3 normal = cross(down, right);
+    const Vec3f here = map_.place(column, row, near);
+    const Vec3f right = map_.place(column + 1, row, std::max(near + slope.x, 0.5F * near)) - here;
+    const Vec3f down = map_.place(column, row + 1, std::max(near + slope.y, 0.5F * near)) - here;
+    Vec3f normal = cross(down, right);
     if (dot(normal, map_.to_viewer(here)) < 0) normal = -1.0F * normal;
     const float length = std::sqrt(dot(normal, normal));
-    return length > 0 ? (1 / length) * normal : Float3{0, 0, 1};
+    return length > 0 ? (1 / length) * normal : Vec3f{0, 0, 1};
   }
 
  private:
@@ -97,9 +97,9 @@ class NormalsOfDepth {
 
 }  // namespace
 
-std::vector<Float3> normals_of(exec::Cpu& ex, const DepthMap& map, int reach) {
+std::vector<Vec3f> normals_of(exec::Cpu& ex, const DepthMap& map, int reach) {
   const NormalsOfDepth depth(map, reach);
-  std::vector<Float3> normals(static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height()));
+  std::vector<Vec3f> normals(static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height()));
   ex.run_blocks(map.height(), [&](std::int64_t r) {
     const auto row = static_cast<std::int32_t>(r);
     for (std::int32_t column = 0; column < map.width(); ++column)

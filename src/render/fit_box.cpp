@@ -10,10 +10,6 @@
 namespace pointskin::render_detail {
 namespace {
 
-using mesh_detail::dot;
-using mesh_detail::minus;
-using mesh_detail::times;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// How far points reach along one axis of the picture and its opposite.
@@ -39,7 +35,7 @@ struct Reaches {
 };
 
 Vec3d in_view(const ViewSpace& space, const Vec3d& p) {
-  const Vec3d q = times(1 / space.radius, minus(p, space.centre));
+  const Vec3d q = 1 / space.radius * (p - space.centre);
   return {dot(space.axes.right, q), dot(space.axes.up, q), dot(space.axes.back, q)};
 }
 

@@ -6,9 +6,6 @@
 namespace pointskin::render_detail {
 namespace {
 
-using mesh_detail::minus;
-using mesh_detail::times;
-
 bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 }  // namespace
@@ -43,7 +40,7 @@ FitPoints::FitPoints(const Cloud& cloud, const std::optional<WorldBox>& box, int
 }
 
 void FitPoints::use_box(const WorldBox& box, const Vec3d& origin) {
-  const Vec3d corners[2] = {minus(box.lower, origin), minus(box.upper, origin)};
+  const Vec3d corners[2] = {box.lower - origin, box.upper - origin};
   for (std::size_t k = 0; k < 8; ++k)
     corners_.push_back({static_cast<float>(corners[k & 1][0]), static_cast<float>(corners[k >> 1 & 1][1]),
                         static_cast<float>(corners[k >> 2][2])});
@@ -63,13 +60,12 @@ Box FitPoints::box(exec::Cpu& ex) const {
 Vec3d FitPoints::centre(exec::Cpu& ex) const {
   const Box box = this->box(ex);
   if (box.lower[0] > box.upper[0]) return {0, 0, 0};
-  return times(0.5, mesh_detail::plus(box.lower, box.upper));
+  return 0.5 * (box.lower + box.upper);
 }
 
 double FitPoints::radius_about(exec::Cpu& ex, const Vec3d& place) const {
   const double squared = reduce(
-      ex, 0.0,
-      [&](double& most, const Vec3d& p) { most = std::max(most, mesh_detail::squared_length(minus(p, place))); },
+      ex, 0.0, [&](double& most, const Vec3d& p) { most = std::max(most, squared_length(p - place)); },
       [](double& most, double part) { most = std::max(most, part); });
   return std::sqrt(squared);
 }

@@ -8,8 +8,8 @@
 
 #include "core/array_view.hpp"
 #include "core/box.hpp"
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "mesh/vec3d.hpp"
 
 namespace pointskin::render_detail {
 
@@ -30,7 +30,7 @@ class FitPoints {
     ex.run_blocks(static_cast<std::int64_t>(part.size()), [&](std::int64_t b) {
       T value = first;  // on the stack: parts of neighbours share cache lines
       for (std::int64_t i = b * kBlock; i < std::min(positions.size, (b + 1) * kBlock); ++i)
-        if (counts(i)) add(value, mesh_detail::to_double(positions[i]));
+        if (counts(i)) add(value, to_double(positions[i]));
       part[static_cast<std::size_t>(b)] = value;
     });
     T all = first;

@@ -1,6 +1,7 @@
 // Edges of triangles are drawn where a sample is near to one, so that hidden ones vanish with their triangles.
 // Source: Baerentzen, Nielsen, Gjol, Larsen & Christensen, "Single-pass wireframe rendering", SIGGRAPH sketches 2006.
 #include "render/mesh_drawing.hpp"
+#include "core/vec3.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +10,6 @@
 
 namespace pointskin::render_detail {
 namespace {
-
-using mesh_detail::minus;
-using mesh_detail::normalized;
-using mesh_detail::plus;
-using mesh_detail::times;
-using mesh_detail::to_double;
 
 Vec3d corner(const std::vector<Vec3f>& values, const Triangle& t, std::size_t k) {
   return to_double(values[static_cast<std::size_t>(t[k])]);
@@ -57,7 +52,7 @@ Seen MeshDrawing::seen(std::int32_t id, std::int64_t x, std::int64_t y) const {
   Seen seen;
   seen.front = triangle.faces_viewer();
   const Vec3d normal = camera_.to_view(normal_at(t, weights));
-  seen.normal = seen.front ? normal : times(-1, normal);
+  seen.normal = seen.front ? normal : -1 * normal;
   seen.albedo = seen.front ? paint_.at(t, weights) : behind();
   if (options_.wireframe) seen.line = edge_at(triangle, w);
   return seen;
@@ -68,17 +63,17 @@ Vec3d MeshDrawing::corner_weights(const ScreenTriangle::Weights& w, const Triang
   const Vec3d weights{static_cast<double>(w.a) * vertices_.data()[t[0]].weight,
                       static_cast<double>(w.b) * vertices_.data()[t[1]].weight,
                       static_cast<double>(w.c) * vertices_.data()[t[2]].weight};
-  return times(1 / (weights[0] + weights[1] + weights[2]), weights);
+  return 1 / (weights[0] + weights[1] + weights[2]) * weights;
 }
 
 /// Unit normal of the outside, in the mesh's frame.
 Vec3d MeshDrawing::normal_at(const Triangle& t, const Vec3d& weights) const {
   Vec3d normal{0, 0, 0};
   if (smooth_)
-    for (std::size_t k = 0; k < 3; ++k) normal = plus(normal, times(weights[k], corner(mesh_.normals, t, k)));
-  if (!(mesh_detail::squared_length(normal) > 0)) {
+    for (std::size_t k = 0; k < 3; ++k) normal += weights[k] * corner(mesh_.normals, t, k);
+  if (!(squared_length(normal) > 0)) {
     const Vec3d a = corner(mesh_.vertices, t, 0);
-    normal = mesh_detail::cross(minus(corner(mesh_.vertices, t, 1), a), minus(corner(mesh_.vertices, t, 2), a));
+    normal = cross(corner(mesh_.vertices, t, 1) - a, corner(mesh_.vertices, t, 2) - a);
   }
   return normalized(normal);
 }

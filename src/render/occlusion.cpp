@@ -20,7 +20,7 @@ constexpr float kNearest = 0.02F;
 
 class Occlusion {
  public:
-  Occlusion(const DepthMap& map, const std::vector<Float3>& normals, float radius_cells)
+  Occlusion(const DepthMap& map, const std::vector<Vec3f>& normals, float radius_cells)
       : map_(map), normals_(normals), radius_cells_(radius_cells) {
     for (std::size_t i = 0; i < directions_.size(); ++i) {
       const float angle = kPi * static_cast<float>(i) / static_cast<float>(directions_.size());
@@ -31,8 +31,8 @@ class Occlusion {
   [[nodiscard]] float at(std::int32_t column, std::int32_t row) const {
     const std::size_t cell = map_.index(column, row);
     if (map_.nearness(cell) == 0) return 1;
-    const Float3 place = map_.place(column, row);
-    const Float3 viewer = map_.to_viewer(place);
+    const Vec3f place = map_.place(column, row);
+    const Vec3f viewer = map_.to_viewer(place);
     // The order of directions in the square: neighbours differ much.
     constexpr std::array<std::size_t, 16> kOrder = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
     const std::size_t of_cell = kOrder[static_cast<std::size_t>(column & 3) + 4 * static_cast<std::size_t>(row & 3)];
@@ -65,7 +65,7 @@ class Occlusion {
   }
 
   /// Largest cosine of the angle between the line of sight and what stands along the walk; -1 if nothing does.
-  [[nodiscard]] float horizon(const Walk& walk, const Float3& place, const Float3& viewer) const {
+  [[nodiscard]] float horizon(const Walk& walk, const Vec3f& place, const Vec3f& viewer) const {
     const float radius = radius_cells_ / map_.cells_per_radius(map_.nearness(map_.index(walk.column, walk.row)));
     float highest = -1;
     for (int k = 1; k <= kSteps; ++k) {
@@ -74,7 +74,7 @@ class Occlusion {
       const std::int32_t column = nearest_cell(static_cast<float>(walk.column) + cells * walk.x);
       const std::int32_t row = nearest_cell(static_cast<float>(walk.row) + cells * walk.y);
       if (!map_.holds(column, row) || map_.nearness(map_.index(column, row)) == 0) continue;
-      const Float3 to = map_.place(column, row) - place;
+      const Vec3f to = map_.place(column, row) - place;
       const float squared = dot(to, to);
       const float away = squared / (radius * radius);
       if (away >= 1 || away < kNearest * kNearest) continue;
@@ -86,13 +86,13 @@ class Occlusion {
   }
 
   /// Adds what a slice lets through, and what it would if nothing stood there.
-  static void add_slice(const Horizons& horizons, const Float3& normal, const Float3& viewer, const Float3& along,
+  static void add_slice(const Horizons& horizons, const Vec3f& normal, const Vec3f& viewer, const Vec3f& along,
                         float& open, float& all) {
-    const Float3 side = along - dot(along, viewer) * viewer;
-    const Float3 axis = cross(side, viewer);
+    const Vec3f side = along - dot(along, viewer) * viewer;
+    const Vec3f axis = cross(side, viewer);
     const float axis_squared = dot(axis, axis);
     if (!(axis_squared > 0)) return;
-    const Float3 projected = normal - (dot(normal, axis) / axis_squared) * axis;
+    const Vec3f projected = normal - (dot(normal, axis) / axis_squared) * axis;
     const float length = std::sqrt(dot(projected, projected));
     if (!(length > 0)) return;
     const float cosine = std::clamp(dot(projected, viewer) / length, -1.0F, 1.0F);
@@ -106,14 +106,14 @@ class Occlusion {
   }
 
   const DepthMap& map_;
-  const std::vector<Float3>& normals_;
+  const std::vector<Vec3f>& normals_;
   float radius_cells_;
   std::array<Direction, 16 * kSlices> directions_{};
 };
 
 }  // namespace
 
-CellFloats openness_of(exec::Cpu& ex, const DepthMap& map, const std::vector<Float3>& normals, float radius_cells) {
+CellFloats openness_of(exec::Cpu& ex, const DepthMap& map, const std::vector<Vec3f>& normals, float radius_cells) {
   const Occlusion occlusion(map, normals, std::max(radius_cells, static_cast<float>(kSteps)));
   return smoothed(ex, map, for_cells(ex, map, [&](std::int32_t c, std::int32_t r) { return occlusion.at(c, r); }));
 }

@@ -9,9 +9,6 @@
 namespace pointskin::render_detail {
 namespace {
 
-using mesh_detail::plus;
-using mesh_detail::times;
-
 /// A multiple of 255, so that bytes fall on entries.
 constexpr int kDecodedSteps = 255 * 16;
 
@@ -81,7 +78,7 @@ Colour Paint::at(const Triangle& t, const Vec3d& weights) const {
   }
   if (channels_[0] == nullptr) return clay_;
   Colour sum{0, 0, 0};
-  for (std::size_t k = 0; k < 3; ++k) sum = plus(sum, times(weights[k], channels(ids[k])));
+  for (std::size_t k = 0; k < 3; ++k) sum += weights[k] * channels(ids[k]);
   return sum;
 }
 

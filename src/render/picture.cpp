@@ -1,6 +1,7 @@
 // Project, find what every sample of a band of rows sees, shade it, average to pixels. A first pass with one sample a
 // pixel gives the depth from which light in hollows, and normals that points lack, follow.
 #include "render/picture.hpp"
+#include "core/vec3.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,10 +16,6 @@
 
 namespace pointskin::render_detail {
 namespace {
-
-using mesh_detail::normalized;
-using mesh_detail::plus;
-using mesh_detail::times;
 
 /// How far hollows are looked for, pixels at scale 1.
 constexpr double kHollow = 150;
@@ -133,9 +130,9 @@ class Painter {
 
   [[nodiscard]] Colour colour_of(const PixelParts& parts, const PixelPlace& pixel, const Colour& background,
                                  Shares& shares) const {
-    Colour sum = times(SampleGrid::kSamples - parts.covered, background);
-    for (int k = 0; k < parts.count; ++k) sum = plus(sum, colour_of(parts.parts[k], pixel, shares));
-    return times(1.0 / SampleGrid::kSamples, sum);
+    Colour sum = (SampleGrid::kSamples - parts.covered) * background;
+    for (int k = 0; k < parts.count; ++k) sum += colour_of(parts.parts[k], pixel, shares);
+    return 1.0 / SampleGrid::kSamples * sum;
   }
 
   /// Times the number of its samples.
@@ -147,13 +144,13 @@ class Painter {
     const Light light{open_.empty() ? 1.0 : static_cast<double>(cells.of(open_, 1.0F)),
                       key_.empty() ? 1.0 : static_cast<double>(cells.of(key_, 1.0F))};
     const Colour lit = shade(seen.albedo, normal_of(seen, cells), light, lighting_);
-    return times(part.samples, seen.line > 0 ? mix(lit, edge_, seen.line) : lit);
+    return part.samples * (seen.line > 0 ? mix(lit, edge_, seen.line) : lit);
   }
 
   [[nodiscard]] Vec3d normal_of(const Seen& seen, const CellBlend& cells) const {
     if (seen.relief >= 1) return seen.normal;
-    const Float3 smooth = cells.of(normals_, Float3{0, 0, 1});
-    return normalized(plus(times(seen.relief, seen.normal), times(1 - seen.relief, {smooth.x, smooth.y, smooth.z})));
+    const Vec3f smooth = cells.of(normals_, Vec3f{0, 0, 1});
+    return normalized(seen.relief * seen.normal + (1 - seen.relief) * Vec3d{smooth.x, smooth.y, smooth.z});
   }
 
   const Drawing& drawing_;
@@ -162,8 +159,8 @@ class Painter {
   Lighting lighting_;
   BandLists lists_;
   DepthMap map_;
-  std::vector<Float3> normals_;  // of the map; empty: not needed
-  CellFloats open_, key_;        // of the map; empty: 1
+  std::vector<Vec3f> normals_;  // of the map; empty: not needed
+  CellFloats open_, key_;       // of the map; empty: 1
   Colour edge_ = edge_colour();
   SrgbEncoder encode_;
 };

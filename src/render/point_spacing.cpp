@@ -10,8 +10,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "mesh/vec3d.hpp"
 #include "octree/keys.hpp"
 
 namespace pointskin::render_detail {
@@ -23,7 +23,7 @@ constexpr std::uint64_t kNoPlace = std::uint64_t{1} << (3 * kLevels);
 
 /// Morton key of a point in the finest grid over the cube about `centre`; kNoPlace outside.
 std::uint64_t key_of(const Vec3f& p, const Vec3d& centre, double radius) {
-  const Vec3d unit = mesh_detail::times(0.5 / radius, mesh_detail::minus(mesh_detail::to_double(p), centre));
+  const Vec3d unit = 0.5 / radius * (to_double(p) - centre);
   constexpr double kCells = 1 << kLevels;
   std::array<std::int32_t, 3> cell{};
   for (std::size_t a = 0; a < 3; ++a) {

@@ -35,7 +35,7 @@ void check_view(const RenderOptions& options) {
 
 std::optional<WorldBox> world_box(const Box& box, const Vec3d& origin) {
   if (box.lower[0] > box.upper[0]) return std::nullopt;
-  return WorldBox{mesh_detail::plus(origin, box.lower), mesh_detail::plus(origin, box.upper)};
+  return WorldBox{origin + box.lower, origin + box.upper};
 }
 
 void finish(const Paint& paint, const RenderOptions& options, Image& image, RenderReport& made, RenderReport* report) {

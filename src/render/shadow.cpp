@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/vec3.hpp"
 #include "render/band_lists.hpp"
 #include "render/shading.hpp"
 
@@ -19,10 +20,6 @@ constexpr std::int32_t kLightPixels = 704;
 /// Radius of the light's disc, and by how much something must be nearer to the light to shade, in cells.
 constexpr float kSoftness = 4.5F, kBias = 1.6F;
 constexpr int kRays = 4;  // a cell
-
-Float3 to_float(const Vec3d& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
 
 }  // namespace
 
@@ -57,21 +54,21 @@ ShadowMap::ShadowMap(exec::Cpu& ex, const Drawing& drawing, const Camera& light,
   };
   const double eye = viewer.perspective() ? viewer.distance() : 0;
   const Vec3d zero = on_light({0, 0, eye});
-  const Vec3d x = mesh_detail::minus(on_light({1, 0, eye}), zero);
-  const Vec3d y = mesh_detail::minus(on_light({0, 1, eye}), zero);
-  const Vec3d z = mesh_detail::minus(on_light({0, 0, eye + 1}), zero);
+  const Vec3d x = on_light({1, 0, eye}) - zero;
+  const Vec3d y = on_light({0, 1, eye}) - zero;
+  const Vec3d z = on_light({0, 0, eye + 1}) - zero;
   Row* const rows[3] = {&column_, &row_, &nearness_};
   for (std::size_t k = 0; k < 3; ++k) *rows[k] = {to_float({x[k], y[k], z[k]}), static_cast<float>(zero[k])};
 }
 
-float ShadowMap::reaches(const Float3& place, const Float3& normal, std::int32_t column, std::int32_t row) const {
+float ShadowMap::reaches(const Vec3f& place, const Vec3f& normal, std::int32_t column, std::int32_t row) const {
   const float facing = dot(normal, towards_);
   if (facing < 0.02F) return 1;  // it has no light of the lamp to lose
   const float x = column_.of(place), y = row_.of(place), near = nearness_.of(place);
   // By how much the surface's plane comes nearer to the light from a cell to the next.
   const float cell = map_.slant(near);
-  const Float3 right = (1 / std::sqrt(dot(column_.along, column_.along))) * column_.along;
-  const Float3 down = (1 / std::sqrt(dot(row_.along, row_.along))) * row_.along;
+  const Vec3f right = (1 / std::sqrt(dot(column_.along, column_.along))) * column_.along;
+  const Vec3f down = (1 / std::sqrt(dot(row_.along, row_.along))) * row_.along;
   const float slope_x = std::clamp(-dot(normal, right) / facing, -4.0F, 4.0F) * cell;
   const float slope_y = std::clamp(-dot(normal, down) / facing, -4.0F, 4.0F) * cell;
   const std::uint32_t of_cell = static_cast<std::uint32_t>(column & 3) * 4 + static_cast<std::uint32_t>(row & 3);
@@ -105,7 +102,7 @@ const std::array<ShadowMap::SunRay, 64>& ShadowMap::rays() {
   return kPlaces;
 }
 
-CellFloats key_light_of(exec::Cpu& ex, const DepthMap& map, const std::vector<Float3>& normals,
+CellFloats key_light_of(exec::Cpu& ex, const DepthMap& map, const std::vector<Vec3f>& normals,
                         const ShadowMap& shadows) {
   return smoothed(ex, map, for_cells(ex, map, [&](std::int32_t c, std::int32_t r) {
                     const std::size_t cell = map.index(c, r);

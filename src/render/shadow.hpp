@@ -28,14 +28,14 @@ class ShadowMap {
 
   /// Share of the light that reaches a place; the light is a disc in the sky, which 64 rays stand for: every cell of a
   /// square of 16 has its own four. @param normal  of the surface there @param column, row  of the cell
-  [[nodiscard]] float reaches(const Float3& place, const Float3& normal, std::int32_t column, std::int32_t row) const;
+  [[nodiscard]] float reaches(const Vec3f& place, const Vec3f& normal, std::int32_t column, std::int32_t row) const;
 
  private:
   /// A linear map from the viewer's frame to column, row and nearness of the light's picture.
   struct Row {
-    Float3 along;
+    Vec3f along;
     float at_zero = 0;
-    [[nodiscard]] float of(const Float3& p) const { return dot(along, p) + at_zero; }
+    [[nodiscard]] float of(const Vec3f& p) const { return dot(along, p) + at_zero; }
   };
 
   /// A place on the light's disc.
@@ -46,13 +46,13 @@ class ShadowMap {
 
   DepthMap map_;
   Row column_, row_, nearness_;
-  Float3 towards_;  // the light, in the viewer's frame
-  double radius_;   // world units, of the light's picture
+  Vec3f towards_;  // the light, in the viewer's frame
+  double radius_;  // world units, of the light's picture
   float slack_ = 0;
 };
 
 /// Share of the key light that reaches each cell of `map`.
-CellFloats key_light_of(exec::Cpu& ex, const DepthMap& map, const std::vector<Float3>& normals,
+CellFloats key_light_of(exec::Cpu& ex, const DepthMap& map, const std::vector<Vec3f>& normals,
                         const ShadowMap& shadows);
 
 }  // namespace pointskin::render_detail

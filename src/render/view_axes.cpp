@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/vec3d.hpp"
+#include "core/vec3.hpp"
 
 namespace pointskin::render_detail {
 namespace {
@@ -34,16 +34,16 @@ ViewAxes view_axes(UpAxis up, double azimuth, double elevation) {
   axes.back = turned(
       {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)}, up);
   axes.right = turned({std::cos(azimuth), 0, -std::sin(azimuth)}, up);
-  axes.up = mesh_detail::cross(axes.back, axes.right);
+  axes.up = cross(axes.back, axes.right);
   return axes;
 }
 
 Vec3d up_direction(UpAxis up) { return turned({0, 1, 0}, up); }
 
 ViewAngles view_angles(UpAxis up, const Vec3d& back) {
-  const double x = mesh_detail::dot(turned({1, 0, 0}, up), back);
-  const double y = mesh_detail::dot(turned({0, 1, 0}, up), back);
-  const double z = mesh_detail::dot(turned({0, 0, 1}, up), back);
+  const double x = dot(turned({1, 0, 0}, up), back);
+  const double y = dot(turned({0, 1, 0}, up), back);
+  const double z = dot(turned({0, 0, 1}, up), back);
   return {std::atan2(x, z), std::asin(std::clamp(y, -1.0, 1.0))};
 }
 

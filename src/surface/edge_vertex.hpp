@@ -6,6 +6,7 @@
 
 #include <pointskin/vector.hpp>
 
+#include "core/vec3.hpp"
 #include "field/field_view.hpp"
 #include "surface/leaf_cell.hpp"
 
@@ -71,8 +72,8 @@ PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedE
 
 /// -v / |v|, or zero: values fall towards the outside.
 PSK_HD inline Vec3f outward(const Vec3f& v) {
-  const float length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-  return length > 0 ? Vec3f{-v.x / length, -v.y / length, -v.z / length} : Vec3f{};
+  const float size = length(v);
+  return size > 0 ? -v / size : Vec3f{};
 }
 
 }  // namespace pointskin::surface

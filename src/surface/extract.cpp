@@ -255,22 +255,16 @@ struct EmitTraced {
         const std::int32_t there = k + 1 < length ? vertex(at) : first_vertex;
         at = tracer.next(at);
         mesh.triangles[triangle++] = {here, there, centre};
-        add(position, mesh.positions[here]);
-        if (!mesh.normals.empty()) add(normal, mesh.normals[here]);
+        position += mesh.positions[here];
+        if (!mesh.normals.empty()) normal += mesh.normals[here];
         here = there;
       }
       const float share = 1.0F / static_cast<float>(length);
-      mesh.positions[centre] = {position.x * share, position.y * share, position.z * share};
-      if (!mesh.normals.empty()) mesh.normals[centre] = outward({-normal.x, -normal.y, -normal.z});
+      mesh.positions[centre] = position * share;
+      if (!mesh.normals.empty()) mesh.normals[centre] = outward(-normal);
       mesh.keys[centre] = vertex_key(f.tree, place);
       ++centre;
     });
-  }
-
-  PSK_HD static void add(Vec3f& sum, const Vec3f& v) {
-    sum.x += v.x;
-    sum.y += v.y;
-    sum.z += v.z;
   }
 };
 

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu.hpp"
 #include "mesh/signed_distance.hpp"
-#include "mesh/vec3d.hpp"
 #include "property/reconstruction.hpp"
 #include "support/shapes.hpp"
 
@@ -38,13 +38,12 @@ struct Protrusion {
 Protrusion protrusion_of(const Mesh& mesh, const Mesh& envelope) {
   using namespace mesh_detail;
   exec::Cpu ex(1);
-  const SignedDistance distance(ex, envelope, minus(envelope.origin, mesh.origin));
+  const SignedDistance distance(ex, envelope, envelope.origin - mesh.origin);
   Protrusion worst;
   for (const Vec3f& v : mesh.vertices) worst.vertices = std::max(worst.vertices, -distance.at(to_double(v)).distance);
   for (const Triangle& t : mesh.triangles) {
     Vec3d middle{0, 0, 0};
-    for (const std::int32_t v : t)
-      middle = plus(middle, times(1.0 / 3, to_double(mesh.vertices[static_cast<std::size_t>(v)])));
+    for (const std::int32_t v : t) middle += 1.0 / 3 * to_double(mesh.vertices[static_cast<std::size_t>(v)]);
     worst.triangles = std::max(worst.triangles, -distance.at(middle).distance);
   }
   return worst;

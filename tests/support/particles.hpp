@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin::test {
@@ -30,8 +31,6 @@ inline Cloud lattice_particles(double radius, double extent, double jitter, std:
       }
   return cloud;
 }
-
-inline double length(const Vec3d& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 inline Cloud ball_of_particles(double radius, double ball_radius, double jitter, std::uint64_t seed) {
   return lattice_particles(radius, ball_radius, jitter, seed,

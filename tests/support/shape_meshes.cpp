@@ -5,16 +5,13 @@
 #include <numbers>
 #include <utility>
 
+#include "core/vec3.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-Vec3f to_float(const Vec3d& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
 
 void add_square(Mesh& mesh, std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
   mesh.triangles.push_back({a, b, c});

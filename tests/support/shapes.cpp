@@ -1,5 +1,6 @@
 // Clouds; the meshes are in shape_meshes.cpp.
 #include "support/shapes.hpp"
+#include "core/vec3.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,10 +13,6 @@ namespace pointskin::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-Vec3f to_float(const Vec3d& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
 
 void add_point(Cloud& cloud, const Vec3d& position, const Vec3d& normal) {
   cloud.positions.push_back(to_float(position));

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/double3.hpp"
 #include "core/eigen3.hpp"
+#include "core/matrix3.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin {
@@ -15,14 +15,14 @@ TEST(Eigen3, GivesTheAxesOfARotatedEllipsoid) {
   for (int i = 0; i < 200; ++i) {
     // m = sum of values times outer products of an orthonormal frame
     const Vec3d a = random.direction();
-    const Double3 u{a[0], a[1], a[2]};
+    const Vec3d u{a[0], a[1], a[2]};
     const Vec3d b = random.direction();
-    Double3 v = cross(u, {b[0], b[1], b[2]});
+    Vec3d v = cross(u, {b[0], b[1], b[2]});
     v = v * (1 / std::sqrt(dot(v, v)));
-    const Double3 w = cross(u, v);
+    const Vec3d w = cross(u, v);
     const double values[3] = {random.in(0, 1), random.in(1.1, 2), random.in(2.1, 3)};
     Symmetric3 m;
-    const Double3 axes[3] = {u, v, w};
+    const Vec3d axes[3] = {u, v, w};
     for (int k = 0; k < 3; ++k) m = m + outer(axes[k]) * values[k];
     const Eigen3 eigen = eigen_of(m);
     for (int k = 0; k < 3; ++k) {

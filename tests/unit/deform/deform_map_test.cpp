@@ -30,7 +30,7 @@ class Map {
   explicit Map(const Deformation& deformation) : prepared_(deform::prepare(deformation, {})) {
     validate(deformation, 0);
   }
-  Mapped operator()(const Double3& x) const {
+  Mapped operator()(const Vec3d& x) const {
     const deform::MapView view{{prepared_.handles.data(), static_cast<std::int64_t>(prepared_.handles.size())},
                                {prepared_.lattices.data(), static_cast<std::int64_t>(prepared_.lattices.size())},
                                {prepared_.moves.data(), static_cast<std::int64_t>(prepared_.moves.size())},
@@ -43,13 +43,13 @@ class Map {
   deform::PreparedDeformation prepared_;
 };
 
-void expect_near(const Double3& a, const Double3& b, double tolerance) {
+void expect_near(const Vec3d& a, const Vec3d& b, double tolerance) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-Double3 random_point(Random& random) { return {random.in(-2, 2), random.in(-2, 2), random.in(-2, 2)}; }
+Vec3d random_point(Random& random) { return {random.in(-2, 2), random.in(-2, 2), random.in(-2, 2)}; }
 
 /// Compares the Jacobian with central differences at random points.
 void expect_jacobian(const Deformation& deformation, std::uint64_t seed) {
@@ -58,9 +58,9 @@ void expect_jacobian(const Deformation& deformation, std::uint64_t seed) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   constexpr double kStep = 1e-5;
   for (int i = 0; i < 200; ++i) {
-    const Double3 x = random_point(random);
+    const Vec3d x = random_point(random);
     const Matrix3 jacobian = map(x).jacobian;
-    const auto slope = [&](const Double3& step) {
+    const auto slope = [&](const Vec3d& step) {
       return (map(x + step).position - map(x - step).position) * (0.5 / kStep);
     };
     expect_near(jacobian.x, slope({kStep, 0, 0}), 2e-7);
@@ -94,10 +94,10 @@ TEST(PolarParts, GiveBackTheMatrixTheyWereMadeFrom) {
     const deform::Rotation rotation(to_double(axis) * random.in(-3.1, 3.1));
     const Symmetric3 e{random.in(-0.5, 2),   random.in(-0.5, 2),   random.in(-0.5, 2),
                        random.in(-0.1, 0.1), random.in(-0.1, 0.1), random.in(-0.1, 0.1)};
-    const auto image = [&](const Double3& v) { return rotation * (v + e * v); };
-    const Double3 x = image({1, 0, 0});
-    const Double3 y = image({0, 1, 0});
-    const Double3 z = image({0, 0, 1});
+    const auto image = [&](const Vec3d& v) { return rotation * (v + e * v); };
+    const Vec3d x = image({1, 0, 0});
+    const Vec3d y = image({0, 1, 0});
+    const Vec3d z = image({0, 0, 1});
     const deform::PolarParts parts = deform::polar_parts({x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z});
     expect_near(parts.rotation, rotation.vector, 1e-12);
     EXPECT_NEAR(parts.stretch.xx, e.xx, 1e-12);
@@ -147,7 +147,7 @@ TEST(Handles, WithOneTransformMoveEverythingByIt) {
                    {}});
   Random random(5);
   for (int i = 0; i < 100; ++i) {
-    const Double3 x = random_point(random);
+    const Vec3d x = random_point(random);
     expect_near(three(x).position, one(x).position, 1e-13);
     const Matrix3 j = three(x).jacobian;
     EXPECT_NEAR(dot(j.x, cross(j.y, j.z)), 1, 1e-12);
@@ -162,7 +162,7 @@ TEST(Handles, OverlappingRegionsShareAlike) {
 }
 
 TEST(Handles, RegionsMeasureDistances) {
-  const auto distance = [](const HandleRegion& region, const Double3& x) {
+  const auto distance = [](const HandleRegion& region, const Vec3d& x) {
     // Two equal shares lie where both distances are equal, so the other half-space tells the distance.
     const deform::PreparedDeformation prepared =
         deform::prepare({{{region, RigidMotion{.translation = {1, 0, 0}}}}, {}}, {});
@@ -201,7 +201,7 @@ Lattice lattice_around(std::array<int, 3> spans) {
 void move_at_random(Lattice& lattice, std::uint64_t seed, double amount) {
   Random random(seed);
   for (Vec3d& point : lattice.control)
-    for (double& x : point) x += random.in(-amount, amount);
+    for (std::size_t a = 0; a < 3; ++a) point[a] += random.in(-amount, amount);
 }
 
 TEST(Lattices, UnmovedAreExactlyTheIdentity) {
@@ -218,7 +218,7 @@ TEST(Lattices, ReproduceAffineMapsInsideAndOut) {
   const Map map({{}, {lattice}});
   Random random(17);
   for (int i = 0; i < 100; ++i) {
-    const Double3 x = random_point(random);
+    const Vec3d x = random_point(random);
     const Vec3d expected = affine({x.x, x.y, x.z});
     expect_near(map(x).position, to_double(expected), 1e-12);
   }

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "envelope/envelope.hpp"
 #include "exec/cpu.hpp"
 #include "mesh/signed_distance.hpp"
-#include "mesh/vec3d.hpp"
 #include "support/shapes.hpp"
 #include "unit/poisson/small_tree.hpp"
 
@@ -29,7 +29,7 @@ struct Fixture {
   exec::Cpu ex{1};
   SignedDistance distance{ex, *mesh, {0, 0, 0}};
 
-  [[nodiscard]] Vec3d world(const Vec3f& unit) const { return plus(frame.lower, times(frame.size, to_double(unit))); }
+  [[nodiscard]] Vec3d world(const Vec3f& unit) const { return frame.lower + frame.size * to_double(unit); }
   [[nodiscard]] double signed_distance(const Vec3f& unit) const { return distance.at(world(unit)).distance; }
 };
 
@@ -107,13 +107,13 @@ TEST(EnvelopeParts, MovesVerticesAlongTheirEdgesOntoTheEnvelopeAndLeavesAllOther
   std::int64_t expected = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (f.signed_distance(before[i]) >= -tolerance || f.signed_distance(ends[i]) <= 0) {
-      ASSERT_EQ(length(minus(to_double(vertices[i]), to_double(before[i]))), 0);
+      ASSERT_EQ(length(to_double(vertices[i]) - to_double(before[i])), 0);
       continue;
     }
     ++expected;
     ASSERT_NEAR(f.signed_distance(vertices[i]), 0, tolerance);
-    const Vec3d whole = minus(to_double(before[i]), to_double(ends[i]));
-    const Vec3d part = minus(to_double(vertices[i]), to_double(ends[i]));
+    const Vec3d whole = to_double(before[i]) - to_double(ends[i]);
+    const Vec3d part = to_double(vertices[i]) - to_double(ends[i]);
     ASSERT_LT(length(cross(whole, part)), 1e-7 * length(whole));  // on the line
     ASSERT_GT(dot(whole, part), 0);
     ASSERT_LE(length(part), length(whole));
@@ -133,7 +133,7 @@ TEST(EnvelopeParts, ProjectsWhatIsOutsideToTheNearestPoint) {
   std::int64_t expected = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const double distance = f.signed_distance(before[i]);
-    const double way = f.frame.size * length(minus(to_double(vertices[i]), to_double(before[i])));
+    const double way = f.frame.size * length(to_double(vertices[i]) - to_double(before[i]));
     ASSERT_NEAR(way, distance < -tolerance ? -distance : 0, tolerance);
     ASSERT_GT(f.signed_distance(vertices[i]), -tolerance);
     expected += distance < -tolerance ? 1 : 0;

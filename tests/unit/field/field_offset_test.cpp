@@ -24,9 +24,8 @@ Vec3f point_in(test::Random& random, double size) {
 Vec3d in_double(const Vec3f& p) { return {p.x, p.y, p.z}; }
 
 double expected_squared(const Vec3f& q, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
-  using mesh_detail::minus;
-  return mesh_detail::squared_distance(
-      in_double(q), {in_double(a), minus(in_double(b), in_double(a)), minus(in_double(c), in_double(a))});
+  return mesh_detail::squared_distance(in_double(q),
+                                       {in_double(a), in_double(b) - in_double(a), in_double(c) - in_double(a)});
 }
 
 TEST(SquaredToTriangle, IsThatOfTheNearestFeature) {

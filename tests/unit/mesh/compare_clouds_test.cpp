@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu.hpp"
 #include "mesh/point_tree.hpp"
 #include "support/shapes.hpp"
@@ -18,9 +19,6 @@
 namespace pointskin {
 namespace {
 
-using mesh_detail::length;
-using mesh_detail::minus;
-using mesh_detail::to_double;
 using test::Random;
 
 /// Points anywhere, some of them twice, on a line or in a clump.
@@ -39,7 +37,7 @@ Cloud random_cloud(Random& random, int n) {
 
 double searched_distance(const Cloud& cloud, const Vec3d& p) {
   double best = std::numeric_limits<double>::infinity();
-  for (const Vec3f& q : cloud.positions) best = std::min(best, length(minus(p, to_double(q))));
+  for (const Vec3f& q : cloud.positions) best = std::min(best, length(p - to_double(q)));
   return best;
 }
 
@@ -61,10 +59,10 @@ TEST(PointTree, AgreesWithASearchThroughAllPoints) {
     const mesh_detail::PointTree tree(ex, cloud.positions, offset);
     for (int query = 0; query < 300; ++query) {
       const Vec3d p{random.in(-2, 2), random.in(-2, 2), random.in(-2, 2)};
-      const mesh_detail::Nearest found = tree.nearest(mesh_detail::plus(p, offset));
+      const mesh_detail::Nearest found = tree.nearest(p + offset);
       ASSERT_NEAR(std::sqrt(found.squared_distance), searched_distance(cloud, p), 1e-14) << n << ", " << query;
       const auto hint = static_cast<std::int32_t>(random.below(n));
-      ASSERT_EQ(tree.nearest(mesh_detail::plus(p, offset), hint).slot, found.slot) << n << ", " << query;
+      ASSERT_EQ(tree.nearest(p + offset, hint).slot, found.slot) << n << ", " << query;
     }
   }
 }

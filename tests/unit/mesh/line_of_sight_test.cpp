@@ -12,7 +12,7 @@ namespace {
 
 /// Signed volume of a tetrahedron, times 6.
 double volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
-  return dot(minus(b, a), cross(minus(c, a), minus(d, a)));
+  return dot(b - a, cross(c - a, d - a));
 }
 
 /// A line passes a triangle if its ends are on both sides of it and it runs past its three sides the same way round.
@@ -31,7 +31,7 @@ TEST(TriangleTree, FindsWhetherSomethingIsInTheWay) {
   test::Random random(kSeed);
   int blocked = 0;
   for (int i = 0; i < 2000; ++i) {
-    Vec3d from = times(random.in(0, 2), random.direction()), to = times(random.in(0, 2), random.direction());
+    Vec3d from = random.in(0, 2) * random.direction(), to = random.in(0, 2) * random.direction();
     if (i % 10 == 0) to = {from[0], from[1], to[2]};  // along an axis
     bool expected = false;
     for (const Triangle& t : mesh.triangles) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu.hpp"
 #include "mesh/surface_samples.hpp"
 #include "mesh/triangle_tree.hpp"
@@ -17,7 +18,6 @@ namespace pointskin {
 namespace {
 
 using mesh_detail::EdgedTriangle;
-using mesh_detail::plus;
 using mesh_detail::squared_distance;
 using test::box_mesh;
 using test::icosphere_mesh;
@@ -84,9 +84,8 @@ TEST(PointTriangleDistance, AgreesWithADenseSearchOverTheTriangle) {
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= kSteps; ++i)
       for (int j = 0; i + j <= kSteps; ++j) {
-        const Vec3d q =
-            plus(t.a, plus(mesh_detail::times(i / double{kSteps}, t.ab), mesh_detail::times(j / double{kSteps}, t.ac)));
-        best = std::min(best, mesh_detail::length(mesh_detail::minus(p, q)));
+        const Vec3d q = t.a + (i / double{kSteps} * t.ab + j / double{kSteps} * t.ac);
+        best = std::min(best, length(p - q));
       }
     const double exact = std::sqrt(squared_distance(p, t));
     EXPECT_LE(exact, best + 1e-12) << "seed 7, trial " << trial;
@@ -139,7 +138,7 @@ TEST(SurfaceSampler, GivesEachTriangleItsShareByArea) {
     const mesh_detail::SurfaceSample sample = sampler.sample(i, 10000);
     ASSERT_EQ(sample.normal, (Vec3d{0, 0, 1}));
     if (sample.point[0] <= 1) ++small;
-    if (sample.point[0] >= 10) sum = plus(sum, sample.point);
+    if (sample.point[0] >= 10) sum += sample.point;
   }
   EXPECT_NEAR(small, 1000, 1);
   // Uniform on the triangle: the mean is its centroid (11, 1, 0), to about size / samples for a quasirandom sequence.

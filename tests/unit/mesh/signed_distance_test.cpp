@@ -32,9 +32,7 @@ double searched_distance(const Mesh& mesh, const Vec3d& p) {
 double winding_number(const Mesh& mesh, const Vec3d& p) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {
-    const auto corner = [&](std::size_t k) {
-      return minus(to_double(mesh.vertices[static_cast<std::size_t>(t[k])]), p);
-    };
+    const auto corner = [&](std::size_t k) { return to_double(mesh.vertices[static_cast<std::size_t>(t[k])]) - p; };
     const Vec3d a = corner(0), b = corner(1), c = corner(2);
     const double la = length(a), lb = length(b), lc = length(c);
     sum += 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
@@ -71,12 +69,12 @@ std::vector<Vec3d> points_around(const Mesh& mesh, std::uint64_t seed) {
     const auto t = static_cast<std::size_t>(random.below(static_cast<std::int64_t>(mesh.triangles.size())));
     const auto k = static_cast<std::size_t>(random.below(3));
     const double s = random.unit();
-    const Vec3d on_edge = plus(times(1 - s, corner(t, k)), times(s, corner(t, k + 1)));
-    const Vec3d on_face = plus(times(0.7, on_edge), times(0.3, corner(t, k + 2)));
+    const Vec3d on_edge = (1 - s) * corner(t, k) + s * corner(t, k + 1);
+    const Vec3d on_face = 0.7 * on_edge + 0.3 * corner(t, k + 2);
     for (const double distance : {1e-1, 1e-3, 1e-6}) {
-      points.push_back(plus(corner(t, k), times(distance, random.direction())));
-      points.push_back(plus(on_edge, times(distance, random.direction())));
-      points.push_back(plus(on_face, times(distance, random.direction())));
+      points.push_back(corner(t, k) + distance * random.direction());
+      points.push_back(on_edge + distance * random.direction());
+      points.push_back(on_face + distance * random.direction());
     }
   }
   return points;
@@ -94,7 +92,7 @@ TEST(SignedDistance, EqualsTheSearchThroughAllTrianglesWithTheSignOfTheWindingNu
       hint = place.slot;
       const double expected = searched_distance(mesh, p);
       ASSERT_NEAR(std::abs(place.distance), expected, 1e-12);
-      ASSERT_NEAR(length(minus(p, place.position)), expected, 1e-12);
+      ASSERT_NEAR(length(p - place.position), expected, 1e-12);
       ASSERT_NEAR(searched_distance(mesh, place.position), 0, 1e-12);
       if (expected < 1e-9) continue;
       const bool is_inside = winding_number(mesh, p) > 0.5;
@@ -126,7 +124,7 @@ TEST(SignedDistance, IsMeasuredWithTheOffsetInDouble) {
   const Vec3d offset{4.1e6, -5e5, 321.125};
   const SignedDistance here(ex, mesh, {0, 0, 0}), there(ex, mesh, offset);
   for (const Vec3d& p : points_around(mesh, 3))
-    ASSERT_NEAR(there.at(plus(p, offset)).distance, here.at(p).distance, 3e-9);  // as far as doubles of 4e6 can
+    ASSERT_NEAR(there.at(p + offset).distance, here.at(p).distance, 3e-9);  // as far as doubles of 4e6 can
 }
 
 TEST(SignedDistance, OnTheSurfaceIsZero) {

@@ -169,8 +169,8 @@ TEST(TriangleContact, HasItsPlaceInBothTriangles) {
     const Vec3d place = place_of_contact(a, b);
     for (const MeshTriangle& m : {a, b}) {
       using namespace mesh_detail;
-      const EdgedTriangle edged{to_double(m.corners[0]), minus(to_double(m.corners[1]), to_double(m.corners[0])),
-                                minus(to_double(m.corners[2]), to_double(m.corners[0]))};
+      const EdgedTriangle edged{to_double(m.corners[0]), to_double(m.corners[1]) - to_double(m.corners[0]),
+                                to_double(m.corners[2]) - to_double(m.corners[0])};
       ASSERT_LT(squared_distance(place, edged), 1e-24) << "seed " << seed;
     }
     ++checked;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "poisson/spacing.hpp"
 #include "unit/poisson/small_tree.hpp"
@@ -16,10 +17,6 @@ namespace {
 
 using test::Random;
 using test::SmallTree;
-
-Vec3f to_float(const Vec3d& p) {
-  return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
-}
 
 float spacing_at(SmallTree& tree, const poisson::Density& density, const Vec3f& p, const Vec3f& n) {
   return poisson::SpacingView{density.depth, density.counts.data()}.cells(tree.view, p, n);

@@ -99,8 +99,7 @@ Colour hue_of(const test::Rgb& p, const Colour& like) {
   Colour c{};
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) sum += c[k] = render_detail::decode_srgb(p[k] / 255.0);
-  for (double& channel : c) channel *= (like[0] + like[1] + like[2]) / sum;
-  return c;
+  return c * ((like[0] + like[1] + like[2]) / sum);
 }
 
 TEST(ColourBy, GivesEveryValueTheColourOfTheMap) {

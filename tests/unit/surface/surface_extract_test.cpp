@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "unit/surface/hand_made_field.hpp"
 
 namespace pointskin {
@@ -25,8 +26,6 @@ SmallTree adaptive_tree(std::uint64_t seed, int depth) {
 
 /// a . p - c, decreasing along -a: the inside is where a . p > c.
 double plane(const Vec3d& a, double c, const Vec3d& p) { return a[0] * p[0] + a[1] * p[1] + a[2] * p[2] - c; }
-
-Vec3d to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
 
 double triangle_normal_dot(const Mesh& mesh, const Triangle& t, const Vec3d& a) {
   const Vec3d p = to_double(mesh.vertices[static_cast<std::size_t>(t[0])]);

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "support/shapes.hpp"
 #include "support/spaces.hpp"
@@ -23,8 +24,6 @@ namespace pointskin {
 namespace {
 
 using test::Random;
-
-Vec3d to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
 
 double triangle_area(const Mesh& mesh, const Triangle& t) {
   Vec3d corner[3];

@@ -19,7 +19,7 @@ pointskin::Cloud points_on_sphere(int count) {
 
 int main(int argc, char** argv) try {
   pointskin::Reconstructor reconstructor;  // the first GPU, or the CPU
-  const pointskin::Mesh mesh = reconstructor.reconstruct(points_on_sphere(20'000), {{.depth = 7}});
+  const pointskin::Mesh mesh = reconstructor.reconstruct(points_on_sphere(20'000), {.depth = 7});
   pointskin::write_mesh(argc > 1 ? argv[1] : "sphere.ply", mesh);
 
   const pointskin::MeshReport report = pointskin::measure(mesh);

@@ -223,6 +223,8 @@ class Reconstructor {
   /// Points to mesh: solve() and Field::extract() in one, which keeps less in memory than the two.
   /// @throws Error as solve() and Field::extract()
   Mesh reconstruct(const Cloud& cloud, const Options& options = {});
+  Mesh reconstruct(const Cloud& cloud, const SolveOptions& solve, const ExtractOptions& extract = {},
+                   const RunOptions& run = {});
 
   /// The same into a mesh of the caller, whose memory is used again: for frame after frame.
   /// @throws Error as above; the mesh is then valid but unspecified

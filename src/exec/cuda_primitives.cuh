@@ -1,4 +1,4 @@
-// The data-parallel primitives on the GPU, on CUB. See exec/space.hpp for the contract.
+// The data-parallel primitives on the GPU. See exec/space.hpp for the contract.
 #pragma once
 
 #include <cooperative_groups.h>
@@ -6,11 +6,6 @@
 
 #include <cstdint>
 #include <cstring>
-#include <iterator>
-
-#include <cub/device/device_radix_sort.cuh>
-#include <cub/device/device_scan.cuh>
-#include <cub/device/device_select.cuh>
 
 #include "core/array_view.hpp"
 #include "exec/cuda.hpp"
@@ -192,15 +187,6 @@ void reduce_tail(Cuda& ex, const char* label, ArrayView<const T> values, ArrayVi
   cuda_check(cudaGetLastError(), label);
 }
 
-/// Runs a CUB algorithm: once to learn its scratch size, once for real.
-template <class Algorithm>
-void run_cub(Cuda& ex, const char* label, const Algorithm& algorithm) {
-  std::size_t bytes = 0;
-  cuda_check(algorithm(nullptr, bytes), label);
-  Buffer<std::byte> scratch(ex.pool(), static_cast<std::int64_t>(bytes));
-  cuda_check(algorithm(scratch.data(), bytes), label);
-}
-
 template <class T>
 void copy(Cuda& ex, ArrayView<const T> from, ArrayView<T> to) {
   if (from.size == 0) return;
@@ -249,24 +235,6 @@ void copy_constant_to_device(Cuda& ex, const T* from, ArrayView<T> to) {
              "copying to the GPU");
 }
 
-/// 0, 1, 2, ... as an iterator.
-struct CountingIterator {
-  using value_type = std::int32_t;
-  using reference = std::int32_t;
-  using pointer = const std::int32_t*;
-  using difference_type = std::int64_t;
-  using iterator_category = std::random_access_iterator_tag;
-
-  std::int64_t at = 0;
-  PSK_HD std::int32_t operator*() const { return static_cast<std::int32_t>(at); }
-  PSK_HD std::int32_t operator[](std::int64_t i) const { return static_cast<std::int32_t>(at + i); }
-  PSK_HD CountingIterator operator+(std::int64_t i) const { return {at + i}; }
-  PSK_HD CountingIterator& operator+=(std::int64_t i) {
-    at += i;
-    return *this;
-  }
-};
-
 template <class Keep>
 struct FlagKept {
   Keep keep;
@@ -274,70 +242,32 @@ struct FlagKept {
   PSK_HD void operator()(std::int64_t i) const { flags[i] = keep(i) ? 1 : 0; }
 };
 
+// What CUB does, compiled once (exec/cuda_collectives.cu).
+
+/// The indices i in [0, n) with flags[i] != 0, ascending. Waits for the count.
+Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const std::uint8_t> flags);
+
 /// The indices i in [0, n) with keep(i), ascending. Waits for the count. keep runs in a kernel of its own: CUB calls it
 /// for many indices on few threads, one after another.
 template <class Keep>
 Buffer<std::int32_t> select(Cuda& ex, const char* label, std::int64_t n, const Keep& keep) {
   if (n == 0) return {};
-  Buffer<std::int32_t> found(ex.pool(), n);
-  Buffer<std::int32_t> count(ex.pool(), 1);
   Buffer<std::uint8_t> flags(ex.pool(), n);
   for_each(ex, label, n, FlagKept<Keep>{keep, flags.data()});
-  run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceSelect::Flagged(scratch, bytes, CountingIterator{}, flags.data(), found.data(), count.data(), n,
-                                      stream_of(ex));
-  });
-  std::int32_t kept_count = 0;
-  copy_to_host(ex, count.cview(), &kept_count);
-  Buffer<std::int32_t> kept(ex.pool(), kept_count);
-  copy(ex, found.cview().part(0, kept_count), kept.view());
-  return kept;
+  return select_flagged(ex, label, flags.cview());
 }
 
 /// out[i] = in[0] + ... + in[i-1]; out.size is in.size (in place allowed) or in.size + 1 (the last is the total).
+/// For int32, int64, uint64 and double.
 template <class T>
-void exclusive_scan(Cuda& ex, const char* label, ArrayView<const T> in, ArrayView<T> out) {
-  if (out.size > in.size) {
-    // The scan of n + 1 elements never adds the last one, but it reads it: scan inclusively, one place further.
-    cuda_check(cudaMemsetAsync(out.data, 0, sizeof(T), stream_of(ex)), label);
-    if (in.size == 0) return;
-    run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceScan::InclusiveSum(scratch, bytes, in.data, out.data + 1, in.size, stream_of(ex));
-    });
-    return;
-  }
-  if (in.size == 0) return;
-  run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(scratch, bytes, in.data, out.data, in.size, stream_of(ex));
-  });
-}
+void exclusive_scan(Cuda& ex, const char* label, ArrayView<const T> in, ArrayView<T> out);
 
-/// Stable ascending radix sort of (key, value) pairs by bits [first_bit, bits) of the keys.
+/// Stable ascending radix sort of (key, value) pairs by bits [first_bit, bits) of the keys. For values of int32.
 template <class Value>
 void sort_pairs(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, Buffer<Value>& values, int bits,
-                int first_bit = 0) {
-  if (keys.empty()) return;
-  Buffer<std::uint64_t> other_keys(ex.pool(), keys.size());
-  Buffer<Value> other_values(ex.pool(), values.size());
-  cub::DoubleBuffer<std::uint64_t> key_buffers(keys.data(), other_keys.data());
-  cub::DoubleBuffer<Value> value_buffers(values.data(), other_values.data());
-  run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceRadixSort::SortPairs(scratch, bytes, key_buffers, value_buffers, keys.size(), first_bit, bits,
-                                           stream_of(ex));
-  });
-  if (key_buffers.Current() != keys.data()) keys.swap(other_keys);
-  if (value_buffers.Current() != values.data()) values.swap(other_values);
-}
+                int first_bit = 0);
 
-/// Sorts keys alone.
-inline void sort_keys(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, int bits) {
-  if (keys.empty()) return;
-  Buffer<std::uint64_t> other(ex.pool(), keys.size());
-  cub::DoubleBuffer<std::uint64_t> buffers(keys.data(), other.data());
-  run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffers, keys.size(), 0, bits, stream_of(ex));
-  });
-  if (buffers.Current() != keys.data()) keys.swap(other);
-}
+/// Sorts keys alone, by their lowest `bits` bits.
+void sort_keys(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, int bits);
 
 }  // namespace pointskin::exec

@@ -1,4 +1,4 @@
-// The rules come from the definitions in octree_data.hpp and view.hpp, not from the way build_impl.hpp gets there:
+// The rules come from the definitions in octree_data.hpp and view.hpp, not from the way build.cpp gets there:
 // whatever has a position is looked up by its key.
 #include "octree/check.hpp"
 

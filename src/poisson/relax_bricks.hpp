@@ -19,7 +19,7 @@ struct ChebyshevStep {
   }
 };
 
-/// One iteration a brick at a time. A GPU has a kernel of its own for it (relax_kernel.cuh).
+/// One iteration a brick at a time. A GPU has a kernel of its own for it (solve_kernel.cuh).
 struct RelaxBricks {
   LevelSystem system;
   ChebyshevStep chebyshev;

@@ -1,6 +1,6 @@
-// What a run holds at once, phase by phase: follows the allocations of reconstruct_impl.hpp and of the phases.
-// Whoever allocates or frees an array there changes the model here; tests/property/memory_test.cpp holds the two
-// together.
+// What a run holds at once, phase by phase: follows the allocations of fit_field.cpp, mesh_of_field.cpp and of the
+// phases. Whoever allocates or frees an array there changes the model here; tests/property/memory_test.cpp holds the
+// two together.
 #pragma once
 
 #include <cstdint>

@@ -72,8 +72,7 @@ class Reconstructor::Impl {
     report_ = {};
     engine_.limit_memory(options.max_memory_bytes);
     Options settled = options;
-    if (options.depth == Options::kAutomaticDepth)
-      settled.depth = detail::suggest_depth(engine_, input, options).depth;
+    if (options.depth == Options::kAutomaticDepth) settled.depth = detail::suggest_depth(engine_, input, options).depth;
     check_memory(input, settled);
     return settled;
   }
@@ -101,6 +100,10 @@ Mesh Reconstructor::reconstruct(const Cloud& cloud, const Options& options) {
   Mesh mesh;
   reconstruct(cloud, options, mesh);
   return mesh;
+}
+Mesh Reconstructor::reconstruct(const Cloud& cloud, const SolveOptions& solve, const ExtractOptions& extract,
+                                const RunOptions& run) {
+  return reconstruct(cloud, Options(solve, extract, run));
 }
 void Reconstructor::reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh) {
   impl_->reconstruct(cloud, options, mesh);

@@ -63,7 +63,7 @@ class Repository:
         self.words[name] = hyphened | {part for word in hyphened for part in word.split("-")}
         self.whole |= self.words[name]
         self.options |= set(re.findall(r"(?<![\w-])--?[A-Za-z][\w-]*", text))
-        self.commands |= set(re.findall(r'add_command\(program,\s*"([a-z]+)"', text))
+        self.commands |= set(re.findall(r'(?:make_command\(|Command \w+\{)\s*\{\s*"([a-z]+)"', text))
 
     def holds_together(self, names):
         """One file has all `names` as words."""

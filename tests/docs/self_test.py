@@ -27,7 +27,7 @@ See [the steps](docs/steps.md#how-it-works), [0001](docs/decisions/0001-one.md) 
     "docs/performance.md":
         "| points | depth | median | peak on the device |\n|---|---|---|---|\n| bunny, 10 | 8 | 1.5, 1.6 ms | 2 MB |\n",
     "CMakeLists.txt": "add_executable(pointskin)\nset(POINTSKIN_TEST_DATA)\n",
-    "apps/cli/cmd_fit.cpp": 'add_command(program, "fit", "-o --trim --peer auto folder ply double dam");  // see octree/build.hpp\n',
+    "apps/cli/cmd_fit.cpp": 'make_command({"fit", "-o --trim --peer auto folder ply double dam"});  // see octree/build.hpp\n',
     "include/pointskin/fit.hpp": "void fit(int max_bytes, int input_x);\n",
     "src/octree/build.hpp":
         "struct Octree { void build(); }; struct Build;\nint kFaces = 2; double kHalf = 0.5; int kSweeps = 2;\n// Ghost\n",

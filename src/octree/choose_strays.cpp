@@ -82,7 +82,8 @@ Bounds box_without(const std::vector<Place>& strays, const Candidates& candidate
 StrayPoints farthest_first(std::vector<Place> strays, const Bounds& core) {
   const Box box = wide(core);
   std::sort(strays.begin(), strays.end(), [&](const Place& p, const Place& q) {
-    return std::tuple(-distance(box, p.at), p.at, p.index) < std::tuple(-distance(box, q.at), q.at, q.index);
+    const auto key = [&](const Place& s) { return std::tuple(-distance(box, s.at), s.at.x, s.at.y, s.at.z, s.index); };
+    return key(p) < key(q);
   });
   StrayPoints result;
   result.core = core;

@@ -91,7 +91,7 @@ TEST(PolarParts, GiveBackTheMatrixTheyWereMadeFrom) {
   Random random(11);
   for (int i = 0; i < 100; ++i) {
     const Vec3d axis = random.direction();
-    const deform::Rotation rotation(to_double(axis) * random.in(-3.1, 3.1));
+    const deform::Rotation rotation(axis * random.in(-3.1, 3.1));
     const Symmetric3 e{random.in(-0.5, 2),   random.in(-0.5, 2),   random.in(-0.5, 2),
                        random.in(-0.1, 0.1), random.in(-0.1, 0.1), random.in(-0.1, 0.1)};
     const auto image = [&](const Vec3d& v) { return rotation * (v + e * v); };
@@ -219,8 +219,8 @@ TEST(Lattices, ReproduceAffineMapsInsideAndOut) {
   Random random(17);
   for (int i = 0; i < 100; ++i) {
     const Vec3d x = random_point(random);
-    const Vec3d expected = affine({x.x, x.y, x.z});
-    expect_near(map(x).position, to_double(expected), 1e-12);
+    const Vec3d expected = affine(x);
+    expect_near(map(x).position, expected, 1e-12);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "support/io_files.hpp"
@@ -99,7 +100,8 @@ TEST(AutomaticShift, DoesNotDependOnTheOrderOfThePointsOrOnThreads) {
     std::shuffle(points.begin(), points.end(), std::mt19937_64(seed));
     EXPECT_EQ(read(points, 3).origin, expected);
   }
-  std::sort(points.begin(), points.end());
+  std::sort(points.begin(), points.end(),
+            [](const Vec3d& a, const Vec3d& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
   EXPECT_EQ(read(points).origin, expected);
 }
 

@@ -216,7 +216,7 @@ TEST(Distances, AreThoseOfEveryVertexInItsOrder) {
   for (std::size_t i = 0; i < to_box.size(); ++i) {
     const Vec3f& p = outer.vertices[i];
     const auto beyond = [](float x) { return std::max(std::abs(static_cast<double>(x)) - 0.5, 0.0); };
-    EXPECT_NEAR(to_box[i], length({beyond(p.x), beyond(p.y), beyond(p.z)}), 1e-14) << i;
+    EXPECT_NEAR(to_box[i], length(Vec3d{beyond(p.x), beyond(p.y), beyond(p.z)}), 1e-14) << i;
   }
   Random random(6);
   const Cloud cloud = random_cloud(random, 500);

@@ -265,7 +265,7 @@ TEST(Fluid, SmoothingFlattensTheBulkAndLeavesDrops) {
     int count = 0;
     for (const Vec3f& v : mesh.vertices) {
       if (v.x > 15) continue;
-      const double r = length({v.x, v.y, v.z});
+      const double r = length(Vec3d{v.x, v.y, v.z});
       sum += r;
       squares += r * r;
       ++count;

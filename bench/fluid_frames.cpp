@@ -13,8 +13,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include <pointskin/simulation.hpp>
+#include "arguments.hpp"
 
 namespace {
 

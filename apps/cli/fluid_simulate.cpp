@@ -10,10 +10,10 @@
 #include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
 
+#include <pointskin/simulation.hpp>
 #include "args.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
-#include <pointskin/simulation.hpp>
 #include "frame_files.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"

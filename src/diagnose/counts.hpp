@@ -92,11 +92,14 @@ class Tally {
   }
   PSK_HD Tally operator+(const Tally& other) const {
     Tally sum;
-    PSK_UNROLL for (int i = 0; i < kEnd - kFirst; ++i) sum.set(i, word(i) + other.word(i));
+    PSK_UNROLL
+    for (int i = 0; i < kEnd - kFirst; ++i) sum.set(i, word(i) + other.word(i));
     return sum;
   }
   PSK_HD void flush(Counts* counts) const {
-    PSK_UNROLL for (int i = 0; i < kEnd - kFirst; ++i) if (word(i) != 0) exec::add(counts->sums + kFirst + i, word(i));
+    PSK_UNROLL
+    for (int i = 0; i < kEnd - kFirst; ++i)
+      if (word(i) != 0) exec::add(counts->sums + kFirst + i, word(i));
   }
 
  private:

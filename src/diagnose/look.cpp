@@ -49,7 +49,8 @@ struct LookAtSample {
     const std::int64_t n = samples.positions.size;
     const std::int64_t i = spread(s);
     for (int step = 1; step <= kFollowers && i + step < n; ++step) compare(i, i + step, tally);
-    PSK_UNROLL for (int k = 0; k < kScatterSteps; ++k) {
+    PSK_UNROLL
+    for (int k = 0; k < kScatterSteps; ++k) {
       const std::int64_t other = i + (std::int64_t{1} << 2 * k);
       if (other < n) scatter(k, i, other, tally);
     }
@@ -141,7 +142,8 @@ PSK_HD AtPoint look_at(const field::FieldView& field, const Vec3f& p) {
   const Vec3f t = octree::local_in_cell(p, octree::decode(octree::cell_key(key, leaf.depth)), leaf.depth);
   float value = 0;
   Vec3f g{};
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
     const int x = octree::slot_x(s);
     const int y = octree::slot_y(s);
     const int z = octree::slot_z(s);

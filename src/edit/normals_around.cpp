@@ -54,7 +54,8 @@ struct CollectChildren {
     Cluster sum;
     if (tree.is_split(depth, cell)) {
       const std::int64_t first = std::int64_t{8} * tree.levels[depth].child_brick[cell];
-      PSK_UNROLL for (int s = 0; s < 8; ++s) sum.add(below[first + s]);
+      PSK_UNROLL
+      for (int s = 0; s < 8; ++s) sum.add(below[first + s]);
     }
     clusters[cell] = sum;
   }

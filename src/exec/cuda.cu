@@ -120,7 +120,8 @@ Cuda::Cuda(int index, void* stream, bool owns_stream) : index_(index), stream_(s
   choose(index);
   cuda_check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, index),
              "reading the GPU's properties");
-  pool_ = std::make_shared<CudaPool>(index, static_cast<cudaStream_t>(stream), owns_stream);  // owns the stream: buffers may outlive this object
+  pool_ = std::make_shared<CudaPool>(index, static_cast<cudaStream_t>(stream),
+                                     owns_stream);  // owns the stream: buffers may outlive this object
   cuda_check(cudaMallocHost(&staging_, kStagingBytes), "allocating page-locked memory");
   for (void*& mark : marks_) {
     cudaEvent_t event = nullptr;

@@ -118,8 +118,9 @@ AnySpace::AnySpace(const Device& device, [[maybe_unused]] void* stream) {
 Workspace::Workspace(const Device& device)
     : data_(std::make_shared<detail::WorkspaceData>(detail::WorkspaceData{device, exec::AnySpace(device)})) {}
 Workspace::Workspace(const Device& device, void* cuda_stream)
-    : data_(std::make_shared<detail::WorkspaceData>(
-          detail::WorkspaceData{device, exec::AnySpace(device, cuda_stream)})) {}
+    : data_(
+          std::make_shared<detail::WorkspaceData>(detail::WorkspaceData{device, exec::AnySpace(device, cuda_stream)})) {
+}
 
 const Device& Workspace::device() const { return data_->device; }
 void* Workspace::stream() const {

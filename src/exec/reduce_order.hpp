@@ -26,8 +26,10 @@ PSK_HD auto combine_lane(const F& f, const Combine& combine, std::int64_t n, std
   std::int64_t i = lane + lanes;
   for (; i + (kBatch - 1) * lanes < n; i += kBatch * lanes) {
     decltype(sum) batch[kBatch];
-    PSK_UNROLL for (int k = 0; k < kBatch; ++k) batch[k] = f(i + k * lanes);
-    PSK_UNROLL for (int k = 0; k < kBatch; ++k) sum = combine(sum, batch[k]);
+    PSK_UNROLL
+    for (int k = 0; k < kBatch; ++k) batch[k] = f(i + k * lanes);
+    PSK_UNROLL
+    for (int k = 0; k < kBatch; ++k) sum = combine(sum, batch[k]);
   }
   for (; i < n; i += lanes) sum = combine(sum, f(i));
   return sum;

@@ -20,6 +20,6 @@ using ThisSpace = Cpu;
 
 /// Instantiates a function template for the space that this file is compiled for, its first parameter; what follows the
 /// name are the others.
-#define PSK_INSTANTIATE(function, ...)                                                    \
-  template decltype(function<::pointskin::exec::ThisSpace __VA_OPT__(, ) __VA_ARGS__>)    \
+#define PSK_INSTANTIATE(function, ...)                                                 \
+  template decltype(function<::pointskin::exec::ThisSpace __VA_OPT__(, ) __VA_ARGS__>) \
       function<::pointskin::exec::ThisSpace __VA_OPT__(, ) __VA_ARGS__>

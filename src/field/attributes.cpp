@@ -22,13 +22,15 @@ struct alignas(kCount == 3   ? 16
 
   PSK_HD Values& operator+=(const Values& other) {
     weight += other.weight;
-    PSK_UNROLL for (int c = 0; c < kCount; ++c) value[c] += other.value[c];
+    PSK_UNROLL
+    for (int c = 0; c < kCount; ++c) value[c] += other.value[c];
     return *this;
   }
   PSK_HD Values operator*(float factor) const {
     Values result = *this;
     result.weight *= factor;
-    PSK_UNROLL for (int c = 0; c < kCount; ++c) result.value[c] *= factor;
+    PSK_UNROLL
+    for (int c = 0; c < kCount; ++c) result.value[c] *= factor;
     return result;
   }
 };
@@ -36,7 +38,8 @@ struct alignas(kCount == 3   ? 16
 /// A sum of weighted values as their mean; zeros where nothing has weight.
 template <int kCount>
 PSK_HD Values<kCount> mean_of(Values<kCount> sum) {
-  PSK_UNROLL for (int c = 0; c < kCount; ++c) sum.value[c] = sum.weight > 0 ? sum.value[c] / sum.weight : 0.0F;
+  PSK_UNROLL
+  for (int c = 0; c < kCount; ++c) sum.value[c] = sum.weight > 0 ? sum.value[c] / sum.weight : 0.0F;
   return sum;
 }
 
@@ -48,7 +51,8 @@ struct Capped {
   PSK_HD Values<kCount> operator[](std::int64_t n) const {
     Values<kCount> v = means[n];
     v.weight = v.weight < 1 ? v.weight : 1.0F;
-    PSK_UNROLL for (int c = 0; c < kCount; ++c) v.value[c] *= v.weight;
+    PSK_UNROLL
+    for (int c = 0; c < kCount; ++c) v.value[c] *= v.weight;
     return v;
   }
 };
@@ -57,8 +61,9 @@ struct Capped {
 template <int kCount>
 PSK_HD Values<kCount> blended(Values<kCount> below, const Values<kCount>& above) {
   const float total = below.weight + kSamplesAbove;
-  PSK_UNROLL for (int c = 0; c < kCount; ++c) below.value[c] =
-      (below.weight * below.value[c] + kSamplesAbove * above.value[c]) / total;
+  PSK_UNROLL
+  for (int c = 0; c < kCount; ++c)
+    below.value[c] = (below.weight * below.value[c] + kSamplesAbove * above.value[c]) / total;
   return below;
 }
 
@@ -75,7 +80,8 @@ struct SamplesView {
     const float first = values[0][i];
     if (!(first == first)) return sample;
     sample.weight = weights.empty() ? 1.0F : weights[i];
-    PSK_UNROLL for (int c = 0; c < kCount; ++c) sample.value[c] = values[c][i];
+    PSK_UNROLL
+    for (int c = 0; c < kCount; ++c) sample.value[c] = values[c][i];
     return sample;
   }
 };
@@ -85,7 +91,8 @@ template <int kCount>
 PSK_HD void add_weighted(const Values<kCount>& sample, float factor, Values<kCount>& sum) {
   const float weight = factor * sample.weight;
   sum.weight += weight;
-  PSK_UNROLL for (int c = 0; c < kCount; ++c) sum.value[c] += weight * sample.value[c];
+  PSK_UNROLL
+  for (int c = 0; c < kCount; ++c) sum.value[c] += weight * sample.value[c];
 }
 
 /// Means at the corners of the finest level: every corner gathers the samples of the 8 cells around it, cell by cell
@@ -193,7 +200,8 @@ struct Evaluate {
   FromShares scales[kCount];
   PSK_HD void operator()(std::int64_t i) const {
     const Values<kCount> at = octree::value_at(tree, values, points[i], tree.depth);
-    PSK_UNROLL for (int c = 0; c < kCount; ++c) scales[c].store(i, at.value[c]);
+    PSK_UNROLL
+    for (int c = 0; c < kCount; ++c) scales[c].store(i, at.value[c]);
   }
 };
 

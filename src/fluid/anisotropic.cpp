@@ -1,7 +1,7 @@
 #include "fluid/anisotropic.hpp"
 
-#include "core/double3.hpp"
 #include "core/eigen3.hpp"
+#include "core/vec3.hpp"
 #include "exec/this_space.hpp"
 #include "fluid/particle_tree.hpp"
 
@@ -21,7 +21,7 @@ struct FindEllipsoid {
   /// Weighted sums over the neighbours, relative to the particle, in R.
   struct Sums {
     double weight = 0;
-    Double3 mean;
+    Vec3d mean;
     Covariance products;
     int others = 0;
   };
@@ -29,18 +29,18 @@ struct FindEllipsoid {
   PSK_HD void operator()(std::int64_t i) const {
     const Sums sums = sum_up(i);
     const double inverse = 1 / sums.weight;
-    const Double3 mean = sums.mean * inverse;
+    const Vec3d mean = sums.mean * inverse;
     centres[i] = to_float(to_double(positions[i]) + mean * (kTowardsMean * radius));
     const Covariance covariance = sums.products * inverse + outer(mean) * -1.0;
     ellipsoids[i] = sums.others <= kFewNeighbours ? ball() : stretched(covariance);
   }
 
   [[nodiscard]] PSK_HD Sums sum_up(std::int64_t i) const {
-    const Double3 p = to_double(positions[i]);
+    const Vec3d p = to_double(positions[i]);
     const double inverse = 1 / static_cast<double>(radius);
     Sums sums;
     for_each_neighbour(tree, tree.cell[i], [&](std::int32_t j) {
-      const Double3 d = (to_double(positions[j]) - p) * inverse;
+      const Vec3d d = (to_double(positions[j]) - p) * inverse;
       const double squared = dot(d, d);
       if (!(squared < 1)) return;
       const double w = 1 - squared * std::sqrt(squared);

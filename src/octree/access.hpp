@@ -18,7 +18,8 @@ namespace pointskin::octree {
 template <class T>
 PSK_HD T prolonged(const LevelView& level_above, const T* above, std::int32_t parent, int slot) {
   T sum{};
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
     if ((s & ~slot) != 0) continue;
     const std::int32_t corner = level_above.neighbour(parent, slot_x(s), slot_y(s), slot_z(s));
     if (corner >= 0) sum += above[corner];  // corners of cells have all; other nodes are never read
@@ -32,8 +33,8 @@ PSK_HD T prolonged(const LevelView& level_above, const T* above, std::int32_t pa
 template <class Values>
 PSK_HD auto restricted(const LevelView& level, const LevelView& below, const Values& values, std::int32_t n) {
   std::decay_t<decltype(values[std::int64_t{0}])> sum{};
-  PSK_UNROLL for (int s = 0; s < 8;
-                  ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
     const int x = slot_x(s);
     const int y = slot_y(s);
     const int z = slot_z(s);
@@ -42,9 +43,12 @@ PSK_HD auto restricted(const LevelView& level, const LevelView& below, const Val
     if (brick < 0 || brick >= below.bricks) continue;
     const std::int64_t first = std::int64_t{8} * brick;
     // Along an axis, the node's own brick gives offsets 0 and 1, the lower brick only offset -1 (its slot 1).
-    PSK_UNROLL for (int i = 0; i < 2; ++i) {
-      PSK_UNROLL for (int j = 0; j < 2; ++j) {
-        PSK_UNROLL for (int k = 0; k < 2; ++k) {
+    PSK_UNROLL
+    for (int i = 0; i < 2; ++i) {
+      PSK_UNROLL
+      for (int j = 0; j < 2; ++j) {
+        PSK_UNROLL
+        for (int k = 0; k < 2; ++k) {
           if (i < x || j < y || k < z) continue;
           const int distance = (i != 0) + (j != 0) + (k != 0);
           sum += values[first + slot_of(i, j, k)] * (distance == 0   ? 1.0F
@@ -76,8 +80,9 @@ PSK_HD inline Vec3f local_in_cell(const Vec3f& p, const Coordinates& c, int dept
 template <class T>
 PSK_HD T interpolated(const LevelView& level, const T* values, std::int32_t cell, const Vec3f& local) {
   T sum{};
-  PSK_UNROLL for (int s = 0; s < 8; ++s) sum +=
-      values[level.neighbour(cell, slot_x(s), slot_y(s), slot_z(s))] * corner_weight(s, local);
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s)
+    sum += values[level.neighbour(cell, slot_x(s), slot_y(s), slot_z(s))] * corner_weight(s, local);
   return sum;
 }
 

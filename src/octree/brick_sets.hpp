@@ -113,11 +113,13 @@ struct MarkAroundBits {
     const std::uint32_t cells = below[brick >> 2] >> 8 * (brick & 3) & 0xff;
     if (cells == 0) return;
     std::uint32_t touched = 0;  // by neighbour index
-    PSK_UNROLL for (int slot = 0; slot < 8; ++slot) {
+    PSK_UNROLL
+    for (int slot = 0; slot < 8; ++slot) {
       if ((cells >> slot & 1) == 0) continue;
-      PSK_UNROLL for (int s = 0; s < 8; ++s)  // a step of -1 from lower cells, of 1 from upper ones, or none
-          touched |= 1U << neighbour_index(slot_x(s) * (2 * slot_x(slot) - 1), slot_y(s) * (2 * slot_y(slot) - 1),
-                                           slot_z(s) * (2 * slot_z(slot) - 1));
+      PSK_UNROLL
+      for (int s = 0; s < 8; ++s)  // a step of -1 from lower cells, of 1 from upper ones, or none
+        touched |= 1U << neighbour_index(slot_x(s) * (2 * slot_x(slot) - 1), slot_y(s) * (2 * slot_y(slot) - 1),
+                                         slot_z(s) * (2 * slot_z(slot) - 1));
     }
     const Coordinates c = decode(static_cast<std::uint64_t>(brick));
     for (; touched != 0; touched &= touched - 1) {
@@ -176,18 +178,22 @@ struct LevelBricks {
   [[nodiscard]] PSK_HD unsigned ghosts_of(std::uint64_t brick) const {
     const Coordinates c = decode(brick);
     std::uint32_t around = 0;
-    PSK_UNROLL for (int j = 0; j < kNeighbours;
-                    ++j) if (contains({c.x + j / 9 - 1, c.y + j / 3 % 3 - 1, c.z + j % 3 - 1})) around |= 1U << j;
+    PSK_UNROLL
+    for (int j = 0; j < kNeighbours; ++j)
+      if (contains({c.x + j / 9 - 1, c.y + j / 3 % 3 - 1, c.z + j % 3 - 1})) around |= 1U << j;
     unsigned ghosts = 0;
-    PSK_UNROLL for (int s = 1; s < 8; ++s) if ((around & claims_on_ghost(s)) == 0) ghosts |= 1U << s;
+    PSK_UNROLL
+    for (int s = 1; s < 8; ++s)
+      if ((around & claims_on_ghost(s)) == 0) ghosts |= 1U << s;
     return ghosts;
   }
 
   /// By neighbour index: the place of the ghost at step s, and the bricks below it by smaller steps.
   PSK_HD static std::uint32_t claims_on_ghost(int s) {
     std::uint32_t claims = 0;
-    PSK_UNROLL for (int t = 0; t < 8; ++t) if (t < s) claims |=
-        1U << neighbour_index(slot_x(s) - slot_x(t), slot_y(s) - slot_y(t), slot_z(s) - slot_z(t));
+    PSK_UNROLL
+    for (int t = 0; t < 8; ++t)
+      if (t < s) claims |= 1U << neighbour_index(slot_x(s) - slot_x(t), slot_y(s) - slot_y(t), slot_z(s) - slot_z(t));
     return claims;
   }
 };

@@ -198,7 +198,8 @@ struct FindUnknowns {
     const Coordinates c = decode(level.brick_key[b]);
     const std::int32_t bricks_per_axis = 1 << (level.depth - 1);
     unsigned missing = 0;  // bricks in the cube whose nodes are no cells of this level, by neighbour index
-    PSK_UNROLL for (int j = 0; j < kNeighbours; ++j) {
+    PSK_UNROLL
+    for (int j = 0; j < kNeighbours; ++j) {
       const std::int32_t brick = level.neighbours[b * kNeighbours + j];
       const std::int32_t x = c.x + j / 9 - 1;
       const std::int32_t y = c.y + j / 3 % 3 - 1;
@@ -209,7 +210,8 @@ struct FindUnknowns {
     }
     const std::int32_t last = 1 << level.depth;
     int mask = 0;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const bool in_grid = 2 * c.x + slot_x(s) <= last && 2 * c.y + slot_y(s) <= last && 2 * c.z + slot_z(s) <= last;
       if (in_grid && (missing & bricks_of_cells_around(s)) == 0) mask |= 1 << s;
     }
@@ -219,8 +221,9 @@ struct FindUnknowns {
   /// Bricks that the 8 cells around corner `slot` of a brick belong to: itself and, on lower sides, those before it.
   PSK_HD static unsigned bricks_of_cells_around(int slot) {
     unsigned bricks = 0;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) if ((s & slot) == 0) bricks |=
-        1U << neighbour_index(-slot_x(s), -slot_y(s), -slot_z(s));
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s)
+      if ((s & slot) == 0) bricks |= 1U << neighbour_index(-slot_x(s), -slot_y(s), -slot_z(s));
     return bricks;
   }
 };

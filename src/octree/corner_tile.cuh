@@ -36,8 +36,10 @@ class CornerTile {
 
     [[nodiscard]] __device__ ValuesInRegisters in_registers() const {
       ValuesInRegisters values;
-      PSK_UNROLL for (int x = -1; x <= 1; ++x) PSK_UNROLL for (int y = -1; y <= 1; ++y)
-          PSK_UNROLL for (int z = -1; z <= 1; ++z) values.value[neighbour_index(x, y, z)] = (*this)(x, y, z);
+      PSK_UNROLL
+      for (int x = -1; x <= 1; ++x) PSK_UNROLL
+      for (int y = -1; y <= 1; ++y) PSK_UNROLL
+      for (int z = -1; z <= 1; ++z) values.value[neighbour_index(x, y, z)] = (*this)(x, y, z);
       return values;
     }
   };
@@ -66,12 +68,14 @@ class TileSource {
  public:
   /// @param first  first of the 4 bricks
   __device__ TileSource(const LevelView& level, std::int32_t first, int lane) : lane_(lane) {
-    PSK_UNROLL for (int half = 0; half < 2; ++half) {
+    PSK_UNROLL
+    for (int half = 0; half < 2; ++half) {
       const int x = (lane >> 4) - 1 + 2 * half;  // as Neighbourhood::index counts
       const int y = (lane >> 2 & 3) - 1;
       const int z = (lane & 3) - 1;
       const int neighbour = neighbour_index(brick_step(x), brick_step(y), brick_step(z));
-      PSK_UNROLL for (int k = 0; k < kTileBricks; ++k) {
+      PSK_UNROLL
+      for (int k = 0; k < kTileBricks; ++k) {
         const std::int32_t other = neighbour_of_brick(level, first + k, neighbour);
         node_[k][half] = other < 0 ? -1 : 8 * other + slot_of(x & 1, y & 1, z & 1);
       }
@@ -81,10 +85,12 @@ class TileSource {
   /// Stages `values` of the level; corners that do not exist get 0. Lanes see each other's share after __syncwarp().
   __device__ void load(const float* values, CornerTile& tile) const {
     float share[kTileBricks][2];
-    PSK_UNROLL for (int k = 0; k < kTileBricks; ++k) PSK_UNROLL for (int half = 0; half < 2; ++half) share[k][half] =
-        node_[k][half] < 0 ? 0 : values[node_[k][half]];
-    PSK_UNROLL for (int k = 0; k < kTileBricks; ++k) PSK_UNROLL for (int half = 0; half < 2; ++half)
-        tile.at(k, kWarp * half + lane_) = share[k][half];
+    PSK_UNROLL
+    for (int k = 0; k < kTileBricks; ++k) PSK_UNROLL
+    for (int half = 0; half < 2; ++half) share[k][half] = node_[k][half] < 0 ? 0 : values[node_[k][half]];
+    PSK_UNROLL
+    for (int k = 0; k < kTileBricks; ++k) PSK_UNROLL
+    for (int half = 0; half < 2; ++half) tile.at(k, kWarp * half + lane_) = share[k][half];
   }
 
  private:

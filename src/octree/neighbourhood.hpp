@@ -25,9 +25,12 @@ PSK_HD constexpr int brick_step(int x) { return x < 0 ? -1 : x > 1 ? 1 : 0; }
 PSK_HD inline Neighbourhood load_neighbourhood(const LevelView& level, std::int64_t brick, const float* values) {
   Neighbourhood around;
   const std::int32_t* bricks = level.neighbours + brick * kNeighbours;
-  PSK_UNROLL for (int x = -1; x <= 2; ++x) {
-    PSK_UNROLL for (int y = -1; y <= 2; ++y) {
-      PSK_UNROLL for (int z = -1; z <= 2; ++z) {
+  PSK_UNROLL
+  for (int x = -1; x <= 2; ++x) {
+    PSK_UNROLL
+    for (int y = -1; y <= 2; ++y) {
+      PSK_UNROLL
+      for (int z = -1; z <= 2; ++z) {
         const std::int32_t other = bricks[neighbour_index(brick_step(x), brick_step(y), brick_step(z))];
         around.value[Neighbourhood::index(x, y, z)] =
             other < 0 ? 0 : values[std::int64_t{8} * other + slot_of(x & 1, y & 1, z & 1)];
@@ -56,11 +59,15 @@ PSK_INLINE void step_along(Float8* bricks, int stride) {
 /// Loads `values` (of one level) around `brick`: 27 bricks of 32 bytes, then one axis after another.
 PSK_INLINE void load_lanes(const LevelView& level, std::int64_t brick, const float* values, NeighbourLanes& out) {
   const std::int32_t* bricks = level.neighbours + brick * kNeighbours;
-  PSK_UNROLL for (int j = 0; j < kNeighbours; ++j) out.value[j] =
-      bricks[j] < 0 ? Float8{} : load8(values + std::int64_t{8} * bricks[j]);
-  PSK_UNROLL for (int i = 0; i < 9; ++i) step_along<0>(out.value + i, 9);
-  PSK_UNROLL for (int i = 0; i < 9; ++i) step_along<1>(out.value + i / 3 * 9 + i % 3, 3);
-  PSK_UNROLL for (int i = 0; i < 9; ++i) step_along<2>(out.value + i * 3, 1);
+  PSK_UNROLL
+  for (int j = 0; j < kNeighbours; ++j)
+    out.value[j] = bricks[j] < 0 ? Float8{} : load8(values + std::int64_t{8} * bricks[j]);
+  PSK_UNROLL
+  for (int i = 0; i < 9; ++i) step_along<0>(out.value + i, 9);
+  PSK_UNROLL
+  for (int i = 0; i < 9; ++i) step_along<1>(out.value + i / 3 * 9 + i % 3, 3);
+  PSK_UNROLL
+  for (int i = 0; i < 9; ++i) step_along<2>(out.value + i * 3, 1);
 }
 
 #endif

@@ -24,7 +24,8 @@ struct FreeUnknowns {
     const octree::Coordinates b = octree::decode(level.brick_key[brick]);
     const std::int32_t last = 1 << level.depth;
     unsigned mask = 0;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const std::int32_t x = 2 * b.x + octree::slot_x(s);
       const std::int32_t y = 2 * b.y + octree::slot_y(s);
       const std::int32_t z = 2 * b.z + octree::slot_z(s);

@@ -23,7 +23,8 @@ struct SumHats {
       const octree::Coordinates at = octree::decode(level.node_key(static_cast<std::int32_t>(cell)));
       PSK_UNROLL_BY_4 for (std::int32_t i = first; i < last; ++i) {
         const Vec3f local = octree::local_in_cell(positions[i], at, level.depth);
-        PSK_UNROLL for (int s = 0; s < 8; ++s) sum[s] += octree::corner_weight(s, local);
+        PSK_UNROLL
+        for (int s = 0; s < 8; ++s) sum[s] += octree::corner_weight(s, local);
       }
     }
     for (int s = 0; s < 8; ++s) hats[8 * cell + s] = sum[s];
@@ -37,7 +38,8 @@ struct GatherHats {
   ArrayView<float> counts;
   PSK_HD void operator()(std::int64_t n) const {
     float sum = 0;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const std::int32_t cell =
           level.neighbour(static_cast<std::int32_t>(n), -octree::slot_x(s), -octree::slot_y(s), -octree::slot_z(s));
       if (level.is_cell(cell)) sum += hats[8 * std::int64_t{cell} + s];

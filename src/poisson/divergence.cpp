@@ -23,12 +23,17 @@ struct ProlongField {
     const std::int32_t parent = level.parent[n >> 3];
     const int slot = static_cast<int>(n & 7);
     std::int32_t corner[8];
-    PSK_UNROLL for (int s = 0; s < 8; ++s) corner[s] =
-        (s & ~slot) != 0 ? -1 : above.neighbour(parent, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s)
+      corner[s] =
+          (s & ~slot) != 0 ? -1 : above.neighbour(parent, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
     const float share = 0.5F / static_cast<float>(1 << count_bits(static_cast<std::uint64_t>(slot)));
-    PSK_UNROLL for (int a = 0; a < 3; ++a) {
+    PSK_UNROLL
+    for (int a = 0; a < 3; ++a) {
       float sum = 0;
-      PSK_UNROLL for (int s = 0; s < 8; ++s) if (corner[s] >= 0) sum += above_field.axis[a][corner[s]];
+      PSK_UNROLL
+      for (int s = 0; s < 8; ++s)
+        if (corner[s] >= 0) sum += above_field.axis[a][corner[s]];
       field.axis[a][n] = sum * share;
     }
   }
@@ -145,8 +150,8 @@ exec::Buffer<float> divergence_of_field(Exec& ex, const octree::OctreeView& tree
     const octree::LevelView& level = tree.levels[depth];
     const octree::LevelView* below = depth < tree.depth ? &tree.levels[depth + 1] : nullptr;
     find_divergence(ex, Divergence{level, below != nullptr ? below->cell_bricks : 0, field.view(), make_coefficients(),
-                         b.view().part(level.first_node, level.nodes()), resolution.counts(level),
-                         below != nullptr ? resolution.counts(*below) : nullptr});
+                                   b.view().part(level.first_node, level.nodes()), resolution.counts(level),
+                                   below != nullptr ? resolution.counts(*below) : nullptr});
   };
   exec::Buffer<float> coarse;  // of all levels but the finest
   if (coarsest < tree.depth) coarse = exec::make_buffer<float>(ex, finest.first_node);

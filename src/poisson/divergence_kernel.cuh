@@ -16,7 +16,8 @@ __device__ inline int leaves_around_corners(const Divergence& divergence, std::i
   const octree::LevelView& level = divergence.level;
   const octree::CellAround cell(lane < octree::kNeighbours ? lane : 0);
   unsigned around = 0;  // of the lane's brick, in the order of CellAround
-  PSK_UNROLL for (int k = 0; k < octree::kTileBricks; ++k) {
+  PSK_UNROLL
+  for (int k = 0; k < octree::kTileBricks; ++k) {
     bool is_leaf = false;
     if (lane < octree::kNeighbours) {
       const std::int32_t brick = octree::neighbour_of_brick(level, first + k, cell.neighbour);
@@ -26,8 +27,8 @@ __device__ inline int leaves_around_corners(const Divergence& divergence, std::i
     if (k == lane >> 3) around = leaves;
   }
   int leaves = 0;
-  PSK_UNROLL for (int t = 0; t < 8; ++t) leaves |=
-      static_cast<int>(around >> octree::CellAround::index(lane & 7, t) & 1) << t;
+  PSK_UNROLL
+  for (int t = 0; t < 8; ++t) leaves |= static_cast<int>(around >> octree::CellAround::index(lane & 7, t) & 1) << t;
   return leaves;
 }
 
@@ -46,12 +47,13 @@ struct DivergenceOfTile {
     const int leaves = leaves_around_corners(divergence, first, lane);
     float sum = 0;
     if (__ballot_sync(~0U, leaves != 0) != 0) {
-      PSK_UNROLL for (int axis = 0; axis < 3; ++axis)
-          source.load(divergence.field.axis[axis].data, shared.corners[axis]);
+      PSK_UNROLL
+      for (int axis = 0; axis < 3; ++axis) source.load(divergence.field.axis[axis].data, shared.corners[axis]);
       __syncwarp();
       if (leaves != 0) {
-        PSK_UNROLL for (int axis = 0; axis < 3; ++axis) sum +=
-            divergence.along(axis, leaves, shared.corners[axis].around(lane).in_registers());
+        PSK_UNROLL
+        for (int axis = 0; axis < 3; ++axis)
+          sum += divergence.along(axis, leaves, shared.corners[axis].around(lane).in_registers());
       }
     }
     if (first + (lane >> 3) < level.bricks) divergence.b[std::int64_t{8} * first + lane] = sum;

@@ -44,11 +44,14 @@ PSK_HD PSK_INLINE auto divergence_inside(int axis, const Values& v) {
                 nearly(kAxisRows.spread[0][0], kAxisRows.spread[0][2]));
   const auto sum = [](const Float(&u)[3]) { return (u[0] + u[2]) + u[1]; };
   Float along[3];
-  PSK_UNROLL for (int j = -1; j <= 1; ++j) {
+  PSK_UNROLL
+  for (int j = -1; j <= 1; ++j) {
     Float slope[3];
-    PSK_UNROLL for (int k = -1; k <= 1; ++k) slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
-                                                            : axis == 1 ? v(j, 1, k) - v(j, -1, k)
-                                                                        : v(j, k, 1) - v(j, k, -1);
+    PSK_UNROLL
+    for (int k = -1; k <= 1; ++k)
+      slope[k + 1] = axis == 0   ? v(1, j, k) - v(-1, j, k)
+                     : axis == 1 ? v(j, 1, k) - v(j, -1, k)
+                                 : v(j, k, 1) - v(j, k, -1);
     along[j + 1] = sum(slope);
   }
   return kWeight * sum(along);
@@ -59,13 +62,15 @@ PSK_HD PSK_INLINE auto divergence_inside(int axis, const Values& v) {
 template <class Values>
 PSK_HD float divergence_by_cells(int leaves, const float (&element)[8][8], const Values& v) {
   float sum = 0;
-  PSK_UNROLL for (int t = 0; t < 8; ++t) {
+  PSK_UNROLL
+  for (int t = 0; t < 8; ++t) {
     if ((leaves >> t & 1) == 0) continue;
     const int x = octree::slot_x(t) - 1;
     const int y = octree::slot_y(t) - 1;
     const int z = octree::slot_z(t) - 1;
-    PSK_UNROLL for (int j = 0; j < 8; ++j)  // the corner is number 7 - t of that cell
-        sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
+    PSK_UNROLL
+    for (int j = 0; j < 8; ++j)  // the corner is number 7 - t of that cell
+      sum += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
   }
   return sum;
 }
@@ -89,7 +94,8 @@ struct Divergence {
 
   [[nodiscard]] PSK_HD int leaves_around(std::int32_t node) const {
     int leaves = 0;
-    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+    PSK_UNROLL
+    for (int t = 0; t < 8; ++t) {
       const std::int32_t cell =
           level.neighbour(node, octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1);
       if (is_leaf(cell)) leaves |= 1 << t;
@@ -111,7 +117,8 @@ struct DivergenceOfBricks : Divergence {
     for (int s = 0; s < 8; ++s) leaves[s] = leaves_around(static_cast<std::int32_t>(8 * brick + s));
     for (int axis = 0; axis < 3; ++axis) {
       const octree::Neighbourhood around = octree::load_neighbourhood(level, brick, field.axis[axis].data);
-      PSK_UNROLL for (int s = 0; s < 8; ++s) {
+      PSK_UNROLL
+      for (int s = 0; s < 8; ++s) {
         const auto v = [&](int x, int y, int z) {
           return around.at(octree::slot_x(s) + x, octree::slot_y(s) + y, octree::slot_z(s) + z);
         };
@@ -128,7 +135,8 @@ struct DivergenceOfBricks : Divergence {
     int leaves[8];      // of the cells at offset slot(t) - 1: bit s for the one seen from corner s
     find_leaves(brick, leaves);
     int any = 0;
-    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+    PSK_UNROLL
+    for (int t = 0; t < 8; ++t) {
       inside &= leaves[t];
       any |= leaves[t];
     }
@@ -146,17 +154,20 @@ struct DivergenceOfBricks : Divergence {
  private:
   PSK_INLINE void find_leaves(std::int64_t brick, int (&leaves)[8]) const {
     if (finer_cell_bricks == 0 && counts == nullptr && level.depth > 0) return find_finest_cells(brick, leaves);
-    PSK_UNROLL for (int t = 0; t < 8; ++t) leaves[t] = 0;
+    PSK_UNROLL
+    for (int t = 0; t < 8; ++t) leaves[t] = 0;
     for (int s = 0; s < 8; ++s) {
       const int around = leaves_around(static_cast<std::int32_t>(8 * brick + s));
-      PSK_UNROLL for (int t = 0; t < 8; ++t) leaves[t] |= (around >> t & 1) << s;
+      PSK_UNROLL
+      for (int t = 0; t < 8; ++t) leaves[t] |= (around >> t & 1) << s;
     }
   }
 
   /// On the finest level all cells are leaves, and but for the root cells are whole bricks.
   PSK_INLINE void find_finest_cells(std::int64_t brick, int (&leaves)[8]) const {
     const std::int32_t* bricks = level.neighbours + brick * octree::kNeighbours;
-    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+    PSK_UNROLL
+    for (int t = 0; t < 8; ++t) {
       const std::int32_t other =
           bricks[octree::neighbour_index(octree::slot_x(t) - 1, octree::slot_y(t) - 1, octree::slot_z(t) - 1)];
       leaves[t] = other >= 0 && other < level.cell_bricks ? 0xff : 0;
@@ -171,21 +182,24 @@ struct DivergenceOfBricks : Divergence {
   template <int Bit>
   PSK_INLINE static void step_along(int (&leaves)[8]) {
     constexpr int kUpper = Bit == 4 ? 0xf0 : Bit == 2 ? 0xcc : 0xaa;  // corners at the upper end of the axis
-    PSK_UNROLL for (int t = 0; t < 8; ++t) if ((t & Bit) == 0) leaves[t] =
-        (leaves[t] & ~kUpper) | (leaves[t | Bit] & kUpper);
+    PSK_UNROLL
+    for (int t = 0; t < 8; ++t)
+      if ((t & Bit) == 0) leaves[t] = (leaves[t] & ~kUpper) | (leaves[t | Bit] & kUpper);
   }
 
   /// divergence_by_cells at all corners.
   PSK_INLINE static void add_cells(const int (&leaves)[8], const float (&element)[8][8],
                                    const octree::NeighbourLanes& v, Float8& sum) {
-    PSK_UNROLL for (int t = 0; t < 8; ++t) {
+    PSK_UNROLL
+    for (int t = 0; t < 8; ++t) {
       if (leaves[t] == 0) continue;
       const int x = octree::slot_x(t) - 1;
       const int y = octree::slot_y(t) - 1;
       const int z = octree::slot_z(t) - 1;
       Float8 with_cell = sum;
-      PSK_UNROLL for (int j = 0; j < 8; ++j) with_cell +=
-          element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
+      PSK_UNROLL
+      for (int j = 0; j < 8; ++j)
+        with_cell += element[7 - t][j] * v(x + octree::slot_x(j), y + octree::slot_y(j), z + octree::slot_z(j));
       sum = select(mask_of_bits(leaves[t]), with_cell, sum);
     }
   }

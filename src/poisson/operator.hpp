@@ -81,9 +81,11 @@ PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x
     return AxisCoefficients::apply(row, v[0], v[1], v[2]);
   };
   float mass_mass[3], rest[3];  // along y and z: M M, and K M + M K
-  PSK_UNROLL for (int i = 0; i < 3; ++i) {
+  PSK_UNROLL
+  for (int i = 0; i < 3; ++i) {
     float mass[3], stiffness[3];  // along z
-    PSK_UNROLL for (int j = 0; j < 3; ++j) {
+    PSK_UNROLL
+    for (int j = 0; j < 3; ++j) {
       const float row[3] = {u(i - 1, j - 1, -1), u(i - 1, j - 1, 0), u(i - 1, j - 1, 1)};
       mass[j] = along(z.mass, row);
       stiffness[j] = along(z.stiffness, row);
@@ -98,7 +100,8 @@ PSK_HD inline float laplacian_at_face(const Values& u, const AxisCoefficients& x
 /// key, without decoding it.
 PSK_HD inline bool touches_faces(std::uint64_t brick_key, int depth) {
   bool touches = depth == 0;
-  PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+  PSK_UNROLL
+  for (int axis = 0; axis < 3; ++axis) {
     const std::uint64_t coordinate = brick_key >> axis & octree::kEveryThirdBit;
     touches = touches || coordinate == 0 || coordinate == std::uint64_t{1} << 3 * (depth - 1);
   }
@@ -161,7 +164,8 @@ PSK_HD PSK_INLINE Pull pull_at_corner(const CollapsedSample& sample, float scree
   if (!(sample.weight > 0)) return {};
   const float local[3] = {sample.x, sample.y, sample.z};
   float weight[3][2];
-  PSK_UNROLL for (int a = 0; a < 3; ++a) {
+  PSK_UNROLL
+  for (int a = 0; a < 3; ++a) {
     const bool upper = (at_upper >> (2 - a) & 1) != 0;
     weight[a][0] = upper ? local[a] : 1 - local[a];
     weight[a][1] = upper ? 1 - local[a] : local[a];
@@ -203,7 +207,8 @@ class CornerOperator {
   /// own brick is called -1 here. Beyond the cube there is none: the own one stands in, its values will count zero.
   PSK_HD void find_bricks(const std::int32_t* bricks, std::int32_t own) {
     const int step[3] = {2 * octree::slot_x(slot_) - 1, 2 * octree::slot_y(slot_) - 1, 2 * octree::slot_z(slot_) - 1};
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const std::int32_t brick = bricks[octree::neighbour_index(
           octree::slot_x(s) * step[0], octree::slot_y(s) * step[1], octree::slot_z(s) * step[2])];
       brick_[s] = brick < 0 ? own : brick;
@@ -212,15 +217,19 @@ class CornerOperator {
 
   [[nodiscard]] PSK_HD CornerValues load(const float* u) const {
     CornerValues values;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const int dx = octree::slot_x(s);
       const int dy = octree::slot_y(s);
       const int dz = octree::slot_z(s);
       const float* corners = u + std::int64_t{8} * brick_[s];
       // Along an axis the brick beyond holds the value at -1, the own brick those at 0 and 1.
-      PSK_UNROLL for (int x = -1; x <= 1; ++x) {
-        PSK_UNROLL for (int y = -1; y <= 1; ++y) {
-          PSK_UNROLL for (int z = -1; z <= 1; ++z) {
+      PSK_UNROLL
+      for (int x = -1; x <= 1; ++x) {
+        PSK_UNROLL
+        for (int y = -1; y <= 1; ++y) {
+          PSK_UNROLL
+          for (int z = -1; z <= 1; ++z) {
             if ((x == -1) != (dx != 0) || (y == -1) != (dy != 0) || (z == -1) != (dz != 0)) continue;
             const int other = slot_ ^ octree::slot_of(x != 0 ? 1 : 0, y != 0 ? 1 : 0, z != 0 ? 1 : 0);
             values.value[octree::neighbour_index(x, y, z)] = corners[other];
@@ -235,13 +244,15 @@ class CornerOperator {
   /// the node at its lower corner, so cells beyond an upper corner (slot 1) are the brick's own.
   PSK_HD void find_samples(const std::int32_t* bricks) {
     std::int32_t place[8];
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const int before = ~(s | slot_) & 7;  // axes along which the cell is of the brick before
       const std::int32_t brick =
           bricks[octree::neighbour_index(-octree::slot_x(before), -octree::slot_y(before), -octree::slot_z(before))];
       place[s] = brick < 0 ? -1 : system_.screening.brick_index[brick];
     }
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       sample_[s].weight = 0;
       if (place[s] >= 0) sample_[s] = system_.screening.samples[8 * std::int64_t{place[s]} + (7 - s)];
     }
@@ -249,7 +260,8 @@ class CornerOperator {
 
   PSK_HD void screen(const CornerValues& u, CornerResidual& out) const {
     float residuals[8], diagonals[8];
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const int at_upper = ~(s ^ slot_) & 7;  // cells beyond a lower corner end there, so do those beside an upper one
       const Pull pull = pull_at_corner(sample_[s], system_.screening_scale, s, at_upper, u);
       residuals[s] = pull.residual;
@@ -282,9 +294,12 @@ struct BrickPulls {
 PSK_HD inline void load_pulls(const LevelSystem& system, std::int64_t brick, const octree::Neighbourhood& u,
                               BrickPulls& out) {
   const std::int32_t* bricks = system.level.neighbours + brick * octree::kNeighbours;
-  PSK_UNROLL for (int x = -1; x <= 1; ++x) {
-    PSK_UNROLL for (int y = -1; y <= 1; ++y) {
-      PSK_UNROLL for (int z = -1; z <= 1; ++z) {
+  PSK_UNROLL
+  for (int x = -1; x <= 1; ++x) {
+    PSK_UNROLL
+    for (int y = -1; y <= 1; ++y) {
+      PSK_UNROLL
+      for (int z = -1; z <= 1; ++z) {
         const int j = octree::neighbour_index(x, y, z);
         out.sample[j] = {};
         out.pull[j] = 0;
@@ -308,7 +323,8 @@ PSK_HD inline void load_pulls(const LevelSystem& system, std::int64_t brick, con
 /// Adds the screening of the 8 cells around corner (x, y, z) of the brick.
 PSK_HD inline void screen_corner(const BrickPulls& pulls, int x, int y, int z, CornerResidual& out) {
   float residuals[8], diagonals[8];
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
     const int i = octree::slot_x(s);  // the corner is end 1 - i of its cell along x
     const int j = octree::slot_y(s);
     const int k = octree::slot_z(s);
@@ -330,14 +346,16 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
                                            const octree::Neighbourhood& u) {
   BrickResidual out;
   const std::uint64_t brick_key = system.level.brick_key[brick];
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
     const BrickCornerValues values{u, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)};
     out.corner[s].residual = system.b[8 * brick + s] - laplacian_at(system, brick_key, s, false, values);
   }
   if (!(system.screening_scale > 0) || system.screening.corners[brick] == 0) return out;
   BrickPulls pulls;
   load_pulls(system, brick, u, pulls);
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
     if ((system.screening.corners[brick] >> s & 1) != 0)
       screen_corner(pulls, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s), out.corner[s]);
   }
@@ -364,7 +382,8 @@ struct CellsAround {
   template <int Axis>
   PSK_INLINE void step_along() {
     constexpr int kBit = 4 >> Axis;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       if ((s & kBit) != 0) continue;
       const CellLanes& upper = cell[s | kBit];
       cell[s].x = between<Axis>(cell[s].x, upper.x);
@@ -378,7 +397,8 @@ struct CellsAround {
 /// Finds the samples around a brick.
 PSK_INLINE void load_cells(const LevelSystem& system, std::int64_t brick, CellsAround& out) {
   const std::int32_t* bricks = system.level.neighbours + brick * octree::kNeighbours;
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
     const std::int32_t other =
         bricks[octree::neighbour_index(octree::slot_x(s) - 1, octree::slot_y(s) - 1, octree::slot_z(s) - 1)];
     const std::int32_t place = other < 0 ? -1 : system.screening.brick_index[other];
@@ -408,7 +428,8 @@ PSK_INLINE void screen_lanes(const LevelSystem& system, std::int64_t brick, cons
   CellsAround cells;
   load_cells(system, brick, cells);
   Float8 residuals[8], diagonals[8];
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
     const CellLanes& cell = cells.cell[s];
     const Float8 weight[3][2] = {{1 - cell.x, cell.x}, {1 - cell.y, cell.y}, {1 - cell.z, cell.z}};
     const Float8 value = value_in_cell(weight, CellCornerLanes{u, s}, 1, 1, 1);

@@ -30,7 +30,8 @@ struct RelaxBricks {
     if (unknowns == 0) return;  // `next` holds the interpolated values already
     const octree::Neighbourhood around = octree::load_neighbourhood(system.level, brick, u);
     const BrickResidual r = brick_residual(system, brick, around);
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       if ((unknowns >> s & 1) == 0) continue;
       const float value = around.at(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
       float& out = next[8 * brick + s];

@@ -121,12 +121,14 @@ struct MarkCorners {
     const std::int32_t* bricks = level.neighbours + (brick - first) * octree::kNeighbours;
     // Corners look at cells of their own brick and of those before it.
     unsigned touched = 0;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const int before[3] = {octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)};
       const std::int32_t other = bricks[octree::neighbour_index(-before[0], -before[1], -before[2])];
       const std::int32_t place = other < 0 ? -1 : brick_index[first + other];
       if (place < 0) continue;
-      PSK_UNROLL for (int cell = 0; cell < 8; ++cell) {
+      PSK_UNROLL
+      for (int cell = 0; cell < 8; ++cell) {
         if ((~cell & s) != 0) continue;  // of a brick before this one, only the cells next to it
         if (samples[8 * std::int64_t{place} + cell].weight > 0) touched |= corners_of(cell, s);
       }

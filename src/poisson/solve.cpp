@@ -47,7 +47,9 @@ struct HoldAtZero {
   PSK_HD void operator()(std::int64_t brick) const {
     const int held = unknowns[brick] & ~free[brick];
     if (held == 0) return;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) if ((held >> s & 1) != 0) u[8 * brick + s] = other[8 * brick + s] = 0;
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s)
+      if ((held >> s & 1) != 0) u[8 * brick + s] = other[8 * brick + s] = 0;
   }
 };
 

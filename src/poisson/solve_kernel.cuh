@@ -44,23 +44,27 @@ __device__ inline void load_samples(const LevelSystem& system, std::int32_t firs
   const octree::LevelView& level = system.level;
   const octree::CellAround cell(lane);
   std::int32_t place[octree::kTileBricks];
-  PSK_UNROLL for (int k = 0; k < octree::kTileBricks; ++k) {
+  PSK_UNROLL
+  for (int k = 0; k < octree::kTileBricks; ++k) {
     const std::int32_t brick = octree::neighbour_of_brick(level, first + k, cell.neighbour);
     place[k] = brick < 0 ? -1 : system.screening.brick_index[brick];
   }
   CollapsedSample sample[octree::kTileBricks];
-  PSK_UNROLL for (int k = 0; k < octree::kTileBricks; ++k) {
+  PSK_UNROLL
+  for (int k = 0; k < octree::kTileBricks; ++k) {
     sample[k].weight = 0;
     if (place[k] >= 0) sample[k] = system.screening.samples[8 * std::int64_t{place[k]} + cell.slot];
   }
-  PSK_UNROLL for (int k = 0; k < octree::kTileBricks; ++k) out.sample[k][lane] = sample[k];
+  PSK_UNROLL
+  for (int k = 0; k < octree::kTileBricks; ++k) out.sample[k][lane] = sample[k];
 }
 
 /// Adds the screening of the 8 cells around a lane's corner.
 __device__ inline void screen(const LevelSystem& system, const SampleTile& samples, int lane,
                               const octree::CornerTile::Values& u, CornerResidual& out) {
   float residuals[8], diagonals[8];
-  PSK_UNROLL for (int s = 0; s < 8; ++s) {
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
     const CollapsedSample sample = samples.sample[lane >> 3][octree::CellAround::index(lane & 7, s)];
     const Pull pull = pull_at_corner(sample, system.screening_scale, s, ~s & 7, u);
     residuals[s] = pull.residual;

@@ -131,7 +131,8 @@ class SplatToBrick {
   __device__ void stage(std::int32_t sample) const {
     float weight[8];
     at(sample).weights<QuadraticKernel>(weight);
-    PSK_UNROLL for (int s = 0; s < 8; ++s) shared_.staged.weight[s][lane_] = weight[s];
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) shared_.staged.weight[s][lane_] = weight[s];
     const Vec3f v = source_.vector(sample);
     shared_.staged.vector[0][lane_] = v.x;
     shared_.staged.vector[1][lane_] = v.y;

@@ -74,12 +74,14 @@ struct BrickSample {
   PSK_HD void weights(float (&w)[8]) const {
     const Kernel kernel;
     float axis[3][2];  // on lower and upper corners
-    PSK_UNROLL for (int a = 0; a < 3; ++a) {
+    PSK_UNROLL
+    for (int a = 0; a < 3; ++a) {
       axis[a][0] = kernel(rel[a]);
       axis[a][1] = kernel(rel[a] - 1);
     }
-    PSK_UNROLL for (int s = 0; s < 8; ++s) w[s] =
-        axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s)
+      w[s] = axis[0][octree::slot_x(s)] * axis[1][octree::slot_y(s)] * axis[2][octree::slot_z(s)];
   }
 
 #if PSK_WIDE

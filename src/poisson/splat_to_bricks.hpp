@@ -98,7 +98,8 @@ struct SplatToBricks {
         add_batch(rank, rank + kBatch < end ? rank + kBatch : end, origin, sums);
     });
     if (!sums.any) return;
-    PSK_UNROLL for (int a = 0; a < 3; ++a) {
+    PSK_UNROLL
+    for (int a = 0; a < 3; ++a) {
       float* v = &field.axis[a][8 * brick];
       store8(load8(v) + sums.axis[a], v);
     }

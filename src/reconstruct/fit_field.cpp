@@ -107,8 +107,8 @@ void look_at_samples(Exec& ex, const poisson::Samples& samples, const FitSetup& 
   if (setup.keep_all) return;  // a trim is settled when a surface is asked for
   field.trim = options.trim == Options::kAutomaticTrim ? field.fitting_trim : options.trim;
   if (field.trim > 0)
-    field.trim_limit = trim_limit(ex, field.tree, field.density, samples.positions.cview(), samples.normals.cview(),
-                                  field.trim);
+    field.trim_limit =
+        trim_limit(ex, field.tree, field.density, samples.positions.cview(), samples.normals.cview(), field.trim);
 }
 
 /// Looks at the solved field, and reads all that was counted.

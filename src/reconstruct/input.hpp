@@ -23,7 +23,7 @@ class Input {
     return input;
   }
 
-  [[nodiscard]] const Cloud* cloud() const { return cloud_; }          ///< null: they are where the space works
+  [[nodiscard]] const Cloud* cloud() const { return cloud_; }           ///< null: they are where the space works
   [[nodiscard]] const DevicePoints* points() const { return points_; }  ///< null: they are on the host
   [[nodiscard]] bool turned() const { return turned_; }
 

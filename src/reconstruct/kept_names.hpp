@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-
 namespace pointskin::detail {
 
 /// Names of the attributes on a mesh, in their order. A name that the mesh has itself (x, y, z, nx, ny, nz, with

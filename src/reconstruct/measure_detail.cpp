@@ -32,8 +32,7 @@ Detail by_octree(Exec& ex, const Input& input, const Options& options, int depth
   if (!normals.empty()) field::normalise(ex, normals);
   const octree::OctreeData tree = octree::build_octree(ex, sorted.keys.cview(), depth);
   const poisson::Density density = poisson::splat_density(ex, tree, positions);
-  const float per_cell =
-      median_density(ex, tree, density, positions);
+  const float per_cell = median_density(ex, tree, density, positions);
   const double cell = std::ldexp(frame.size, -tree.depth);
   return {frame.size, cell / std::sqrt(static_cast<double>(per_cell)),
           cell * diagnose::measure_noise(ex, tree.view(), positions, normals)};

@@ -147,9 +147,8 @@ bool Run::may_take_normals(const Input& input) const {
   if (options_.max_memory_bytes == 0) return true;
   const std::int64_t own = input.size() * static_cast<std::int64_t>(2 * sizeof(Vec3f));  // a copy, to be changed
   const int threads = engine_.workspace().device().threads;
-  const std::int64_t needed = input.cloud() != nullptr
-                                  ? estimate_normals_device_bytes(*input.cloud(), threads)
-                                  : estimate_normals_device_bytes(engine_.copy(input), threads);
+  const std::int64_t needed = input.cloud() != nullptr ? estimate_normals_device_bytes(*input.cloud(), threads)
+                                                       : estimate_normals_device_bytes(engine_.copy(input), threads);
   return needed + own <= options_.max_memory_bytes;
 }
 

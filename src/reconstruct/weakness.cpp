@@ -18,8 +18,10 @@ PSK_HD float gradient_length(const octree::OctreeView& tree, const float* values
   const octree::LevelView& level = tree.levels[leaf.depth];
   const Vec3f t = octree::local_in_cell(p, octree::decode(octree::cell_key(key, leaf.depth)), leaf.depth);
   float u[8];
-  PSK_UNROLL for (int s = 0; s < 8; ++s) u[s] =
-      values[level.first_node + level.neighbour(leaf.cell, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s))];
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s)
+    u[s] =
+        values[level.first_node + level.neighbour(leaf.cell, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s))];
   const auto mix = [](float a, float b, float w) { return a + w * (b - a); };
   const float x = mix(mix(u[4] - u[0], u[6] - u[2], t.y), mix(u[5] - u[1], u[7] - u[3], t.y), t.z);
   const float y = mix(mix(u[2] - u[0], u[6] - u[4], t.x), mix(u[3] - u[1], u[7] - u[5], t.x), t.z);
@@ -63,9 +65,7 @@ float median_at(Exec& ex, ArrayView<const Vec3f> points, const ValueAt& value_at
 }
 
 /// What is missing of the usual value, as a share of it.
-PSK_HD float shortfall(float value, float usual) {
-  return usual > 0 && value < usual ? 1 - value / usual : 0.0F;
-}
+PSK_HD float shortfall(float value, float usual) { return usual > 0 && value < usual ? 1 - value / usual : 0.0F; }
 
 struct WeaknessAt {
   DensityAt density;

@@ -27,7 +27,8 @@ class LeafCell {
   [[nodiscard]] PSK_HD std::uint32_t finer_neighbours() const {
     std::uint32_t finer = 0;
     if (level_ == f_.tree.depth) return finer;
-    PSK_UNROLL for (int j = 0; j < octree::kNeighbours; ++j) {
+    PSK_UNROLL
+    for (int j = 0; j < octree::kNeighbours; ++j) {
       const int d[3] = {j / 9 - 1, j / 3 % 3 - 1, j % 3 - 1};
       const int distance = (d[0] != 0) + (d[1] != 0) + (d[2] != 0);
       if (distance == 0 || distance == 3) continue;
@@ -46,8 +47,9 @@ class LeafCell {
   [[nodiscard]] PSK_HD CellTracer trace() const {
     const std::uint32_t finer = finer_neighbours();
     std::uint32_t split_edges = 0;
-    PSK_UNROLL for (int e = 0; e < 12; ++e) if (edge_is_split(finer, e / 4, e / 2 & 1, e & 1)) split_edges |=
-        CellTracer::edge_bit(e / 4, e / 2 & 1, e & 1);
+    PSK_UNROLL
+    for (int e = 0; e < 12; ++e)
+      if (edge_is_split(finer, e / 4, e / 2 & 1, e & 1)) split_edges |= CellTracer::edge_bit(e / 4, e / 2 & 1, e & 1);
     CellTracer tracer(grid_signs(split_edges != 0));
     for (int face = 0; face < 6; ++face) {
       int d[3] = {0, 0, 0};
@@ -112,7 +114,8 @@ class LeafCell {
   /// By values alone: all looked up at once.
   [[nodiscard]] PSK_HD std::uint32_t grid_signs_inside(bool with_middles) const {
     std::uint32_t signs = 0;
-    PSK_UNROLL for (int i = 0; i < 27; ++i) {
+    PSK_UNROLL
+    for (int i = 0; i < 27; ++i) {
       const int x = i / 9;
       const int y = i / 3 % 3;
       const int z = i % 3;

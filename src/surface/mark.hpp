@@ -35,7 +35,8 @@ struct Marker {
     const std::uint64_t key = l.brick_key[brick];
     const std::uint64_t last = octree::kEveryThirdBit & ((std::uint64_t{1} << 3 * (l.depth - 1)) - 1);
     bool near = false;
-    PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+    PSK_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
       const std::uint64_t coordinate = key >> axis & octree::kEveryThirdBit;
       near = near || coordinate == 0 || coordinate >= last;
     }
@@ -47,7 +48,8 @@ struct Marker {
     const bool uniform = signs == 0 || signs == 0xff;
     if (uniform && !(f.closed && near_face)) return 0;
     unsigned mark = 0;
-    PSK_UNROLL for (int axis = 0; axis < 3; ++axis) {
+    PSK_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
       const unsigned end = signs >> (4 >> axis);  // the corner one step along the axis
       if (((signs ^ end) & 1) != 0 && is_finest_edge(level, node, axis)) mark |= 1U << axis;
     }
@@ -118,9 +120,12 @@ struct MarkBrick : Marker {
     const octree::Neighbourhood around = octree::load_neighbourhood(l, brick, f.values + l.first_node);
     const octree::Coordinates b = octree::decode(l.brick_key[brick]);
     std::uint32_t signs = 0;
-    PSK_UNROLL for (int x = 0; x < 3; ++x) {
-      PSK_UNROLL for (int y = 0; y < 3; ++y) {
-        PSK_UNROLL for (int z = 0; z < 3; ++z) {
+    PSK_UNROLL
+    for (int x = 0; x < 3; ++x) {
+      PSK_UNROLL
+      for (int y = 0; y < 3; ++y) {
+        PSK_UNROLL
+        for (int z = 0; z < 3; ++z) {
           bool inside = around.at(x, y, z) >= f.isovalue;
           if (inside && near_face) {
             const std::int32_t corner = l.neighbour(static_cast<std::int32_t>(8 * brick), x, y, z);
@@ -146,10 +151,11 @@ struct MarkNode : Marker {
 
   PSK_HD unsigned corner_signs(const octree::LevelView& l, std::int32_t node, bool near_face) const {
     std::int32_t corner[8];
-    PSK_UNROLL for (int s = 0; s < 8; ++s) corner[s] =
-        l.neighbour(node, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) corner[s] = l.neighbour(node, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
     unsigned signs = 0;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const float value = corner[s] < 0 ? 0 : f.value(l.depth, corner[s]);
       if (value >= f.isovalue) signs |= 1U << s;
     }
@@ -161,7 +167,8 @@ struct MarkNode : Marker {
                           unsigned signs) const {
     const octree::Coordinates c = octree::decode(l.node_key(node));
     unsigned result = 0;
-    PSK_UNROLL for (int s = 0; s < 8; ++s) {
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
       const bool inside =
           (signs >> s & 1) != 0 && corner[s] >= 0 &&
           f.inside(l.depth, corner[s], {c.x + octree::slot_x(s), c.y + octree::slot_y(s), c.z + octree::slot_z(s)});

@@ -325,8 +325,7 @@ TEST_F(Gpu, GivesTheSameBytesFromResidentPointsAgainAndAgain) {
   const Cloud cloud = test::sphere_cloud(20'000, 19);
   const Mesh before = r.reconstruct(cloud, {{.depth = 7}});
   const UploadedCloud points = upload(r.workspace(), cloud);
-  for (int i = 0; i < 4; ++i)
-    expect_same_bytes(download(r.workspace(), r.reconstruct(points, {{.depth = 7}})), before);
+  for (int i = 0; i < 4; ++i) expect_same_bytes(download(r.workspace(), r.reconstruct(points, {{.depth = 7}})), before);
   expect_same_bytes(r.reconstruct(cloud, {{.depth = 7}}), before);
 }
 

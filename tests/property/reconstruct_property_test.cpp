@@ -145,7 +145,7 @@ TEST(Reconstruct, GivesTheSameBytesRunAfterRunFromOneReconstructor) {
   const Cloud torus = test::torus_cloud(20'000, 12);
   const Mesh first = r.reconstruct(sphere, {{.depth = 7}});
   const Mesh other = r.reconstruct(torus, {{.depth = 6}});
-  EXPECT_THROW((void)r.reconstruct(Cloud{}, {}), Error);  // a failed run leaves nothing behind
+  EXPECT_THROW((void)r.reconstruct(Cloud{}), Error);  // a failed run leaves nothing behind
   expect_same_bytes(first, r.reconstruct(sphere, {{.depth = 7}}));
   expect_same_bytes(other, r.reconstruct(torus, {{.depth = 6}}));
 }

@@ -51,7 +51,11 @@ def violations_in(path, where, allowed, may_name_backend, may_ask_compiler):
             continue
         quote, target = match.groups()
         folder = target.split("/")[0]
-        if BACKEND.match(target) and not may_name_backend:
+        if target.endswith(("_impl.hpp", ".cpp")):
+            yield f"{place}: includes {target}; what two steps share lies in a header with a name of its own"
+        elif target == "exec/this_space.hpp" and path.suffix != ".cpp":
+            yield f"{place}: includes {target}; only the .cpp of a step does"
+        elif BACKEND.match(target) and not may_name_backend:
             yield f"{place}: includes {target}; only src/exec names a backend"
         elif quote == "<" or allowed is None:
             continue
@@ -99,6 +103,8 @@ PLANTED = {
     "src/field/a.hpp": "#ifdef __CUDA_ARCH__\n#endif\n",
     "src/surface/a.cpp": '#include "surface.hpp"\n',
     "src/io/b.cpp": '#include "pointskin/io.hpp"\n',
+    "src/octree/b.cpp": '#include "octree/search_impl.hpp"\n',
+    "src/octree/c.hpp": '#include "exec/this_space.hpp"\n',
     "src/reconstruct.cpp": "#include <cuda_runtime.h>\n",
     "src/unheard_of/a.cpp": "\n",
     "include/pointskin/a.hpp": "#include <cuda_runtime.h>\n",

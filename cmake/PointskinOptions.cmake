@@ -6,6 +6,9 @@ set_property(CACHE POINTSKIN_CUDA PROPERTY STRINGS AUTO ON OFF)
 # programs and packages are its own.
 option(POINTSKIN_BUILD_APPS "Build the command line program" ${PROJECT_IS_TOP_LEVEL})
 option(POINTSKIN_BUILD_BENCH "Build the benchmarks and generators" ${PROJECT_IS_TOP_LEVEL})
+set(POINTSKIN_STUDIO AUTO CACHE STRING
+  "Build the command `studio`: AUTO (where Node 18, npm, Boost and meshoptimizer are found), ON or OFF")
+set_property(CACHE POINTSKIN_STUDIO PROPERTY STRINGS AUTO ON OFF)
 option(POINTSKIN_INSTALL "Install the library and what is built with it" ${PROJECT_IS_TOP_LEVEL})
 if(PROJECT_IS_TOP_LEVEL)
   option(BUILD_TESTING "Build the tests and the examples" ON)

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace pointskin::cli {
+namespace pointskin::scene {
 
 /// One frame of a sequence.
 struct FrameFile {
@@ -38,4 +38,4 @@ void check_patterns(const std::string& input, const std::string& output, const c
 std::vector<FrameFile> find_frames(const std::string& pattern, std::optional<std::int64_t> first,
                                    std::optional<std::int64_t> last);
 
-}  // namespace pointskin::cli
+}  // namespace pointskin::scene

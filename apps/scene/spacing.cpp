@@ -8,7 +8,7 @@
 
 #include <pointskin/cloud.hpp>
 
-namespace pointskin::cli {
+namespace pointskin::scene {
 namespace {
 
 using Point = std::array<float, 3>;  // The longest axis first.
@@ -57,4 +57,4 @@ double median_spacing(const std::vector<Vec3f>& positions, int samples) {
   return std::sqrt(*middle);
 }
 
-}  // namespace pointskin::cli
+}  // namespace pointskin::scene

@@ -9,13 +9,13 @@
 
 #include <pointskin/error.hpp>
 
-#include "args.hpp"
-
-namespace pointskin::cli {
+namespace pointskin::scene {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view kPlace = "{}";
+
+[[noreturn]] void refuse(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
 /// The digits of `name` where {} stands, or none if it is another file.
 std::optional<std::string> number_in(const std::string& name, std::string_view before, std::string_view after) {
@@ -49,20 +49,20 @@ std::string frame_file(const std::string& pattern, int frame, int frames) {
 
 void check_pattern(const std::string& pattern, const char* option, const char* because) {
   if (pattern.empty() || is_pattern(pattern)) return;
-  throw_usage(fmt::format("{}: {} needs {{}}, where the frame's number goes, because of {}", option, pattern, because));
+  refuse(fmt::format("{}: {} needs {{}}, where the frame's number goes, because of {}", option, pattern, because));
 }
 
 void check_patterns(const std::string& input, const std::string& output, const char* option) {
   if (!is_pattern(input) && is_pattern(output))
-    throw_usage(fmt::format("{}: {} has {{}}, but the input has none", option, output));
+    refuse(fmt::format("{}: {} has {{}}, but the input has none", option, output));
   if (is_pattern(input) && !is_pattern(output))
-    throw_usage(fmt::format("{}: {} needs {{}}, where the frame's number goes, as the input has it", option, output));
+    refuse(fmt::format("{}: {} needs {{}}, where the frame's number goes, as the input has it", option, output));
 }
 
 std::vector<FrameFile> find_frames(const std::string& pattern, std::optional<std::int64_t> first,
                                    std::optional<std::int64_t> last) {
   if (!is_pattern(pattern)) {
-    if (first || last) throw_usage("--first and --last need {} in the name of the input");
+    if (first || last) refuse("--first and --last need {} in the name of the input");
     return {{pattern, ""}};
   }
   const fs::path path(pattern);
@@ -70,7 +70,7 @@ std::vector<FrameFile> find_frames(const std::string& pattern, std::optional<std
   const std::size_t place = name.find(kPlace);
   if (place == std::string::npos || name.find(kPlace, place + 2) != std::string::npos ||
       is_pattern(path.parent_path().string()))
-    throw_usage(fmt::format("{}: {{}} must stand once, in the name of the file", pattern));
+    refuse(fmt::format("{}: {{}} must stand once, in the name of the file", pattern));
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::vector<FrameFile> frames;
   std::error_code failure;
@@ -94,4 +94,4 @@ std::vector<FrameFile> find_frames(const std::string& pattern, std::optional<std
   return frames;
 }
 
-}  // namespace pointskin::cli
+}  // namespace pointskin::scene

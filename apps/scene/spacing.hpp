@@ -5,7 +5,7 @@
 
 #include <pointskin/vector.hpp>
 
-namespace pointskin::cli {
+namespace pointskin::scene {
 
 /// Median distance from a point to its nearest neighbour, in world units, over up to `samples` points taken at equal
 /// steps of the order along the longest axis; 0 for fewer than two points. Exact for each sample.
@@ -13,4 +13,4 @@ namespace pointskin::cli {
 /// points.
 double median_spacing(const std::vector<Vec3f>& positions, int samples = 1000);
 
-}  // namespace pointskin::cli
+}  // namespace pointskin::scene

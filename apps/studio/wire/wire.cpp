@@ -1,0 +1,119 @@
+#include "wire.hpp"
+
+#include <pointskin/cloud.hpp>
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "quantise.hpp"
+#include "sections.hpp"
+
+namespace pointskin::studio::wire {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+std::span<const std::byte> bytes_of(const std::vector<T>& data) {
+  return std::as_bytes(std::span(data));
+}
+
+Json box_json(const Bounds& box, const Vec3d& origin) {
+  const auto world = [&origin](const Vec3f& v) {
+    return Json{origin.x + double{v.x}, origin.y + double{v.y}, origin.z + double{v.z}};
+  };
+  return {{"lower", world(box.lower)}, {"upper", world(box.upper)}};
+}
+
+void add_positions(const std::vector<Vec3f>& positions, const Bounds& box, Sections& sections) {
+  const Grid grid(box);
+  std::vector<std::array<std::uint16_t, 4>> steps(positions.size());
+  std::transform(positions.begin(), positions.end(), steps.begin(), grid);
+  sections.add("positions", "u16x4", sizeof steps[0], bytes_of(steps));
+}
+
+/// Four bytes a normal, of which two are used: graphics libraries want attributes that begin at multiples of 4.
+void add_normals(const std::vector<Vec3f>& normals, Sections& sections) {
+  if (normals.empty()) return;
+  std::vector<std::array<std::uint8_t, 4>> codes;
+  codes.reserve(normals.size());
+  for (const Vec3f& n : normals) {
+    const auto [u, v] = octahedral(n);
+    codes.push_back({u, v, 0, 0});
+  }
+  sections.add("normals", "u8x4", sizeof codes[0], bytes_of(codes));
+}
+
+void add_bytes(const char* name, const std::vector<std::uint8_t>& values, Sections& sections) {
+  if (!values.empty()) sections.add(name, "u8", 1, bytes_of(values));
+}
+
+const AttributeValues* find(const std::vector<Attribute>& attributes, const char* name) {
+  for (const Attribute& attribute : attributes)
+    if (attribute.name == name) return &attribute.values;
+  return nullptr;
+}
+
+void add_colours(const Mesh& mesh, Sections& sections) {
+  const AttributeValues* red = find(mesh.attributes, "red");
+  const AttributeValues* green = find(mesh.attributes, "green");
+  const AttributeValues* blue = find(mesh.attributes, "blue");
+  if (red == nullptr || green == nullptr || blue == nullptr) return;
+  const bool unit = red->type() == AttributeType::float32 || red->type() == AttributeType::float64;
+  const double scale = unit ? 255 : red->type() == AttributeType::uint16 ? 1.0 / 257 : 1;
+  const auto byte = [scale](double value) {
+    return static_cast<std::uint8_t>(value > 0 ? std::min(255.0, scale * value + 0.5) : 0);
+  };
+  std::vector<std::uint8_t> colours;
+  colours.reserve(4 * mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    colours.insert(colours.end(), {byte(red->at(i)), byte(green->at(i)), byte(blue->at(i)), 255});
+  sections.add("colors", "u8x4", 4, bytes_of(colours));
+}
+
+void check_shape(std::size_t size, std::size_t expected) {
+  if (size != expected) throw Error(ErrorCode::usage, "values of another shape than the mesh's vertices");
+}
+
+/// Finite numbers lie in a box; those of an empty cloud in one without extent.
+Bounds box_of(const std::vector<Vec3f>& positions) { return positions.empty() ? Bounds{{}, {}} : bounds_of(positions); }
+
+}  // namespace
+
+std::vector<std::byte> encode_mesh(const Mesh& mesh, const MeshCoding& coding) {
+  const Bounds box = box_of(mesh.vertices);
+  Sections sections(coding.compressed);
+  add_positions(mesh.vertices, box, sections);
+  add_normals(mesh.normals, sections);
+  static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
+  sections.add_triangles({reinterpret_cast<const std::uint32_t*>(mesh.triangles.data()), 3 * mesh.triangles.size()},
+                         mesh.vertices.size());
+  add_colours(mesh, sections);
+  for (const Values& values : coding.values) {
+    check_shape(values.values.size(), mesh.vertices.size());
+    sections.add("values:" + values.name, "f32", sizeof(float), bytes_of(values.values));
+  }
+  if (!coding.tint.empty()) check_shape(coding.tint.size(), mesh.vertices.size());
+  add_bytes("tint", coding.tint, sections);
+  return std::move(sections).finish({{"kind", "mesh"},
+                                     {"vertices", mesh.vertices.size()},
+                                     {"triangles", mesh.triangles.size()},
+                                     {"box", box_json(box, mesh.origin)}});
+}
+
+std::vector<std::byte> encode_points(const PointSet& points, const Bounds& box, bool compressed) {
+  Sections sections(compressed);
+  add_positions(points.positions, box, sections);
+  add_normals(points.normals, sections);
+  if (!points.colours.empty()) sections.add("colors", "u8x4", 4, bytes_of(points.colours));
+  add_bytes("tint", points.tint, sections);
+  return std::move(sections).finish(
+      {{"kind", "points"}, {"vertices", points.positions.size()}, {"box", box_json(box, points.origin)}});
+}
+
+}  // namespace pointskin::studio::wire

@@ -62,12 +62,11 @@ std::vector<std::byte> Sections::finish(nlohmann::ordered_json header) && {
   std::string text = header.dump();
   text.resize((text.size() + kAlignment - 1) / kAlignment * kAlignment, ' ');
   const std::array<std::uint32_t, 3> words = {kVersion, static_cast<std::uint32_t>(text.size()), 0};
-  constexpr std::size_t kHead = 16;
-  std::vector<std::byte> blob(kHead + text.size() + data_.size());
+  std::vector<std::byte> blob(kHeadBytes + text.size() + data_.size());
   std::memcpy(blob.data(), "PSKB", 4);
   std::memcpy(blob.data() + 4, words.data(), sizeof words);
-  std::memcpy(blob.data() + kHead, text.data(), text.size());
-  if (!data_.empty()) std::memcpy(blob.data() + kHead + text.size(), data_.data(), data_.size());
+  std::memcpy(blob.data() + kHeadBytes, text.data(), text.size());
+  if (!data_.empty()) std::memcpy(blob.data() + kHeadBytes + text.size(), data_.data(), data_.size());
   return blob;
 }
 

@@ -11,6 +11,9 @@
 
 namespace pointskin::studio::wire {
 
+/// Bytes before the header, and where among them its length is.
+inline constexpr std::size_t kHeadBytes = 16, kHeaderBytesAt = 8;
+
 /// How a section is packed.
 enum class Codec { raw, vertex, index };
 

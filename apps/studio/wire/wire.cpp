@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <span>
 #include <utility>
 
@@ -114,6 +116,26 @@ std::vector<std::byte> encode_points(const PointSet& points, const Bounds& box, 
   add_bytes("tint", points.tint, sections);
   return std::move(sections).finish(
       {{"kind", "points"}, {"vertices", points.positions.size()}, {"box", box_json(box, points.origin)}});
+}
+
+std::vector<std::byte> compressed(const std::vector<std::byte>& raw) {
+  std::uint32_t header_bytes = 0;
+  if (raw.size() < kHeadBytes) throw Error(ErrorCode::internal, "not a blob");
+  std::memcpy(&header_bytes, raw.data() + kHeaderBytesAt, sizeof header_bytes);
+  const auto* text = reinterpret_cast<const char*>(raw.data()) + kHeadBytes;
+  Json header = Json::parse(text, text + header_bytes);
+  const auto data = std::span(raw).subspan(kHeadBytes + header_bytes);
+  Sections sections(true);
+  for (const Json& section : header["sections"]) {
+    const auto bytes = data.subspan(section["offset"], section["bytes"]);
+    if (section["name"] == "triangles")
+      sections.add_triangles({reinterpret_cast<const std::uint32_t*>(bytes.data()), bytes.size() / 4},
+                             header["vertices"]);
+    else
+      sections.add(section["name"], section["type"], section["stride"], bytes);
+  }
+  header.erase("sections");
+  return std::move(sections).finish(std::move(header));
 }
 
 }  // namespace pointskin::studio::wire

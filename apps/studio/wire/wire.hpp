@@ -32,6 +32,9 @@ struct MeshCoding {
 /// O(v + t). Deterministic.
 std::vector<std::byte> encode_mesh(const Mesh& mesh, const MeshCoding& coding);
 
+/// A blob that is not compressed, compressed. @throws Error internal if it is none
+std::vector<std::byte> compressed(const std::vector<std::byte>& raw);
+
 /// Points of a cloud that a page draws.
 struct PointSet {
   Vec3d origin{};                     ///< world units

@@ -7,12 +7,16 @@
 
 #include <pointskin/io.hpp>
 
-#include "json_reader.hpp"
+#include "scene/json_reader.hpp"
 #include "render_args.hpp"
-#include "vector_json.hpp"
+#include "scene/vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {
+
+using scene::JsonReader;
+using scene::parse_json;
+using scene::read_text;
 
 using Json = nlohmann::ordered_json;
 using CameraOfPicture = std::function<Camera(const RenderOptions&)>;

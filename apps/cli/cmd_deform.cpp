@@ -13,7 +13,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "deform_reach.hpp"
-#include "deform_script.hpp"
+#include "scene/deform_script.hpp"
 #include "file_plan.hpp"
 #include "fit_args.hpp"
 #include "input.hpp"
@@ -194,7 +194,7 @@ int run(const DeformArgs& args) {
   parse_shift(args.shift);
   check_outputs(args);
   const Device device = args.chosen();
-  Deformation deformation = read_deformation(args.script);
+  Deformation deformation = scene::read_deformation(args.script);
   const Stopwatch reading;
   options.envelope = read_envelope(args.envelope, args.threads);
   Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});

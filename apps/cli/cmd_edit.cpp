@@ -90,6 +90,7 @@ Json step_json(const StepReport& step) {
   return {{"operation", step.operation},
           {"added", step.added},
           {"removed", step.removed},
+          {"flipped", step.flipped},
           {"points", step.points},
           {"triangles", step.triangles},
           {"snapped", step.snapped},
@@ -108,14 +109,15 @@ void describe(const EditSession& session, const EditArgs& args, Json& json) {
 }
 
 std::string line_of(const StepReport& step, std::size_t number) {
-  return fmt::format("{}: {}: {} points added, {} removed; components {} -> {}, genus {} -> {}; {:.1f} ms", number,
-                     step.operation, step.added, step.removed, step.before.components, step.after.components,
+  const std::string flipped = step.flipped > 0 ? fmt::format(", {} turned", step.flipped) : "";
+  return fmt::format("{}: {}: {} points added, {} removed{}; components {} -> {}, genus {} -> {}; {:.1f} ms", number,
+                     step.operation, step.added, step.removed, flipped, step.before.components, step.after.components,
                      step.before.genus, step.after.genus, step.total_ms);
 }
 
 /// Operations that were done and left the points as they were.
 void warn_if_nothing(const StepReport& step, std::size_t number, const EditArgs& args) {
-  if (step.added == 0 && step.removed == 0)
+  if (step.added == 0 && step.removed == 0 && step.flipped == 0)
     print_warning(fmt::format("operations[{}] of {}: the {} changes no point", number, args.script, step.operation));
 }
 

@@ -18,7 +18,7 @@
 #include "input.hpp"
 #include "json_text.hpp"
 #include "scene/spacing.hpp"
-#include "vector_json.hpp"
+#include "scene/vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {

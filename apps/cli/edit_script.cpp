@@ -7,12 +7,16 @@
 
 #include <pointskin/io.hpp>
 
-#include "json_reader.hpp"
+#include "scene/json_reader.hpp"
 #include "render_args.hpp"
-#include "vector_json.hpp"
+#include "scene/vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {
+
+using scene::JsonReader;
+using scene::parse_json;
+using scene::read_text;
 
 using Json = nlohmann::ordered_json;
 using CameraOfPicture = std::function<Camera(const RenderOptions&)>;
@@ -101,13 +105,24 @@ Guide guide_at(const JsonReader& json, const CameraOfPicture& camera_of_picture)
   return guide;
 }
 
+/// "layers": all points that the view shows in the area, or those in front.
+bool front_layer_at(const JsonReader& json) {
+  return json.has("layers") && json.at("layers").one_of({"through", "front"}) == "front";
+}
+
 Remove remove_at(const JsonReader& json, const CameraOfPicture& camera_of_picture) {
-  json.object({"op", "camera", "area", "rectangle", "originals"});
+  json.object({"op", "camera", "area", "rectangle", "originals", "layers"});
   Remove remove;
   remove.camera = camera_at(json.at("camera"), camera_of_picture);
   remove.area = area_at(json);
+  remove.front_layer = front_layer_at(json);
   if (json.has("originals")) remove.originals = json.at("originals").boolean();
   return remove;
+}
+
+Flip flip_at(const JsonReader& json, const CameraOfPicture& camera_of_picture) {
+  json.object({"op", "camera", "area", "rectangle", "layers"});
+  return {camera_at(json.at("camera"), camera_of_picture), area_at(json), front_layer_at(json)};
 }
 
 /// "rotation": nine numbers, or {"axis": [x, y, z], "degrees": a}.
@@ -149,9 +164,22 @@ std::string source_at(const JsonReader& json, const std::filesystem::path& folde
   return std::filesystem::absolute(folder / json.at("file").text()).lexically_normal().string();
 }
 
+/// A view of the part, and what is to be copied of it. Pictures show the present surface and not the part, so that only
+/// matrices will do.
+void read_view(const JsonReader& json, Insert& insert) {
+  insert.area = area_at(json);
+  if (insert.area.empty() && !json.has("camera")) return;
+  if (insert.area.empty()) json.refuse("has a camera, but no area");
+  const JsonReader camera = json.at("camera");
+  insert.camera = camera_at(camera, [&camera](const RenderOptions&) -> Camera {
+    camera.refuse("must have view and projection: it looks at the part");
+  });
+}
+
 Insert insert_at(const JsonReader& json, const std::filesystem::path& folder) {
-  json.object({"op", "file", "box", "scale", "rotation", "translation", "snap"});
+  json.object({"op", "file", "box", "camera", "area", "rectangle", "scale", "rotation", "translation", "snap"});
   Insert insert;
+  read_view(json, insert);
   insert.source = source_at(json, folder);
   insert.part = std::make_shared<const Cloud>(read_cloud(insert.source));
   if (json.has("box")) read_box(json.at("box"), insert);
@@ -176,8 +204,19 @@ Json to_json(const Guide& guide, const std::filesystem::path& /*folder*/) {
   return json;
 }
 
+const char* layers_json(bool front_layer) { return front_layer ? "front" : "through"; }
+
 Json to_json(const Remove& remove, const std::filesystem::path& /*folder*/) {
-  return {{"op", "remove"}, {"camera", to_json(remove.camera)}, {"area", remove.area}, {"originals", remove.originals}};
+  return {{"op", "remove"},
+          {"camera", to_json(remove.camera)},
+          {"area", remove.area},
+          {"originals", remove.originals},
+          {"layers", layers_json(remove.front_layer)}};
+}
+
+Json to_json(const Flip& flip, const std::filesystem::path& /*folder*/) {
+  return {
+      {"op", "flip"}, {"camera", to_json(flip.camera)}, {"area", flip.area}, {"layers", layers_json(flip.front_layer)}};
 }
 
 /// Numbers that are not finite are not written: JSON has none.
@@ -192,6 +231,10 @@ Json box_json(const Insert& insert) {
 Json to_json(const Insert& insert, const std::filesystem::path& folder) {
   Json json = {{"op", "insert"}, {"file", std::filesystem::proximate(insert.source, folder).string()}};
   json["box"] = box_json(insert);
+  if (!insert.area.empty()) {
+    json["camera"] = to_json(insert.camera);
+    json["area"] = insert.area;
+  }
   json["scale"] = insert.placement.scale;
   json["rotation"] = insert.placement.rotation;
   json["translation"] = insert.placement.translation;
@@ -202,7 +245,7 @@ Json to_json(const Insert& insert, const std::filesystem::path& folder) {
 std::filesystem::path folder_of(const std::string& script) { return std::filesystem::path(script).parent_path(); }
 
 std::string op_of(const JsonReader& entry) {
-  return entry.at("op").one_of({"guide", "remove", "insert", "undo", "redo"});
+  return entry.at("op").one_of({"guide", "remove", "insert", "flip", "undo", "redo"});
 }
 
 JsonReader operations_of(const nlohmann::json& json, const std::string& path) {
@@ -225,6 +268,7 @@ EditScript::EditScript(const std::string& path) : path_(path), json_(parse_json(
     const std::string op = op_of(entry);
     if (op == "guide") guide_at(entry, any);
     if (op == "remove") remove_at(entry, any);
+    if (op == "flip") flip_at(entry, any);
     if (op == "undo" || op == "redo") entry.object({"op"});
   }
 }
@@ -246,6 +290,7 @@ ScriptStep EditScript::step(std::size_t i, const CameraOfPicture& camera_of_pict
   if (op == "redo") return {ScriptStep::Kind::redo, {}};
   if (op == "guide") return {ScriptStep::Kind::apply, guide_at(entry, camera_of_picture)};
   if (op == "remove") return {ScriptStep::Kind::apply, remove_at(entry, camera_of_picture)};
+  if (op == "flip") return {ScriptStep::Kind::apply, flip_at(entry, camera_of_picture)};
   return {ScriptStep::Kind::apply, insert_at(entry, folder_of(path_))};
 }
 

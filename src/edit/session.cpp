@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
-#include "edit/points.hpp"
+#include "edit/change.hpp"
 #include "edit/states.hpp"
 #include "exec/any_space.hpp"
 #include "reconstruct/engine.hpp"
@@ -69,6 +69,11 @@ class EditSession::Impl {
     states_.push_back(std::move(next));
     go_to(done_ + 1);
     return steps_.back().report;
+  }
+
+  [[nodiscard]] EditPreview preview(const Operation& operation) const {
+    edit::validate(operation);
+    return exec::visit(space(), [&](auto& ex) { return edit::preview(ex, settings_, *states_[done_], operation); });
   }
 
   bool undo() {
@@ -154,6 +159,7 @@ EditSession::EditSession(EditSession&&) noexcept = default;
 EditSession& EditSession::operator=(EditSession&&) noexcept = default;
 
 const StepReport& EditSession::apply(const Operation& operation) { return impl_->apply(operation); }
+EditPreview EditSession::preview(const Operation& operation) const { return impl_->preview(operation); }
 bool EditSession::undo() { return impl_->undo(); }
 bool EditSession::redo() { return impl_->redo(); }
 std::vector<Operation> EditSession::operations() const { return impl_->operations(); }

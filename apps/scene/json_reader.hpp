@@ -13,7 +13,7 @@
 
 #include <pointskin/vector.hpp>
 
-namespace pointskin::cli {
+namespace pointskin::scene {
 
 /// A value of a JSON file, and where it is: "ops.json.operations[2].stroke". All functions throw Error invalid_input,
 /// in one line with the place, where the value is not what is asked for.
@@ -57,4 +57,4 @@ std::string read_text(const std::string& path);
 /// `text` as JSON. @param name  of the file, for errors @throws Error invalid_input, with the byte, if it is none
 nlohmann::json parse_json(const std::string& text, const std::string& name);
 
-}  // namespace pointskin::cli
+}  // namespace pointskin::scene

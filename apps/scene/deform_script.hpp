@@ -5,7 +5,7 @@
 
 #include <pointskin/deform.hpp>
 
-namespace pointskin::cli {
+namespace pointskin::scene {
 
 /// Reads a deformation. Every key must be known, every value of the right kind.
 /// @param name  of the script, for errors
@@ -16,4 +16,4 @@ Deformation parse_deformation(const std::string& text, const std::string& name);
 /// @throws Error invalid_input, also if the file cannot be read
 Deformation read_deformation(const std::string& path);
 
-}  // namespace pointskin::cli
+}  // namespace pointskin::scene

@@ -1,4 +1,4 @@
-#include "json_reader.hpp"
+#include "scene/json_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 
 #include <pointskin/error.hpp>
 
-#include "console.hpp"
+#include "scene/text.hpp"
 
-namespace pointskin::cli {
+namespace pointskin::scene {
 
 void JsonReader::refuse(const std::string& what) const {
   throw Error(ErrorCode::invalid_input, one_line(fmt::format("{}: {}", place_, what)));
@@ -99,4 +99,4 @@ nlohmann::json parse_json(const std::string& text, const std::string& name) {
   }
 }
 
-}  // namespace pointskin::cli
+}  // namespace pointskin::scene

@@ -1,12 +1,12 @@
-#include "deform_script.hpp"
+#include "scene/deform_script.hpp"
 
 #include <array>
 #include <cstdint>
 #include <numbers>
 
-#include "json_reader.hpp"
+#include "scene/json_reader.hpp"
 
-namespace pointskin::cli {
+namespace pointskin::scene {
 namespace {
 
 using Value = JsonReader;
@@ -152,4 +152,4 @@ Deformation parse_deformation(const std::string& text, const std::string& name) 
 
 Deformation read_deformation(const std::string& path) { return parse_deformation(read_text(path), path); }
 
-}  // namespace pointskin::cli
+}  // namespace pointskin::scene

@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "colours.hpp"
 #include "quantise.hpp"
 #include "sections.hpp"
 
@@ -55,27 +56,9 @@ void add_bytes(const char* name, const std::vector<std::uint8_t>& values, Sectio
   if (!values.empty()) sections.add(name, "u8", 1, bytes_of(values));
 }
 
-const AttributeValues* find(const std::vector<Attribute>& attributes, const char* name) {
-  for (const Attribute& attribute : attributes)
-    if (attribute.name == name) return &attribute.values;
-  return nullptr;
-}
-
 void add_colours(const Mesh& mesh, Sections& sections) {
-  const AttributeValues* red = find(mesh.attributes, "red");
-  const AttributeValues* green = find(mesh.attributes, "green");
-  const AttributeValues* blue = find(mesh.attributes, "blue");
-  if (red == nullptr || green == nullptr || blue == nullptr) return;
-  const bool unit = red->type() == AttributeType::float32 || red->type() == AttributeType::float64;
-  const double scale = unit ? 255 : red->type() == AttributeType::uint16 ? 1.0 / 257 : 1;
-  const auto byte = [scale](double value) {
-    return static_cast<std::uint8_t>(value > 0 ? std::min(255.0, scale * value + 0.5) : 0);
-  };
-  std::vector<std::uint8_t> colours;
-  colours.reserve(4 * mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    colours.insert(colours.end(), {byte(red->at(i)), byte(green->at(i)), byte(blue->at(i)), 255});
-  sections.add("colors", "u8x4", 4, bytes_of(colours));
+  const std::vector<std::uint8_t> colours = colours_of(mesh.attributes, mesh.vertices.size());
+  if (!colours.empty()) sections.add("colors", "u8x4", 4, bytes_of(colours));
 }
 
 void check_shape(std::size_t size, std::size_t expected) {

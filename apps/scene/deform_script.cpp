@@ -43,11 +43,13 @@ HandleRegion parse_region(const Value& region) {
 }
 
 RigidMotion parse_rigid(const Value& rigid) {
-  rigid.object({"axis", "point", "degrees", "translation"});
+  rigid.object({"axis", "point", "degrees", "radians", "translation"});
+  if (rigid.has("degrees") && rigid.has("radians")) rigid.refuse("must not have both degrees and radians");
   RigidMotion motion;
   if (rigid.has("axis")) motion.axis = rigid.at("axis").vector();
   if (rigid.has("point")) motion.point = rigid.at("point").vector();
   if (rigid.has("degrees")) motion.angle = rigid.at("degrees").number() * std::numbers::pi / 180;
+  if (rigid.has("radians")) motion.angle = rigid.at("radians").number();
   if (rigid.has("translation")) motion.translation = rigid.at("translation").vector();
   return motion;
 }
@@ -136,6 +138,10 @@ Deformation parse_deformation(const std::string& text, const std::string& name) 
   const nlohmann::json json = parse_json(text, name);
   const Value script(json, name);
   script.object({"handles", "lattices"});
+  return read_deformation(script);
+}
+
+Deformation read_deformation(const JsonReader& script) {
   Deformation deformation;
   if (script.has("handles")) {
     const Value handles = script.at("handles");

@@ -3,7 +3,11 @@
 
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include <pointskin/deform.hpp>
+
+#include "scene/json_reader.hpp"
 
 namespace pointskin::scene {
 
@@ -15,5 +19,11 @@ Deformation parse_deformation(const std::string& text, const std::string& name);
 /// The same of a file; "-" is stdin.
 /// @throws Error invalid_input, also if the file cannot be read
 Deformation read_deformation(const std::string& path);
+
+/// The keys `handles` and `lattices` of an object that may have others.
+Deformation read_deformation(const JsonReader& json);
+
+/// Sets the two keys; read_deformation() gives the same numbers back.
+void write_deformation(const Deformation& deformation, nlohmann::ordered_json& json);
 
 }  // namespace pointskin::scene

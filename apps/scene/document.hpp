@@ -4,17 +4,15 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include <pointskin/camera.hpp>
 #include <pointskin/reconstruct.hpp>
-#include <pointskin/render.hpp>
 
-#include "scene/json_reader.hpp"
+#include "scene/camera_json.hpp"
 #include "scene/operations.hpp"
 #include "scene/sources.hpp"
 
@@ -28,18 +26,20 @@ struct Base {
   std::string shift = "auto";       ///< as --shift: auto, none or x,y,z
 };
 
-/// A document that has been read and checked. `operations` are as they were written, because a camera may be that of a
-/// picture of the surface that there is when its turn comes.
+/// A document that has been read and checked. `operations` are as they were written but for the files,
+/// which have absolute paths, because a camera may be that of a picture of the surface that there is when its turn comes.
 struct Document {
   Base base;
   Options options;                         ///< what the document does not say has its default
+  bool warm_start = true;                  ///< SceneOptions::warm_start; the key stands among the options
   std::vector<std::string> options_given;  ///< keys that the document says
   std::vector<nlohmann::ordered_json> operations;  ///< with entries undo and redo, if it is a script with such
   std::size_t done = 0;  ///< so many of them are done, the rest were undone; operations.size() with undo entries
 };
 
-/// The camera of the picture that render() draws of the present surface.
-using CameraOfPicture = std::function<Camera(const RenderOptions&)>;
+
+/// Base::shift as readers want it: unset for auto. @throws Error invalid_input for anything else than described there
+std::optional<Vec3d> shift_of(const std::string& text);
 
 /// Reads a document and checks all that can be checked before there is a surface: keys, types, ranges, numbers that
 /// are not finite; not whether files are there.
@@ -77,6 +77,10 @@ SceneOperation operation_of(const nlohmann::json& json, const std::string& name,
 /// Checks an operation, or an undo or redo entry, without a surface and without reading files.
 /// @throws Error invalid_input, in one line that names the place
 void check_operation(const nlohmann::json& json, const std::string& name);
+
+/// Whether an entry of a script is that.
+bool is_undo(const nlohmann::json& json);
+bool is_redo(const nlohmann::json& json);
 
 /// The files that an operation names, absolute. @param json  checked
 std::vector<std::string> files_of(const nlohmann::json& json, const std::filesystem::path& folder);

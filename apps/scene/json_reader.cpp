@@ -29,6 +29,13 @@ JsonReader JsonReader::at(const char* key) const {
   return {value_->at(key), fmt::format("{}.{}", place_, key)};
 }
 
+std::vector<std::string> JsonReader::keys() const {
+  if (!value_->is_object()) refuse("must be an object { }");
+  std::vector<std::string> keys;
+  for (const auto& [key, unused] : value_->items()) keys.push_back(key);
+  return keys;
+}
+
 void JsonReader::array() const {
   if (!value_->is_array()) refuse("must be a list [ ]");
 }

@@ -31,6 +31,11 @@ class JsonReader {
   void object(std::initializer_list<std::string_view> keys) const;
   [[nodiscard]] bool has(const char* key) const { return value_->contains(key); }
   [[nodiscard]] JsonReader at(const char* key) const;
+  /// Those of an object.
+  [[nodiscard]] std::vector<std::string> keys() const;
+
+  [[nodiscard]] const nlohmann::json& value() const { return *value_; }
+  [[nodiscard]] const std::string& place() const { return place_; }
 
   /// Complains unless this is an array, or one of `count` elements.
   void array() const;

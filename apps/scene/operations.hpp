@@ -58,9 +58,10 @@ struct Orient {
                           ///< not depend on the machine's speed
 };
 
-/// Reconstructs with other options from here on; points stay as they are.
+/// Reconstructs with other options from here on; points stay as they are. In JSON the keys stand beside the `op`:
+/// {"op": "options", "depth": 9}.
 struct Configure {
-  nlohmann::json options;  ///< an object with some of option_keys() alone, valid (check_options)
+  nlohmann::json options;  ///< an object with some of option_keys() alone, valid (read_options)
 };
 
 using SceneOperation = std::variant<Guide, Remove, Flip, Insert, Deform, Combine, Orient, Configure>;

@@ -19,16 +19,9 @@ const std::vector<std::string>& option_keys();
 /// All of them with their values.
 nlohmann::ordered_json options_json(const Options& options);
 
-/// Only those that differ from the defaults of the library.
-nlohmann::ordered_json changed_options_json(const Options& options);
-
-/// Sets what `json`, an object, names; the rest of `options` stays.
-/// @throws Error invalid_input, naming the place, for an unknown key, a wrong type or a value out of range; `options`
-///         is then valid, but unspecified
-void read_options(const JsonReader& json, Options& options);
-
-/// The same of an object that has no file. @param place  that errors name
-void read_options(const nlohmann::json& json, const std::string& place, Options& options);
+/// `options` with what `json`, an object, names. A key `op` is passed over.
+/// @throws Error invalid_input, naming the place, for an unknown key, a wrong type or a value out of range
+Options read_options(const JsonReader& json, Options options);
 
 /// Sets the option `key` of `to` to its value in `from`. @throws Error internal for an unknown key
 void copy_option(const std::string& key, const Options& from, Options& to);

@@ -53,7 +53,10 @@ struct Remove {
 struct Flip {
   Camera camera;
   Area area;
-  bool front_layer = false;  ///< as Remove::front_layer
+  /// True: only points that are in front. As Remove::front_layer, but only the surface itself hides points, not the
+  /// inside, and only where there are points that carry it: wrong normals make the surface bulge before the very points
+  /// that are to be turned.
+  bool front_layer = false;
 };
 
 /// x -> scale R x + translation.

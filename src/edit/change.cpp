@@ -2,6 +2,7 @@
 
 #include <pointskin/error.hpp>
 
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -97,30 +98,32 @@ exec::Buffer<std::int32_t> shown_in(Exec& ex, const Camera& camera, const Area& 
 }
 
 /// The points that a removal or a flip is about.
-/// @param only_added  original points are not chosen
+/// @param candidates  as points_in
 template <exec::Space Exec, class Chooser>
-exec::Buffer<std::int32_t> chosen_by(Exec& ex, const EditInput& input, const Chooser& chooser, bool only_added) {
-  static_assert(kOriginal == 0);  // so that the kinds tell what was added
-  const ArrayView<const std::uint8_t> candidates =
-      only_added ? input.points.added.cview() : ArrayView<const std::uint8_t>();
+exec::Buffer<std::int32_t> chosen_by(Exec& ex, const EditInput& input, const Chooser& chooser,
+                                     ArrayView<const std::uint8_t> candidates) {
   exec::Buffer<std::int32_t> chosen =
       shown_in(ex, chooser.camera, chooser.area, input.origin, input.points, candidates);
   if (!chooser.front_layer || chosen.empty()) return chosen;
-  const Screen screen{input.field.view(input.options.domain_faces), input.field.frame};
+  // Points whose normals are to be turned have made the surface bulge before them.
+  constexpr bool kTurns = std::is_same_v<Chooser, Flip>;
+  const Screen screen{input.field.view(input.options.domain_faces), input.field.frame, kTurns};
   return not_hidden(ex, frame_of(chooser.camera, input.origin), screen, input.points.positions.cview(), chosen.cview());
 }
 
 template <exec::Space Exec>
 Change find(Exec& ex, const EditInput& input, const Remove& remove) {
+  static_assert(kOriginal == 0);  // so that the kinds tell what was added
   Change change;
-  change.removed = chosen_by(ex, input, remove, !remove.originals);
+  change.removed =
+      chosen_by(ex, input, remove, remove.originals ? ArrayView<const std::uint8_t>() : input.points.added.cview());
   return change;
 }
 
 template <exec::Space Exec>
 Change find(Exec& ex, const EditInput& input, const Flip& flip) {
   Change change;
-  change.flipped = chosen_by(ex, input, flip, false);
+  change.flipped = chosen_by(ex, input, flip, {});
   return change;
 }
 

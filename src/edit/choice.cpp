@@ -31,6 +31,19 @@ PSK_HD octree::Leaf leaf_at(const field::FieldView& f, std::uint64_t key) {
   return leaf;
 }
 
+/// True if the cell holds samples, or with `around` one of the 26 cells around it.
+PSK_HD bool holds_samples(const octree::OctreeView& tree, const octree::Leaf& leaf, bool around) {
+  const octree::LevelView& level = tree.levels[leaf.depth];
+  const int reach = around ? 1 : 0;
+  for (int x = -reach; x <= reach; ++x)
+    for (int y = -reach; y <= reach; ++y)
+      for (int z = -reach; z <= reach; ++z) {
+        const std::int32_t cell = level.neighbour(leaf.cell, x, y, z);
+        if (level.is_cell(cell) && level.point_begin[cell] < level.point_begin[cell + 1]) return true;
+      }
+  return false;
+}
+
 PSK_HD double width_of(const octree::Leaf& leaf) { return 1 / static_cast<double>(std::int64_t{1} << leaf.depth); }
 
 /// A line of sight in the unit cube, from a point to the eye.
@@ -76,32 +89,49 @@ struct IsSeen {
   ArrayView<const std::int32_t> chosen;
 
   PSK_HD bool operator()(std::int64_t i) const {
-    const field::FieldView& f = screen.field;
+    const octree::OctreeView& tree = screen.field.tree;
     const Sight sight = sight_of(view, screen.cube, positions[chosen[i]]);
-    const Vec3f p = sight.at(0);
-    double t = kSurfaceCells * width_of(leaf_at(f, octree::point_key(p.x, p.y, p.z)));
+    const octree::Leaf own = cell_at(sight.at(0)).leaf;
     const double end = sight.leaves({0, 0, 0}, 1);
     // A step that is lost in rounding at the face of a leaf goes on by a little.
-    const double least = 1e-3 / static_cast<double>(std::int64_t{1} << f.tree.depth);
+    const double least = 1e-3 / static_cast<double>(std::int64_t{1} << tree.depth);
+    double t = kSurfaceCells * width_of(own);
+    bool was_inside = t < end && is_inside(cell_at(sight.at(t)), sight.at(t));
+    if (was_inside && !screen.only_at_samples) return false;
     while (t < end) {
-      const Vec3f inside = sight.at(t + least);
-      const std::uint64_t key = octree::point_key(inside.x, inside.y, inside.z);
-      const octree::Leaf leaf = leaf_at(f, key);
-      const octree::Coordinates c = octree::decode(octree::cell_key(key, leaf.depth));
-      double next = sight.leaves(c, width_of(leaf));
+      const Cell cell = cell_at(sight.at(t + least));
+      double next = sight.leaves(cell.place, width_of(cell.leaf));
       if (!(next > t + least)) next = t + least;
       if (next > end) next = end;
-      if (is_inside(leaf, c, sight.at(0.5 * (t + next))) || is_inside(leaf, c, sight.at(next))) return false;
+      bool crosses = false;
+      const double places[2] = {0.5 * (t + next), next};
+      for (const double at : places) {
+        const bool inside = is_inside(cell, sight.at(at));
+        if (inside && !screen.only_at_samples) return false;
+        if (inside != was_inside) crosses = true;
+        was_inside = inside;
+      }
+      if (crosses && holds_samples(tree, cell.leaf, cell.leaf.depth >= own.depth)) return false;
       t = next;
     }
     return true;
   }
 
-  [[nodiscard]] PSK_HD bool is_inside(const octree::Leaf& leaf, const octree::Coordinates& c, const Vec3f& p) const {
+  /// A leaf and where it is.
+  struct Cell {
+    octree::Leaf leaf;
+    octree::Coordinates place;
+  };
+  [[nodiscard]] PSK_HD Cell cell_at(const Vec3f& p) const {
+    const std::uint64_t key = octree::point_key(p.x, p.y, p.z);
+    const octree::Leaf leaf = leaf_at(screen.field, key);
+    return {leaf, octree::decode(octree::cell_key(key, leaf.depth))};
+  }
+  [[nodiscard]] PSK_HD bool is_inside(const Cell& cell, const Vec3f& p) const {
     const field::FieldView& f = screen.field;
-    const octree::LevelView& level = f.tree.levels[leaf.depth];
-    return octree::interpolated(level, f.values + level.first_node, leaf.cell,
-                                octree::local_in_cell(p, c, leaf.depth)) >= f.isovalue;
+    const octree::LevelView& level = f.tree.levels[cell.leaf.depth];
+    return octree::interpolated(level, f.values + level.first_node, cell.leaf.cell,
+                                octree::local_in_cell(p, cell.place, cell.leaf.depth)) >= f.isovalue;
   }
 };
 

@@ -23,18 +23,22 @@ template <exec::Space Exec>
 exec::Buffer<std::int32_t> points_in(Exec& ex, const ViewFrame& view, const Polygons& area,
                                      ArrayView<const Vec3f> positions, ArrayView<const std::uint8_t> candidates);
 
-/// A surface that may stand between the eye and points.
+/// What may stand between the eye and points.
 struct Screen {
-  field::FieldView field;
+  field::FieldView field;  ///< of samples
   octree::Frame cube;
+  /// False: the inside of the surface hides what is behind it. True: only the surface itself hides, and only where there
+  /// are samples: in the leaf in which a line of sight crosses it or, if the leaf is no wider than that of the point,
+  /// in one of those around it. So points whose normals are wrong are not hidden by what the surface makes of them.
+  bool only_at_samples = false;
 };
 
-/// Those of `chosen` that the surface does not hide, in their order.
+/// Those of `chosen` that the screen does not hide, in their order.
 ///
-/// A point is hidden if its line of sight passes through the inside farther than kSurfaceCells cells before it, cells
-/// being those that count where the point is. The line is followed from leaf to leaf of the octree, towards the eye, and
-/// the field is looked at in the middle of each leaf and where the line leaves it: what is thinner than half a leaf may
-/// be missed. In an orthographic view the eye is infinitely far away.
+/// A point is hidden by what its line of sight meets farther than kSurfaceCells cells before it, cells being those that
+/// count where the point is. The line is followed from leaf to leaf of the octree, towards the eye, and the field is
+/// looked at in the middle of each leaf and where the line leaves it: what is thinner than half a leaf may be missed.
+/// In an orthographic view the eye is infinitely far away.
 /// Differs from the depth buffer of a picture: no picture is drawn, and no pixel decides for its neighbours.
 /// @param chosen  indices of points in front of the eye, ascending
 /// O(chosen leaves depth), leaves being those that a line crosses: at most 3 * 2^depth, a few dozen in practice, since

@@ -31,9 +31,11 @@ class BodyReader {
     body.data = block_.data();
     body.size = block_.size();
     stream_.expires_after(limits_.block_time);
-    BoostError error;
-    co_await http::async_read(stream_, buffer_, parser_, into(error));
-    if (error && error != http::error::need_buffer) throw boost::system::system_error(error);
+    while (!parser_.is_done() && body.size > 0) {
+      BoostError error;
+      co_await http::async_read_some(stream_, buffer_, parser_, into(error));
+      if (error && error != http::error::need_buffer) throw boost::system::system_error(error);
+    }
     co_return std::span<const char>(block_.data(), block_.size() - body.size);
   }
 

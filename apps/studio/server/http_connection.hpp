@@ -29,7 +29,11 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     loopback_ = !ignored && is_loopback(peer.address().to_string());
   }
 
-  void say_goodbye() override {}
+  void say_goodbye() override {
+    net::post(executor_, [self = shared_from_this()] {
+      if (self->waiting_) self->close();
+    });
+  }
   void cut() override {
     net::post(executor_, [self = shared_from_this()] { self->close(); });
   }
@@ -56,7 +60,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     if (!first && buffer_.size() == 0 && !co_await wait_for_request()) co_return false;
     stream_.expires_after(limits().header_time);
     BoostError error;
-    co_await http::async_read_header(stream_, buffer_, *parser_, into(error));
+    const std::size_t bytes = co_await http::async_read_header(stream_, buffer_, *parser_, into(error));
+    if (!error && std::cmp_greater(bytes, limits().header_bytes)) error = http::error::header_limit;
     if (error == http::error::end_of_stream) co_return false;
     const bool is_of_http = error.category() == BoostError(http::error::end_of_stream).category();
     if (error && !is_of_http) throw boost::system::system_error(error);
@@ -68,7 +73,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   net::awaitable<bool> wait_for_request() {
     stream_.expires_after(limits().idle_time);
+    waiting_ = true;
     const std::size_t count = co_await stream_.async_read_some(buffer_.prepare(1024), net::use_awaitable);
+    waiting_ = false;
     buffer_.commit(count);
     co_return count > 0;
   }
@@ -252,6 +259,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   const net::any_io_executor executor_;
   const Seat seat_;
   bool loopback_ = false;
+  bool waiting_ = false;   ///< for the next request
   bool upgraded_ = false;  ///< the stream is another's
   beast::flat_buffer buffer_;
   std::optional<Parser> parser_;

@@ -1,6 +1,7 @@
 // A connection that speaks WebSocket: messages of a page to the application, and back.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,11 +14,32 @@
 
 namespace pointskin::studio::server {
 
+/// A stream whose end is not waited for longer than a while: Beast would wait until the other side closes, too.
+class PageStream : public beast::tcp_stream {
+ public:
+  PageStream(beast::tcp_stream stream, std::chrono::milliseconds patience)
+      : beast::tcp_stream(std::move(stream)), timer_(get_executor()), patience_(patience) {}
+
+  /// Beast calls this when a WebSocket has ended.
+  template <class Handler>
+  friend void async_teardown(beast::role_type role, PageStream& stream, Handler&& handler) {
+    stream.timer_.expires_after(stream.patience_);
+    stream.timer_.async_wait([&stream](BoostError error) {
+      if (!error) stream.close();
+    });
+    websocket::async_teardown(role, stream.socket(), std::forward<Handler>(handler));
+  }
+
+ private:
+  net::steady_timer timer_;
+  std::chrono::milliseconds patience_;
+};
+
 class WebSocket : public Connection, public std::enable_shared_from_this<WebSocket> {
  public:
   WebSocket(Shared& shared, beast::tcp_stream stream, bool loopback)
       : shared_(shared),
-        socket_(std::move(stream)),
+        socket_(std::move(stream), shared.options.limits.closing_time),
         wake_(socket_.get_executor()),
         seat_(shared.sockets),
         loopback_(loopback) {}
@@ -41,7 +63,7 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
     co_await socket_.async_accept(request, into(error));
     if (error) co_return hang_up();
     const auto wake = [weak = weak_from_this()] {
-      if (const auto self = weak.lock()) net::post(self->socket_.get_executor(), [self] { self->wake_.cancel(); });
+      if (const auto self = weak.lock()) net::post(self->socket_.get_executor(), [self] { self->look_at_outbox(); });
     };
     outbox_ = std::make_shared<Outbox>(shared_.next_id++, loopback_, shared_.options.limits.outbox_bytes, wake);
     shared_.application.opened(outbox_);
@@ -61,6 +83,7 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
     times.idle_timeout = limits.silence_time;
     times.keep_alive_pings = true;
     socket_.set_option(times);
+    socket_.auto_fragment(false);
     socket_.read_message_max(static_cast<std::size_t>(limits.message_bytes));
     socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& answer) {
       for (const auto& [name, value] : fields_of_every_answer()) answer.set(name, value);
@@ -84,11 +107,15 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
     }
   }
 
+  void look_at_outbox() {
+    if (outbox_->overrun()) hang_up();
+    wake_.cancel();
+  }
+
   /// Sleeps until the outbox wakes it.
   net::awaitable<void> write_all() {
     BoostError error;
     while (!ended_ && !error) {
-      if (outbox_->overrun()) co_return hang_up();
       const std::optional<std::string> message = outbox_->next();
       if (message) {
         socket_.text(true);
@@ -115,7 +142,7 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
   void hang_up() { beast::get_lowest_layer(socket_).close(); }
 
   Shared& shared_;
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<PageStream> socket_;
   net::steady_timer wake_;
   const Seat seat_;
   const bool loopback_;

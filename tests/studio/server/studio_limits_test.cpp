@@ -220,7 +220,9 @@ struct Garbage {
 };
 
 TEST(StudioLimits, GarbageEndsItsOwnConnectionAlone) {
-  RunningServer server;
+  ServerOptions options;
+  options.limits.closing_time = 300ms;
+  RunningServer server(options);
   const auto neighbour = server.socket();
   const std::vector<Garbage> kinds = {{"unmasked", "\x81\x02hi", 1002},
                                       {"reserved bits", std::string("\xf1\x80\0\0\0\0", 6), 1002},

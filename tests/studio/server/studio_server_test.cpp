@@ -193,6 +193,7 @@ TEST(StudioServer, ClosesInOrder) {
   EXPECT_EQ(farewell->close_code(), 1001);
   page->send_frame(8, farewell->payload);
   EXPECT_TRUE(page->closed_after(2s).has_value());
+  page->reset();
   EXPECT_TRUE(idle.closed_after(2s).has_value());
   server.wait();
   EXPECT_LT(std::chrono::steady_clock::now() - start, 1s) << "nobody was late";

@@ -98,22 +98,33 @@ std::string ReadableFile::readable(std::string story) const {
   return with_path(std::move(story), pinned_path(), path_);
 }
 
-WritableFile::~WritableFile() {
-  if (folder_.valid() && !temporary_.empty()) unlinkat(folder_.number(), temporary_.c_str(), 0);
+WritableFile::WritableFile(fs::path path, Handle folder, int mode)
+    : path_(std::move(path)), folder_(std::move(folder)), mode_(mode) {
+  std::string form = pinned(folder_, ".pointskin-XXXXXX");
+  if (mkdtemp(form.data()) == nullptr)
+    refuse(ErrorCode::output_not_written, path_, "cannot be written, " + std::generic_category().message(errno));
+  own_name_ = fs::path(form).filename();
+  own_ = Handle(openat(folder_.number(), own_name_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
 }
 
-std::string WritableFile::pinned_path() const { return pinned(folder_, temporary_); }
+WritableFile::~WritableFile() {
+  if (!folder_.valid()) return;  // moved away
+  unlinkat(own_.number(), path_.filename().c_str(), 0);
+  unlinkat(folder_.number(), own_name_.c_str(), AT_REMOVEDIR);
+}
+
+std::string WritableFile::pinned_path() const { return pinned(own_, path_.filename()); }
 
 std::int64_t WritableFile::commit() {
   struct stat about = {};
   const std::string name = path_.filename();
-  const int from = folder_.number();
-  if (fstatat(from, temporary_.c_str(), &about, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(about.st_mode))
+  const int from = own_.number();
+  if (fstatat(from, name.c_str(), &about, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(about.st_mode))
     refuse(ErrorCode::output_not_written, path_, "nothing was written");
-  if (renameat2(from, temporary_.c_str(), from, name.c_str(), overwrite_ ? 0 : RENAME_NOREPLACE) != 0)
+  if (mode_ >= 0 && fchmodat(from, name.c_str(), static_cast<mode_t>(mode_), 0) != 0) errno = 0;  // as it can be
+  if (renameat2(from, name.c_str(), folder_.number(), name.c_str(), mode_ >= 0 ? 0 : RENAME_NOREPLACE) != 0)
     refuse(ErrorCode::output_not_written, path_,
            errno == EEXIST ? "is there already" : "cannot be written, " + std::generic_category().message(errno));
-  temporary_.clear();
   return about.st_size;
 }
 
@@ -214,12 +225,9 @@ WritableFile Roots::prepare_write(const fs::path& folder, const std::string& nam
     const bool there = fstatat(held.number(), name.c_str(), &about, AT_SYMLINK_NOFOLLOW) == 0;
     if (there && !S_ISREG(about.st_mode)) refuse(ErrorCode::output_not_written, path, "is there and no plain file");
     if (there && !overwrite) refuse(ErrorCode::output_not_written, path, "is there already");
-    const std::string extension = fs::path(name).extension();
-    std::string form = pinned(held, ".pointskin-XXXXXX");
-    Handle reserved(mkostemps(form.data(), 0, O_CLOEXEC));
-    if (!reserved.valid()) refuse(ErrorCode::output_not_written, path, reason_of(errno));
-    unlink(form.c_str());
-    return {path, std::move(held), fs::path(form).filename().string() + extension, overwrite};
+    if (there && faccessat(held.number(), name.c_str(), W_OK, AT_EACCESS) != 0)
+      refuse(ErrorCode::output_not_written, path, "is write-protected");
+    return {path, std::move(held), there ? static_cast<int>(about.st_mode & 0777) : -1};
   } catch (const Error& error) {
     throw Error(ErrorCode::output_not_written, error.what());
   }

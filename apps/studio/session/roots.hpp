@@ -71,9 +71,10 @@ class ReadableFile {
 /// A file that is to appear below a root, whole or not at all.
 class WritableFile {
  public:
-  /// @param temporary  name of a file in `folder` that is not there yet
-  WritableFile(std::filesystem::path path, Handle folder, std::string temporary, bool overwrite)
-      : path_(std::move(path)), folder_(std::move(folder)), temporary_(std::move(temporary)), overwrite_(overwrite) {}
+  /// Makes a folder of its own in `folder`, which nobody else can reach into.
+  /// @param mode  permissions of the file that it takes the place of; -1: there was none, and must be none
+  /// @throws Error output_not_written
+  WritableFile(std::filesystem::path path, Handle folder, int mode);
   ~WritableFile();
   WritableFile(WritableFile&&) noexcept = default;
   WritableFile& operator=(WritableFile&&) = delete;
@@ -82,7 +83,7 @@ class WritableFile {
 
   /// Where the file will be.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Where to write it, by whichever function; has the extension of path(). What is there without commit() is removed.
+  /// Where to write it, by whichever function; has the name of path(). What is there without commit() is removed.
   [[nodiscard]] std::string pinned_path() const;
   /// Gives it its name, in one step. A link of that name is replaced and not followed. @returns its size in bytes
   /// @throws Error output_not_written, also if the name is taken meanwhile and must not be overwritten
@@ -93,9 +94,9 @@ class WritableFile {
 
  private:
   std::filesystem::path path_;
-  Handle folder_;
-  std::string temporary_;  ///< empty: committed
-  bool overwrite_;
+  Handle folder_, own_;
+  std::string own_name_{};  ///< of the folder of its own, in `folder_`
+  int mode_;
 };
 
 /// How names are looked up.

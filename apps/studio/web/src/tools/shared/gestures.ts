@@ -26,6 +26,10 @@ export interface Gesture {
   shape(): Shape | null;
   /// What is being drawn, for the overlay.
   open(): Pixel[];
+  /// Loops that are complete while another is drawn.
+  closed?(): Area;
+  /// Corners of the one being drawn.
+  corners?(): Pixel[];
   /// Puts an edited shape in the place of what was drawn.
   replace(shape: Shape): void;
   clear(): void;
@@ -87,16 +91,16 @@ export class RectangleGesture implements Gesture {
     this.done = Math.abs(signedArea(this.loop())) >= kSmallestArea;
   }
   private loop(): Pixel[] {
-    const [x0, y0, x1, y1] = this.corners();
+    const [x0, y0, x1, y1] = this.bounds();
     return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
   }
-  private corners(): [number, number, number, number] {
+  private bounds(): [number, number, number, number] {
     const [ax, ay] = this.from;
     const [bx, by] = this.to;
     return [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
   }
   shape(): Shape | null {
-    return this.done ? { kind: "rectangle", corners: this.corners() } : null;
+    return this.done ? { kind: "rectangle", corners: this.bounds() } : null;
   }
   open(): Pixel[] {
     return this.drawing ? [...this.loop(), this.loop()[0]!] : [];
@@ -154,18 +158,18 @@ export class LassoGesture implements Gesture {
 
 /// Corners by clicks. Backspace takes the last back, Enter or a click on the first closes.
 export class PolygonGesture implements Gesture {
-  private corners: Pixel[] = [];
+  private points: Pixel[] = [];
   private hover: Pixel | null = null;
   private loops: Area = [];
 
   get drawing(): boolean {
-    return this.corners.length > 0;
+    return this.points.length > 0;
   }
   down(p: Pixel, add: boolean): void {
-    if (this.corners.length >= 3 && isNear(p, this.corners[0]!)) return this.close();
-    if (this.corners.length === 0 && !add) this.loops = [];
-    const last = this.corners[this.corners.length - 1];
-    if (!last || !isNear(p, last, 2)) this.corners = [...this.corners, p];
+    if (this.points.length >= 3 && isNear(p, this.points[0]!)) return this.close();
+    if (this.points.length === 0 && !add) this.loops = [];
+    const last = this.points[this.points.length - 1];
+    if (!last || !isNear(p, last, 2)) this.points = [...this.points, p];
     this.hover = p;
   }
   move(p: Pixel): void {
@@ -174,26 +178,25 @@ export class PolygonGesture implements Gesture {
   up(): void {}
   key(key: string): boolean {
     if (!this.drawing) return false;
-    if (key === "Backspace") this.corners = this.corners.slice(0, -1);
+    if (key === "Backspace") this.points = this.points.slice(0, -1);
     else if (key === "Enter") this.close();
     else return false;
     return true;
   }
   private close(): void {
-    const loop = tidyLoop(this.corners);
+    const loop = tidyLoop(this.points);
     if (!loop) return;
     this.loops = [...this.loops, loop];
-    this.corners = [];
+    this.points = [];
   }
   shape(): Shape | null {
     return this.loops.length > 0 && !this.drawing ? { kind: "area", loops: this.loops } : null;
   }
   open(): Pixel[] {
-    return this.drawing && this.hover ? [...this.corners, this.hover] : this.corners;
+    return this.drawing && this.hover ? [...this.points, this.hover] : this.points;
   }
-  /// The corners set so far, to be shown as handles.
-  set(): Pixel[] {
-    return this.corners;
+  corners(): Pixel[] {
+    return this.points;
   }
   closed(): Area {
     return this.loops;
@@ -202,7 +205,7 @@ export class PolygonGesture implements Gesture {
     if (shape.kind === "area") this.loops = shape.loops;
   }
   clear(): void {
-    this.corners = [];
+    this.points = [];
     this.loops = [];
     this.hover = null;
   }

@@ -63,4 +63,4 @@ class EraseTool extends AreaTool {
   }
 }
 
-export const erase: ToolFactory = (context) => new EraseTool(context);
+export const erase = register((context) => new EraseTool(context));

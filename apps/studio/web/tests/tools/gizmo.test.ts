@@ -34,8 +34,8 @@ test("every part is gripped where it is drawn", () => {
 });
 
 test("nothing is gripped far from it, and nothing that is not offered", () => {
-  const grips = gripsOf(view, start, { move: true, turn: false, scale: "none", axes: [2] });
-  assert.deepEqual(grips.map((g) => g.id), ["free", "move-z"]);
+  const grips = gripsOf(view, start, { move: true, turn: true, scale: "none", moveAxes: [2], turnAxes: [0] });
+  assert.deepEqual(grips.map((g) => g.id), ["move-z", "turn-x"]);
   assert.equal(gripAt(grips, [5, 5]), null);
 });
 
@@ -90,6 +90,13 @@ test("twice as far from the middle is twice the size, along one axis or all", ()
   const to: Pixel = [centre[0], centre[1] - 80];
   assert.deepEqual(new GizmoDrag({ kind: "size" }, start, view, from).to(to).scale.map((s) => s.toFixed(6)), ["2.000000", "2.000000", "2.000000"]);
   assert.deepEqual(new GizmoDrag({ kind: "scale", axis: 1 }, start, view, from).to(to).scale.map((s) => s.toFixed(6)), ["1.000000", "2.000000", "1.000000"]);
+});
+
+test("own axes turn with the pose", () => {
+  const leaning = turned(start, [0, 1, 0], Math.PI / 2); // its z axis is the world's x axis
+  const part: Part = { kind: "move", axis: 2, own: true };
+  const pose = new GizmoDrag(part, leaning, view, pixelAt([1.2, 1, 1])).to(pixelAt([1.9, 1, 1]));
+  close(pose.position, [1.7, 1, 1]);
 });
 
 test("an axis seen end on is not gripped", () => {

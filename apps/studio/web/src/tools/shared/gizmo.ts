@@ -2,24 +2,25 @@
 // doubles, so that it works under any renderer and is tested without one.
 import type { Pixel, Vec3 } from "../../engine/protocol";
 import { type Pose, moved, turned } from "./pose";
-import { add, along, anyNormalTo, axisVector, cross, distance, dot, mul, normalise, sub, turn } from "./vec";
+import { add, along, anyNormalTo, axisVector, cross, dot, mul, normalise, sub, turn } from "./vec";
 import { type Ray, type View, meetPlane, nearestOnAxis } from "./view";
 
 export type Axis = 0 | 1 | 2;
+export type AxisKind = "move" | "plane" | "turn" | "scale"; // plane: at right angles to the axis
 export type Part =
-  | { kind: "move"; axis: Axis }
-  | { kind: "plane"; axis: Axis } // at right angles to it
+  | { kind: AxisKind; axis: Axis; own?: boolean } // own: an axis of the pose, else of the world
   | { kind: "free" } // in the plane of the picture
-  | { kind: "turn"; axis: Axis }
-  | { kind: "scale"; axis: Axis }
   | { kind: "size" }; // all axes alike
 
 export interface GizmoOptions {
   move: boolean;
   turn: boolean;
   scale: "none" | "uniform" | "axes";
-  /// Only these axes; absent: all.
-  axes?: Axis[];
+  /// Arrows along these axes only, rings about those; absent: all.
+  moveAxes?: Axis[];
+  turnAxes?: Axis[];
+  /// Arrows and rings turn with the pose.
+  own?: boolean;
 }
 
 /// CSS pixels.
@@ -43,11 +44,14 @@ export function idOf(part: Part): string {
   return "axis" in part ? `${part.kind}-${letters[part.axis]}` : part.kind;
 }
 
-/// Directions that arrows and rings follow: the world's, or for scales the pose's own.
+/// The direction that a part follows, unit length. Scales are always along the pose's own axes.
 export function axisOf(part: Part, pose: Pose): Vec3 {
-  if (!("axis" in part)) return [0, 0, 1];
-  const axis = axisVector(part.axis);
-  return part.kind === "scale" ? turn(pose.rotation, axis) : axis;
+  return "axis" in part ? frameAxis(part, pose, part.axis) : [0, 0, 1];
+}
+
+function frameAxis(part: Part, pose: Pose, axis: number): Vec3 {
+  const own = part.kind === "scale" || ("own" in part && part.own);
+  return own ? turn(pose.rotation, axisVector(axis)) : axisVector(axis);
 }
 
 function linePixels(view: View, points: Vec3[]): Pixel[] {
@@ -67,15 +71,16 @@ function ringPoints(pose: Pose, axis: Vec3, radius: number): Vec3[] {
 }
 
 function partsOf(options: GizmoOptions): Part[] {
-  const axes: Axis[] = options.axes ?? [0, 1, 2];
-  const each = (kind: "move" | "plane" | "turn" | "scale"): Part[] => axes.map((axis) => ({ kind, axis }));
+  const own = options.own ?? false;
+  const each = (kind: AxisKind, axes: Axis[] = [0, 1, 2]): Part[] => axes.map((axis) => ({ kind, axis, own }));
+  const free = options.move && !options.moveAxes;
   return [
-    ...(options.move ? [{ kind: "free" } as Part] : []),
+    ...(free ? [{ kind: "free" } as Part] : []),
     ...(options.scale === "axes" ? each("scale") : []),
     ...(options.scale !== "none" ? [{ kind: "size" } as Part] : []),
-    ...(options.move ? each("move") : []),
-    ...(options.move && axes.length === 3 ? each("plane") : []),
-    ...(options.turn ? each("turn") : []),
+    ...(options.move ? each("move", options.moveAxes) : []),
+    ...(free ? each("plane") : []),
+    ...(options.turn ? each("turn", options.turnAxes) : []),
   ];
 }
 
@@ -105,7 +110,7 @@ function placesOf(part: Part, pose: Pose, axis: Vec3, unit: number, view: View):
     case "size":
       return [along(along(p, view.right, kBoxAt * 0.78 * unit), view.up, kBoxAt * 0.78 * unit)];
     case "plane": {
-      const [u, v] = [axisVector((part.axis + 1) % 3), axisVector((part.axis + 2) % 3)];
+      const [u, v] = [frameAxis(part, pose, (part.axis + 1) % 3), frameAxis(part, pose, (part.axis + 2) % 3)];
       const near = kSquare * 1.1 * unit;
       const far = kSquare * 1.9 * unit;
       const at = (a: number, b: number) => along(along(p, u, a), v, b);
@@ -216,7 +221,7 @@ export class GizmoDrag {
       const [u, v] = [sub(from, centre), sub(to, centre)];
       return Math.atan2(dot(cross(u, v), axis), dot(u, v));
     }
-    const tangent = normalise(cross(axis, mul(this.view.back, 1)));
+    const tangent = normalise(cross(axis, this.view.back));
     const way: Vec3 = add(mul(this.view.right, b[0] - a[0]), mul(this.view.up, a[1] - b[1]));
     return dot(way, tangent) / kRing;
   }
@@ -252,9 +257,4 @@ export function poseByKey(e: KeyboardEvent, pose: Pose, view: View, options: Giz
   const grow = { "+": 1, "=": 1, "-": -1 }[e.key] ?? 0;
   if (options.scale === "none" || grow === 0) return null;
   return { ...pose, scale: mul(pose.scale, 1.01 ** (grow * far)) };
-}
-
-/// Distance between two poses' places, for people.
-export function wayOf(a: Pose, b: Pose): number {
-  return distance(a.position, b.position);
 }

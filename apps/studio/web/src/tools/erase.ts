@@ -6,7 +6,8 @@ import { AreaTool } from "./shared/area_tool";
 import { removeOf } from "./shared/documents";
 import { applyBar, countOf, note } from "./shared/fields";
 import type { Shape } from "./shared/gestures";
-import type { ToolFactory, ToolPointer } from "./tool";
+import { register } from "./registry";
+import type { ToolPointer } from "./tool";
 
 class EraseTool extends AreaTool {
   readonly id = "erase";

@@ -39,7 +39,8 @@ export const historyStyles = css`
     background: color-mix(in srgb, var(--blue) 24%, var(--panel));
   }
   .step.undone > * {
-    opacity: 0.62;
+    color: var(--text-3);
+    font-style: italic;
   }
 `;
 

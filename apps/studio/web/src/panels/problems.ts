@@ -34,20 +34,6 @@ export const problemStyles = css`
     color: var(--text-3);
     text-align: right;
   }
-  .problem meter {
-    display: none;
-  }
-  .bar {
-    height: 6px;
-    border-radius: 3px;
-    background: var(--field);
-    overflow: hidden;
-  }
-  .bar i {
-    display: block;
-    height: 100%;
-    background: var(--orange);
-  }
 `;
 
 /// Turns the view to the region's best view and frames it.

@@ -1,10 +1,10 @@
 // What an empty view offers, and where files are dropped at any time.
 import { css, html, nothing } from "lit";
 import { customElement, state } from "lit/decorators.js";
-import { styleMap } from "lit/directives/style-map.js";
 import { button } from "../ui/controls";
 import { percent } from "../ui/format";
 import { glyph, icons } from "../ui/icons";
+import { styled } from "../ui/styled";
 import { base } from "../ui/styles";
 import { Part } from "./context";
 import { chooseFiles, openDropped, openPlaces } from "./opening";
@@ -138,7 +138,7 @@ export class DropZone extends Part {
   private progress({ name, fraction }: { name: string; fraction: number }) {
     return html`<div class="sending" role="status" data-testid="upload-progress">
       ${name} ${percent(fraction)}
-      <div class="track"><div style=${styleMap({ width: `${100 * fraction}%` })}></div></div>
+      <div class="track"><div ${styled({ width: `${100 * fraction}%` })}></div></div>
     </div>`;
   }
 

@@ -1,11 +1,11 @@
 // Folders below the program's root, and files of this computer. Also chooses the reference of a comparison.
 import { css, html, nothing } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { styleMap } from "lit/directives/style-map.js";
 import type { FileEntry, FilePlace } from "../engine/protocol";
 import { button, switchRow } from "../ui/controls";
 import { bytes, percent } from "../ui/format";
 import { glyph, icons } from "../ui/icons";
+import { styled } from "../ui/styled";
 import { base } from "../ui/styles";
 import { Part, tell } from "./context";
 import { chooseFiles, openPlaces, resume, uploadAll } from "./opening";
@@ -142,7 +142,7 @@ export class OpenDialog extends Part {
         ${this.entries?.map((entry, i) => this.entry(entry, i))}
         ${this.entries?.length === 0 ? html`<li class="hint empty">There is nothing here that can be opened</li>` : nothing}
       </ul>
-      ${this.busy ? html`<div role="status">${this.busy} ${percent(this.fraction)}</div><div class="track"><div style=${styleMap({ width: `${100 * this.fraction}%` })}></div></div>` : nothing}
+      ${this.busy ? html`<div role="status">${this.busy} ${percent(this.fraction)}</div><div class="track"><div ${styled({ width: `${100 * this.fraction}%` })}></div></div>` : nothing}
       <div class="foot">
         ${scene?.clouds.length && !this.reference
           ? switchRow({ label: "Add to the scene", testid: "open-add", title: "Merges with what is open instead of replacing it", value: this.add, change: (add) => (this.add = add) })

@@ -1,9 +1,9 @@
 // The bar at the bottom: what runs, what there is, what each stage took, on which device.
 import { css, html, nothing } from "lit";
 import { customElement } from "lit/decorators.js";
-import { styleMap } from "lit/directives/style-map.js";
 import type { StageTimes } from "../engine/protocol";
 import { count, duration, percent } from "../ui/format";
+import { styled } from "../ui/styled";
 import { base } from "../ui/styles";
 import { Part, tell } from "./context";
 
@@ -140,7 +140,7 @@ export class StatusBar extends Part {
     const cancel = () => void this.context.connection.request("cancel").catch((error) => tell(this.context, error));
     return html`<span data-testid="progress" class="left" role="status">
       <span class="track" role="progressbar" aria-label="Progress" aria-valuenow=${Math.round(100 * fraction)}
-        ><span class="done" style=${styleMap({ width: `${100 * fraction}%` })}></span
+        ><span class="done" ${styled({ width: `${100 * fraction}%` })}></span
       ></span>
       <span>${phase} ${percent(fraction)}</span><span class="tip">${rest}</span>
       <button class="button cancel" data-testid="cancel" title="Cancel (Esc)" @click=${cancel}>Cancel</button>
@@ -169,7 +169,7 @@ export class StatusBar extends Part {
     const table = shares.map(({ stage, ms: value }) => `${stage}: ${duration(value)}`).join("\n");
     return html`<span class="times" title=${table} data-testid="status-times">
       <span class="stages" role="img" aria-label=${`Times of the stages: ${table.replaceAll("\n", ", ")}`}
-        >${shares.map(({ stage, share }) => html`<i class=${stage} style=${styleMap({ flex: String(share) })}></i>`)}</span
+        >${shares.map(({ stage, share }) => html`<i class=${stage} ${styled({ flex: String(share) })}></i>`)}</span
       >${duration(sum)}</span
     >`;
   }

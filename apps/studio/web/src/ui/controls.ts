@@ -1,8 +1,8 @@
 // Rows of controls as templates; components that use them have the style sheet of styles.ts.
 import { html, nothing } from "lit";
 import type { TemplateResult } from "lit";
-import { styleMap } from "lit/directives/style-map.js";
 import { glyph } from "./icons";
+import { styled } from "./styled";
 import "./number_field";
 
 interface Named {
@@ -167,7 +167,7 @@ export function slider(spec: NumberSpec & { text?: string }): TemplateResult {
     step=${spec.step || "any"}
     ?disabled=${spec.disabled}
     .value=${String(spec.value)}
-    style=${styleMap({ "--fill": `${(100 * share).toFixed(2)}%` })}
+    ${styled({ "--fill": `${(100 * share).toFixed(2)}%` })}
     @input=${(event: Event) => spec.input?.(read(event))}
     @change=${(event: Event) => spec.change(read(event))}
   />`;

@@ -75,11 +75,11 @@ Json to_json(const CloudSource& cloud, const fs::path& folder) {
   return json;
 }
 
-/// Files, absolute or seen from the folder `from`, as seen from `to`.
-void rename_files(Json& entry, const fs::path& to) {
-  for (Json* holder : {&entry, entry.contains("with") ? &entry["with"] : &entry})
-    if (holder->contains("file"))
-      (*holder)["file"] = file_seen_from((*holder)["file"].get<std::string>(), to);
+/// Changes the name of the file of an operation, if it has one.
+template <class Rename>
+void rename_file(Json& operation, const Rename& rename) {
+  Json& holder = operation.contains("with") ? operation["with"] : operation;
+  if (holder.contains("file")) holder["file"] = rename(holder["file"].get<std::string>());
 }
 
 }  // namespace
@@ -112,9 +112,9 @@ Document parse_document(const std::string& text, const std::string& name, const 
   if (reader.has("options")) read_document_options(reader.at("options"), document);
   read_operations(reader.at("operations"), document);
   for (Json& entry : document.operations)
-    for (Json* holder : {&entry, entry.contains("with") ? &entry["with"] : &entry})
-      if (holder->contains("file"))
-        (*holder)["file"] = fs::absolute(folder / (*holder)["file"].get<std::string>()).lexically_normal().string();
+    rename_file(entry, [&folder](const std::string& file) {
+      return fs::absolute(folder / file).lexically_normal().string();
+    });
   if (reader.has("done")) read_done(reader.at("done"), document);
   return document;
 }
@@ -133,7 +133,8 @@ Json to_json(const Document& document, const fs::path& folder) {
   json["options"] = options_json(document.options);
   json["options"]["warm_start"] = document.warm_start;
   json["operations"] = document.operations;
-  for (Json& entry : json["operations"]) rename_files(entry, folder);
+  for (Json& entry : json["operations"])
+    rename_file(entry, [&folder](const std::string& file) { return file_seen_from(file, folder); });
   if (document.done < document.operations.size()) json["done"] = document.done;
   return json;
 }

@@ -90,6 +90,12 @@ std::shared_ptr<const T> kept(std::deque<std::pair<std::string, std::shared_ptr<
 
 }  // namespace
 
+CloudSource cloud_of_file(const std::string& path) {
+  CloudSource cloud;
+  cloud.file = std::filesystem::absolute(path).lexically_normal().string();
+  return cloud;
+}
+
 void check_not_empty(const Cloud& cloud, const std::string& name) {
   if (cloud.size() > 0) return;
   if (cloud.dropped == 0) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no points", name));
@@ -117,8 +123,8 @@ std::int64_t drop_zero_normals(Cloud& cloud) {
   return zero;
 }
 
-Cloud load_base(const std::vector<CloudSource>& sources, const ReadOptions& options, MissingNormals missing,
-                ReadFacts& facts) {
+Cloud merge_sources(const std::vector<CloudSource>& sources, const ReadOptions& options, MissingNormals missing,
+                    ReadFacts& facts) {
   Cloud merged;
   for (const CloudSource& source : sources) {
     if (source.file.empty())
@@ -127,6 +133,12 @@ Cloud load_base(const std::vector<CloudSource>& sources, const ReadOptions& opti
       merge_into(merged, read_one(source.file, options, missing, facts.notices));
   }
   facts.not_finite = merged.dropped;
+  return merged;
+}
+
+Cloud load_base(const std::vector<CloudSource>& sources, const ReadOptions& options, MissingNormals missing,
+                ReadFacts& facts) {
+  Cloud merged = merge_sources(sources, options, missing, facts);
   if (merged.has_normals()) facts.no_normal = drop_zero_normals(merged);
   return merged;
 }

@@ -24,6 +24,9 @@ struct CloudSource {
   std::int64_t points = 60'000;  ///< drawn from the shape
 };
 
+/// @param path  also relative to the working directory
+CloudSource cloud_of_file(const std::string& path);
+
 /// Whether clouds may come without normals. If some do, the merged cloud has none.
 enum class MissingNormals { refused, allowed };
 
@@ -50,8 +53,12 @@ void check_not_empty(const Cloud& cloud, const std::string& name);
 /// @throws Error no_normals if the cloud has no normals, or none that is not zero
 std::int64_t drop_zero_normals(Cloud& cloud);
 
-/// The base cloud of a scene: the sources in their order, merged; points without a usable normal are left out unless
-/// none is needed. Files are read as the commands read them, shapes are sampled with seed 1.
+/// The sources in their order, merged. Files are read as the commands read them, shapes are sampled with seed 1.
+/// @throws Error as read_clouds
+Cloud merge_sources(const std::vector<CloudSource>& sources, const ReadOptions& options, MissingNormals missing,
+                    ReadFacts& facts);
+
+/// The base cloud of a scene: the sources merged, without points whose normal has zero length.
 /// @param missing  allowed: a cloud without normals stays whole, and Scene has no surface until they are estimated
 /// @throws Error as read_clouds
 Cloud load_base(const std::vector<CloudSource>& sources, const ReadOptions& options, MissingNormals missing,

@@ -1,5 +1,8 @@
 #include "scene/text.hpp"
 
+#include <charconv>
+#include <cmath>
+
 namespace pointskin::scene {
 
 std::string one_line(const std::string& text) {
@@ -16,6 +19,33 @@ std::string one_line(const std::string& text) {
     }
   }
   return line;
+}
+
+std::optional<double> take_number(std::string_view& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+std::optional<double> parse_number(const std::string& text) {
+  std::string_view rest = text;
+  const std::optional<double> number = take_number(rest);
+  return rest.empty() ? number : std::nullopt;
+}
+
+std::optional<Vec3d> parse_vector(const std::string& text) {
+  Vec3d vector{0, 0, 0};
+  std::string_view rest = text;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axis > 0 && rest.starts_with(',')) rest.remove_prefix(1);
+    const std::optional<double> number = take_number(rest);
+    const bool ends_well = axis == 2 ? rest.empty() : rest.starts_with(',');
+    if (!number || !ends_well) return std::nullopt;
+    vector[axis] = *number;
+  }
+  return vector;
 }
 
 }  // namespace pointskin::scene

@@ -118,6 +118,8 @@ struct EditOptions {
   /// which were added, and is no attribute of the surface. Original points alone decide on isovalue, cube and depths of
   /// guides, as in the session that the cloud is from. False: all points are original, whatever attributes there are.
   bool continued = false;
+  /// Points keep their attributes for cloud(), whether the surface shows them (Options::attributes) or not.
+  bool keep_attributes = false;
   int states_kept = 4;  ///< states held on the device for undo, besides the base; others are made again; >= 1
 };
 
@@ -153,7 +155,7 @@ class EditSession {
   /// Does the last operation that was taken back again. @returns false if there is none
   bool redo();
 
-  /// The operations that are done, the first first.
+  /// The operations that are done, the first first. An interval of 0 in a guide is the number that was used.
   [[nodiscard]] std::vector<Operation> operations() const;
   /// What each of them did. Shape as operations().
   [[nodiscard]] std::vector<StepReport> steps() const;

@@ -40,8 +40,7 @@ struct Scale {
 
 GuideShape shape_of(const Guide& guide, const ViewFrame& view, const EditInput& input) {
   GuideShape shape;
-  const double cell = input.field.frame.size / static_cast<double>(std::int64_t{1} << input.field.tree.depth);
-  shape.interval = guide.interval > 0 ? guide.interval : cell;
+  shape.interval = interval_of(guide, input.field);
   const DepthRange depths = depth_range(view, input.base_box, shape.interval);
   shape.first_depth = depths.first;
   shape.last_depth = depths.last;
@@ -162,9 +161,9 @@ PointBuffers in_view(Exec& ex, const Insert& insert, PointBuffers part) {
 
 /// The points of the part that are to be copied, in its own coordinates.
 template <exec::Space Exec>
-PointBuffers upload_part(Exec& ex, const Insert& insert, const Options& options) {
+PointBuffers upload_part(Exec& ex, const Insert& insert, const EditInput& input) {
   PointBuffers part = detail::upload(ex, *insert.part);
-  if (options.attributes) part.attributes = detail::upload_attributes(ex, *insert.part);
+  if (!input.points.attributes.empty()) part.attributes = detail::upload_attributes(ex, *insert.part);
   IsInBox in_box{{}, {}, part.positions.cview()};
   for (std::size_t a = 0; a < 3; ++a) {
     in_box.lower[a] = insert.lower[a] - insert.part->origin[a];
@@ -178,7 +177,7 @@ PointBuffers upload_part(Exec& ex, const Insert& insert, const Options& options)
 
 template <exec::Space Exec>
 Change find(Exec& ex, const EditInput& input, const Insert& insert) {
-  PointBuffers part = upload_part(ex, insert, input.options);
+  PointBuffers part = upload_part(ex, insert, input);
   place(ex, placement_of(insert, input.origin), part.positions.view(), part.normals.view());
   Change change;
   if (insert.snap) {

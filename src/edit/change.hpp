@@ -3,6 +3,8 @@
 
 #include <pointskin/edit.hpp>
 
+#include <cstdint>
+
 #include "edit/points.hpp"
 #include "exec/space.hpp"
 #include "reconstruct/fit_field.hpp"
@@ -24,6 +26,12 @@ struct EditInput {
 /// @throws Error usage, over_limit, no_normals, invalid_input
 template <exec::Space Exec>
 Change find_change(Exec& ex, const EditInput& input, const Operation& operation);
+
+/// Guide::interval, or for 0 the width of the finest cells, world units.
+inline double interval_of(const Guide& guide, const detail::FieldData& field) {
+  const double cell = field.frame.size / static_cast<double>(std::int64_t{1} << field.tree.depth);
+  return guide.interval > 0 ? guide.interval : cell;
+}
 
 /// Throws before any work where an operation is not as described in edit.hpp.
 /// @throws Error usage

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/stopwatch.hpp"
@@ -38,6 +39,12 @@ Topology topology_of(const Mesh& mesh, int threads) {
 
 }  // namespace
 
+/// With numbers where the operation leaves them to the surface before it.
+Operation settled(Operation operation, const edit::State& before) {
+  if (auto* guide = std::get_if<Guide>(&operation)) guide->interval = edit::interval_of(*guide, before.field);
+  return operation;
+}
+
 /// The history of a session.
 class EditSession::Impl {
  public:
@@ -65,7 +72,7 @@ class EditSession::Impl {
     report.after = changed ? topology(report.before) : report.before;
     steps_.resize(done_);
     states_.resize(done_ + 1);
-    steps_.push_back({operation, std::move(report)});
+    steps_.push_back({settled(operation, *states_[done_]), std::move(report)});
     states_.push_back(std::move(next));
     go_to(done_ + 1);
     return steps_.back().report;

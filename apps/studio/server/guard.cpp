@@ -29,6 +29,7 @@ bool only_reads(const Request& request) { return request.method == "GET" || requ
 Guard::Guard(std::vector<std::string> names, int port, std::string token)
     : names_(std::move(names)),
       token_(std::move(token)),
+      once_(random_secret()),
       cookie_name_("pointskin_" + std::to_string(port)),
       cookie_(random_secret()) {}
 
@@ -79,7 +80,9 @@ Status Guard::verdict(const Request& request, const Route& route) const {
   return Status::ok;
 }
 
-bool Guard::knows(std::string_view token) const { return same_secret(token, token_); }
+bool Guard::admits(std::string_view secret) {
+  return same_secret(secret, token_) || (same_secret(secret, once_) && !once_taken_.exchange(true));
+}
 
 std::string Guard::set_cookie() const { return cookie_name_ + "=" + cookie_ + "; HttpOnly; SameSite=Strict; Path=/"; }
 

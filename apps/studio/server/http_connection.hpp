@@ -169,7 +169,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       token.append(block.data(), block.size());
     }
     if (token.size() > kMost) co_return co_await refuse(Status::too_large);
-    if (!shared_.guard.knows(token)) co_return co_await refuse(Status::unauthorised);
+    if (!shared_.guard.admits(token)) co_return co_await refuse(Status::unauthorised);
     Answer reply = answer(Status::no_content, "", 0);
     reply.set(http::field::set_cookie, shared_.guard.set_cookie());
     co_return co_await send(reply, {});

@@ -22,12 +22,15 @@ class Server::Running {
 
   [[nodiscard]] int port() const { return port_; }
 
-  [[nodiscard]] std::string url() const {
+  /// @param secret  that the page exchanges for a cookie
+  [[nodiscard]] std::string url(const std::string& secret) const {
     const net::ip::address address = acceptors_.front().local_endpoint().address();
     const std::string text = address.is_unspecified() ? "127.0.0.1" : address.to_string();
     const std::string host = address.is_v6() && !address.is_unspecified() ? "[" + text + "]" : text;
-    return "http://" + host + ":" + std::to_string(port_) + "/#" + shared_->guard.token();
+    return "http://" + host + ":" + std::to_string(port_) + "/#" + secret;
   }
+
+  [[nodiscard]] const Guard& guard() const { return shared_->guard; }
 
   void run() {
     constexpr int kThreads = 3;
@@ -104,7 +107,8 @@ Server::Server(ServerOptions options, Application& application)
 Server::~Server() = default;
 
 int Server::port() const { return running_->port(); }
-std::string Server::url() const { return running_->url(); }
+std::string Server::url() const { return running_->url(running_->guard().token()); }
+std::string Server::url_for_browser() const { return running_->url(running_->guard().once()); }
 void Server::run() { running_->run(); }
 void Server::stop() { running_->stop(); }
 

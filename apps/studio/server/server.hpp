@@ -61,6 +61,8 @@ class Server {
   [[nodiscard]] int port() const;
   /// "http://127.0.0.1:8123/#" and the token.
   [[nodiscard]] std::string url() const;
+  /// The same with a secret that is good for one page, to start a browser with.
+  [[nodiscard]] std::string url_for_browser() const;
 
   /// Answers requests until stop(). To be called once.
   void run();

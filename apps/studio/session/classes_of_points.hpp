@@ -11,7 +11,7 @@ namespace pointskin::studio {
 enum PointClass : std::uint8_t { kKept = 0, kFlipped = 1, kDropped = 2 };
 
 struct ClassedPoints {
-  Cloud points;                        ///< of all parts, with normals as they are before
+  Cloud points;                         ///< of all parts, with normals as they are before
   std::vector<std::uint8_t> classes{};  ///< PointClass of each
 };
 

@@ -86,8 +86,11 @@ void MeshTeller::show_points(const Cloud& cloud, std::int64_t most_points) {
   do {
     const std::int64_t count = std::min(shown - from, from == 0 ? kFirstPoints : kPartPoints);
     const std::int64_t* first = order.data() + from;
-    wire::PointSet part{cloud.origin, chosen(cloud.positions, first, first + count),
-                        chosen(cloud.normals, first, first + count), {}, {}};
+    wire::PointSet part{cloud.origin,
+                        chosen(cloud.positions, first, first + count),
+                        chosen(cloud.normals, first, first + count),
+                        {},
+                        {}};
     for (std::int64_t i = 0; i < count && !colours.empty(); ++i) {
       const std::uint8_t* colour = colours.data() + 4 * first[i];
       part.colours.insert(part.colours.end(), colour, colour + 4);

@@ -67,8 +67,8 @@ void Previews::prepare_deformer() {
   Options options = cloud_.options();
   if (is_fast) options.depth = desk_.present().options().depth;
   options.progress = stopping(services_.queue);
-  deformer_ = std::make_unique<Deformer>(is_fast ? desk_.present().cloud() : cloud_.cloud(), options,
-                                         services_.workspace);
+  deformer_ =
+      std::make_unique<Deformer>(is_fast ? desk_.present().cloud() : cloud_.cloud(), options, services_.workspace);
   deformer_state_ = desk_.state_number();
   deformer_depth_ = options.depth;
 }
@@ -88,7 +88,7 @@ Json Previews::combined(const scene::Combine& combine) {
   options.reconstruction.progress = stopping(services_.queue);
   options.creases = combine.creases;
   options.coincidence_cells = combine.coincidence_cells;
-  const scene::Solid b = placed(*combine.solid, combine.placement);
+  const scene::Solid b = scene::placed(*combine.solid, combine.placement);
   const Cloud& a = cloud_.cloud();
   Booleans booleans(services_.workspace);
   const BooleanResult result = booleans.combine(a, operand_of(b), combine.op, options);

@@ -48,13 +48,14 @@ const scene::Scene& SceneDesk::present() const {
 SceneDesk::Opened SceneDesk::open(const scene::Document& document) {
   Opened opened;
   scene::ReadFacts facts;
-  Cloud base = load_base(document.base.clouds, {.shift = scene::parse_shift(document.base.shift)},
+  Cloud base = load_base(document.base.clouds, {.shift = scene::shift_of(document.base.shift)},
                          scene::MissingNormals::allowed, facts);
   opened.notices = std::move(facts.notices);
   opened.points = facts_of(base);
   opened.dropped = facts.not_finite + facts.no_normal;
   scene::SceneOptions options;
   options.reconstruction = document.options;
+  options.warm_start = document.warm_start;
   options.topology = false;  // measured here, once the page has the mesh
   options.progress = [this](const Progress& progress) { return progress_ == nullptr || (*progress_)(progress); };
   opened.scene = std::make_unique<scene::Scene>(std::move(base), options, services_.workspace);
@@ -220,9 +221,12 @@ bool SceneDesk::work_ahead() {
 
 scene::Document SceneDesk::document() const {
   const scene::Scene& scene = present();
-  scene::Document document{base_, first_options_, scene::option_keys(), {}, scene.done()};
-  for (std::size_t i = 0; i < scene.size(); ++i)
-    document.operations.push_back(scene::to_json(scene.operation(i), {}));
+  scene::Document document;
+  document.base = base_;
+  document.options = first_options_;
+  document.options_given = scene::option_keys();
+  document.done = scene.done();
+  for (std::size_t i = 0; i < scene.size(); ++i) document.operations.push_back(scene::to_json(scene.operation(i), {}));
   return document;
 }
 

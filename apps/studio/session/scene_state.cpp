@@ -33,8 +33,8 @@ Json SceneDesk::topology_json(std::size_t state) const {
 
 Json SceneDesk::record_json(std::size_t i) const {
   const scene::StepRecord& record = scene_->record(i);
-  Json json = {{"operation", record.operation}, {"added", record.added},     {"removed", record.removed},
-               {"flipped", record.flipped},     {"points", record.points},   {"triangles", record.triangles},
+  Json json = {{"operation", record.operation}, {"added", record.added},      {"removed", record.removed},
+               {"flipped", record.flipped},     {"points", record.points},    {"triangles", record.triangles},
                {"snapped", record.snapped},     {"before", topology_json(i)}, {"after", topology_json(i + 1)},
                {"notes", record.notes}};
   json["ms"] = {{"edit", record.edit_ms}, {"reconstruct", record.reconstruct_ms}, {"total", record.total_ms}};
@@ -49,9 +49,14 @@ Json SceneDesk::surface_json() const {
   const std::size_t done = scene_->done();
   if (done >= surfaces_.size() || !surfaces_[done]) return nullptr;
   const MeshReport& r = *surfaces_[done];
-  return {{"vertices", r.vertices},     {"triangles", r.triangles}, {"boundary_edges", r.boundary_edges},
-          {"closed", r.closed()},       {"manifold", r.manifold()}, {"watertight", r.watertight()},
-          {"volume", r.volume},         {"area", r.area}};
+  return {{"vertices", r.vertices},
+          {"triangles", r.triangles},
+          {"boundary_edges", r.boundary_edges},
+          {"closed", r.closed()},
+          {"manifold", r.manifold()},
+          {"watertight", r.watertight()},
+          {"volume", r.volume},
+          {"area", r.area}};
 }
 
 Json SceneDesk::state() const {
@@ -67,7 +72,8 @@ Json SceneDesk::state() const {
     clouds.push_back({{"name", name_of_cloud(source)}, {"file", source.file}, {"shape", source.shape}, {"box", box}});
   Json history = Json::array();
   for (std::size_t i = 0; i < scene_->size(); ++i) history.push_back(entry(i));
-  Json scene = {{"clouds", std::move(clouds)}, {"points", points_.count}, {"normals", points_.has_normals}, {"box", box}};
+  Json scene = {
+      {"clouds", std::move(clouds)}, {"points", points_.count}, {"normals", points_.has_normals}, {"box", box}};
   scene["shift"] = points_.origin;
   scene["dropped"] = dropped_;
   scene["options"] = scene::options_json(scene_->options());

@@ -57,6 +57,7 @@ class RunningServer {
 
   [[nodiscard]] int port() const { return server_.port(); }
   [[nodiscard]] std::string url() const { return server_.url(); }
+  [[nodiscard]] std::string url_for_browser() const { return server_.url_for_browser(); }
   [[nodiscard]] std::string token() const;
   /// "127.0.0.1" and the port.
   [[nodiscard]] std::string host() const;

@@ -131,28 +131,39 @@ TEST_F(StudioSecurity, WithoutTheCookieThereIsThePageAlone) {
   EXPECT_EQ(status("GET /blob/1", host() + "Cookie: a=b; " + server.cookie() + "; c=d\r\n"), 200);
 }
 
+/// What POST /session answers to `token`.
+Reply give(const RunningServer& server, const std::string& token) {
+  RawClient client(server.port());
+  return client.ask("POST /session HTTP/1.1\r\nHost: " + server.host() +
+                    "\r\nContent-Length: " + std::to_string(token.size()) + "\r\n\r\n" + token);
+}
+
 TEST_F(StudioSecurity, OnlyTheTokenGivesTheCookie) {
-  const auto give = [this](const std::string& token) {
-    RawClient client(server.port());
-    return client.ask("POST /session HTTP/1.1\r\n" + host() + "Content-Length: " + std::to_string(token.size()) +
-                      "\r\n\r\n" + token);
-  };
   const std::string token = server.token();
   std::string other = token;
   other[0] = other[0] == '0' ? '1' : '0';
   for (const std::string& wrong : Lines{"", other, token.substr(1), token + "0", token + "\n", token + token,
                                         std::string(32, '\0'), "\"" + token + "\""}) {
-    const Reply reply = give(wrong);
+    const Reply reply = give(server, wrong);
     EXPECT_EQ(reply.status, 401) << wrong;
     EXPECT_EQ(reply.header("set-cookie"), "");
   }
-  const Reply reply = give(token);
+  const Reply reply = give(server, token);
   EXPECT_EQ(reply.status, 204);
   const std::string cookie = reply.header("set-cookie");
   EXPECT_TRUE(cookie.starts_with("pointskin_" + std::to_string(server.port()) + "=")) << cookie;
   EXPECT_TRUE(cookie.ends_with("; HttpOnly; SameSite=Strict; Path=/")) << cookie;
   EXPECT_EQ(cookie.find(token), std::string::npos) << "the cookie tells the token";
-  EXPECT_EQ(give(token).status, 204) << "another tab of the same person";
+  EXPECT_EQ(give(server, token).status, 204) << "another tab of the same person";
+}
+
+TEST_F(StudioSecurity, TheSecretInTheBrowsersCommandLineIsGoodForOnce) {
+  const std::string url = server.url_for_browser();
+  const std::string once = url.substr(url.find('#') + 1);
+  EXPECT_NE(once, server.token());
+  EXPECT_EQ(give(server, once).status, 204);
+  EXPECT_EQ(give(server, once).status, 401);
+  EXPECT_EQ(give(server, server.token()).status, 204);
 }
 
 TEST_F(StudioSecurity, TokensAreLongAndNeverTheSame) {

@@ -15,7 +15,7 @@
 
 #include "scene/options.hpp"
 #include "scene/sha256.hpp"
-#include "shapes/shapes.hpp"
+#include "shapes.hpp"
 
 namespace pointskin::studio {
 namespace {

@@ -165,7 +165,7 @@ class Scene::Impl {
 
   /// Does operations, or undoes them, until `target` of the scene are done.
   void walk(Segment& segment, std::size_t target) {
-    if (target > segment.done()) segment.settle(options_, workspace_);
+    if (target > segment.done() || segment.stage()->mesh == nullptr) segment.settle(options_, workspace_);
     while (segment.done() > target) segment.undo();
     while (segment.done() < target)
       if (!segment.redo()) segment.apply(edit_of(history_.step(segment.done()).operation));

@@ -12,6 +12,7 @@ import { chooseFiles, openPlaces, resume, uploadAll } from "./opening";
 import { startSequence } from "./sequence";
 
 export function joined(folder: string, name: string): string {
+  if (name === "") return folder;
   return folder === "" || folder === "." ? name : `${folder.replace(/\/$/, "")}/${name}`;
 }
 

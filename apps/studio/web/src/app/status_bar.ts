@@ -115,9 +115,14 @@ export class StatusBar extends Part {
         gap: 8px;
         color: var(--text-2);
       }
+      .fact,
+      .times,
+      .device {
+        flex: none;
+      }
       .device {
         color: var(--text-2);
-        max-width: 26ch;
+        max-width: 30ch;
         overflow: hidden;
         text-overflow: ellipsis;
       }

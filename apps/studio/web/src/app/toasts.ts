@@ -17,7 +17,7 @@ export function chipText(record: StepRecord): string {
   const { before, after } = record;
   if (before.genus !== after.genus) parts.push(`genus ${before.genus} → ${after.genus}`);
   if (before.components !== after.components) parts.push(`components ${before.components} → ${after.components}`);
-  return parts.length > 0 ? parts.join(", ") : "same topology, no points added or removed";
+  return parts.length > 0 ? parts.join(", ") : "topology unchanged";
 }
 
 @customElement("psk-toasts")
@@ -77,6 +77,7 @@ export class Toasts extends Part {
       }
     `,
   ];
+  private chipTimed = 0;
   private readonly timers = new Map<number, number>();
 
   override render() {
@@ -89,6 +90,11 @@ export class Toasts extends Part {
   }
 
   override updated(): void {
+    const { chip } = this.store;
+    if (chip && chip.id !== this.chipTimed) {
+      this.chipTimed = chip.id;
+      setTimeout(() => this.store.chip?.id === chip.id && this.store.update({ chip: null }), 12_000);
+    }
     for (const { id, level } of this.store.notices) {
       if (this.timers.has(id) || level === "error") continue;
       this.timers.set(id, window.setTimeout(() => this.store.dropNotice(id), level === "info" ? 5000 : 9000));

@@ -37,6 +37,7 @@ export interface Decoded {
   tintStride: number;
   values: Record<string, Float32Array>;
   ranges: Record<string, [number, number]>; // 2nd to 98th percentile of each of values
+  closed: boolean; // no edge without a neighbour
   bytes: number;
   transferMs: number;
   decodeMs: number;
@@ -101,6 +102,7 @@ function emptyOf(header: BlobHeader, bytes: number): Decoded {
     tintStride: 1,
     values: {},
     ranges: {},
+    closed: false,
     bytes,
     transferMs: 0,
     decodeMs: 0,
@@ -125,7 +127,28 @@ export async function decodeBlob(bytes: Uint8Array): Promise<Decoded> {
       decoded.ranges[name] = rangeOf(values);
     }
   }
+  if (decoded.index) decoded.closed = isClosed(decoded.index);
   return decoded;
+}
+
+/// Whether every edge is passed as often in one direction as in the other. Each direction of an edge gets a number that
+/// is the negative of the other's, and a closed surface sums to 0; an open one does so once in 2^32. Needs no memory.
+export function isClosed(index: Uint32Array): boolean {
+  let sum = 0;
+  for (let i = 0; i < index.length; i += 3) {
+    const [a, b, c] = [index[i]!, index[i + 1]!, index[i + 2]!];
+    sum = (sum + edgeNumber(a, b) + edgeNumber(b, c) + edgeNumber(c, a)) | 0;
+  }
+  return index.length > 0 && sum === 0;
+}
+
+function edgeNumber(a: number, b: number): number {
+  const [low, high] = a < b ? [a, b] : [b, a];
+  let h = Math.imul(low, 0x9e3779b1) ^ Math.imul(high + 0x7f4a7c15, 0x85ebca77);
+  h = Math.imul(h ^ (h >>> 15), 0x2c1b3c6d);
+  h = Math.imul(h ^ (h >>> 13), 0x297a2d39);
+  h ^= h >>> 16;
+  return a < b ? h : -h;
 }
 
 /// The buffers that go to the page with the message, each once.

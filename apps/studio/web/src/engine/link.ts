@@ -60,6 +60,7 @@ export class Link {
       const step = scene.history[scene.done - 1];
       if (step?.record) this.store.chip = { id: this.chips++, operation: step.operation.op, record: step.record };
     }
+    if (before && scene && scene.done < before.done) this.store.update({ chip: null });
     if (!scene || scene.clouds.length === 0) this.clear();
     this.store.update({ scene });
   }

@@ -80,7 +80,7 @@ export class Store extends EventTarget {
   meshAttributes: string[] = []; // names of values on the present mesh, and "colour"
   legend: { title: string; low: number; high: number } | null = null;
   view: ViewSettings = {
-    show: "both",
+    show: "mesh", // points until there is one
     colour: "plain",
     pointColour: "plain",
     pointSize: 2,

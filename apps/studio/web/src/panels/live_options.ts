@@ -29,6 +29,12 @@ export class LiveOptions {
     if (!this.frame) this.frame = requestAnimationFrame(() => void this.preview());
   }
 
+  /// A control moves whose effect the page shows by itself.
+  hold(patch: Options): void {
+    this.merge(patch);
+    clearTimeout(this.timer);
+  }
+
   /// A control rests.
   change(patch: Options): void {
     this.merge(patch);

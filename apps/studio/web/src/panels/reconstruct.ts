@@ -95,11 +95,14 @@ function bars({ store }: StudioContext, trim: number) {
 
 function trimControl(context: StudioContext) {
   const trim = Number(context.store.options.trim ?? 0);
-  const show = (value: number) => {
-    const { histogram } = context.store;
-    const applied = Number(context.store.scene?.options.trim ?? 0);
-    context.viewport.surface.setTrim(histogram && value > applied ? densityOf(histogram, value) : -1);
+  // Tinting says it at once where the mesh has what will go; what is cut away already the engine must bring back.
+  const show = (value: number): boolean => {
+    const { histogram, scene } = context.store;
+    const { surface } = context.viewport;
+    const tinted = !!histogram && value > Number(scene?.options.trim ?? 0) && !!surface.decoded?.values["density"];
+    surface.setTrim(tinted ? densityOf(histogram, value) : -1);
     context.viewport.requestRender();
+    return tinted;
   };
   const spec = {
     label: "Trim",
@@ -110,8 +113,8 @@ function trimControl(context: StudioContext) {
     max: 0.5,
     step: 0.005,
     input: (value: number) => {
-      show(value);
-      context.live.input({ trim: value });
+      if (show(value)) context.live.hold({ trim: value });
+      else context.live.input({ trim: value });
     },
     change: (value: number) => {
       show(value);

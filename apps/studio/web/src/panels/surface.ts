@@ -124,7 +124,7 @@ export function surfacePanel(context: StudioContext) {
       ["Genus", topology ? count(topology.genus) : "–"],
       ["Components", topology ? count(topology.components) : "–"],
       ["Euler number", topology ? topology.euler.toString().replace("-", "−") : "–"],
-      ["Closed", topology ? (topology.euler === 2 * (topology.components - topology.genus) ? "yes" : "no: it has edges") : "–"],
+      ["Watertight", context.viewport.surface.decoded?.closed ? "yes" : "no, it has edges", "surface-watertight"],
       ["Sent", bytes(mesh.bytes)],
     ])}
     ${shown ? html`<p class="hint" data-testid="shown-coarser">Shown with ${count(mesh.triangles)} triangles; saving writes all.</p>` : nothing}

@@ -47,7 +47,7 @@ export function iconButton(spec: ButtonSpec & { icon: string }): TemplateResult 
 }
 
 export function switchRow(spec: Named & { value: boolean; change(value: boolean): void }): TemplateResult {
-  return html`<div class="row" title=${spec.title ?? ""}>
+  return html`<div class="row wide" title=${spec.title ?? ""}>
     <span class="label" aria-hidden="true">${spec.label}</span>
     <button
       class="switch"

@@ -107,6 +107,9 @@ export const base = css`
     text-overflow: ellipsis;
     white-space: nowrap;
   }
+  .row.wide {
+    grid-template-columns: minmax(0, 1fr) auto;
+  }
   .slide {
     display: grid;
     grid-template-columns: minmax(0, 1fr) 68px;

@@ -118,11 +118,20 @@ export class ViewCamera {
     return { origin: eye, direction: [d[0] / length, d[1] / length, d[2] / length] };
   }
 
-  /// Shows a box whole.
+  /// Shows a box whole, as seen from the present side, with a margin.
   fit(box: Box): void {
     this.target = centreOf(box);
-    const narrow = Math.min(1, this.width / this.height);
-    this.distance = (1.08 * radiusOf(box)) / Math.sin(kFov / 2) / narrow;
+    const [right, up, back] = this.frame();
+    const tangent = Math.tan(kFov / 2) / 1.12;
+    const wide = tangent * (this.width / this.height);
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = [0, 1, 2].map((i) => ((corner >> i) & 1 ? box.upper[i]! : box.lower[i]!)) as Vec3;
+      const offset = add(at, this.target, -1);
+      const nearer = this.orthographic ? 0 : dot(back, offset);
+      distance = Math.max(distance, Math.abs(dot(right, offset)) / wide + nearer, Math.abs(dot(up, offset)) / tangent + nearer);
+    }
+    this.distance = Math.max(distance, 0.5 * radiusOf(box));
   }
 
   /// Near and far plane that hold a box, world units from the eye.

@@ -32,6 +32,7 @@ export class Controls {
   private pointer = -1;
   private last: Touch = { x: 0, y: 0 };
   private pivot: Vec3 = [0, 0, 0];
+  private anchor: { x: number; y: number; time: number; point: Vec3 } | null = null;
   private readonly touches = new Map<number, Touch>();
 
   constructor(
@@ -142,9 +143,18 @@ export class Controls {
     this.viewport.land();
     const { x, y } = this.place(event);
     const { view } = this.viewport;
-    const towards = this.viewport.pick(x, y)?.point ?? view.pointAt(x, y);
-    view.dolly(wheelFactor(event), towards);
+    view.dolly(wheelFactor(event), this.wheelAnchor(x, y, event.timeStamp));
     this.changed();
+  }
+
+  /// What is under the cursor, found once for a run of the wheel: while it turns that point stays under the cursor.
+  private wheelAnchor(x: number, y: number, time: number): Vec3 {
+    const { view } = this.viewport;
+    const { anchor } = this;
+    const same = anchor !== null && time - anchor.time < 400 && Math.hypot(x - anchor.x, y - anchor.y) < 3;
+    const point = same ? anchor.point : (this.viewport.pick(x, y)?.point ?? view.pointAt(x, y));
+    this.anchor = { x, y, time, point };
+    return point;
   }
 
   private doubleClick(event: MouseEvent): void {

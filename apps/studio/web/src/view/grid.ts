@@ -34,10 +34,10 @@ export class GridLayer {
     depthWrite: false,
     uniforms: { colour: { value: new THREE.Vector3(0.5, 0.5, 0.5) } },
     vertexShader: `varying float fade;
-      void main() { fade = 1.0 - smoothstep(0.2, 1.0, length(position.xy) / ${kHalf}.0);
+      void main() { fade = 1.0 - smoothstep(0.12, 0.85, length(position.xy) / ${kHalf}.0);
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
     fragmentShader: `uniform vec3 colour; varying float fade;
-      void main() { gl_FragColor = vec4(colour, 0.42 * fade); }`,
+      void main() { gl_FragColor = vec4(colour, 0.26 * fade); }`,
   });
   private readonly lines = new THREE.LineSegments(lineGeometry(), this.material);
 

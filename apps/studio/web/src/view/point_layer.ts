@@ -13,6 +13,7 @@ export class PointLayer {
   private readonly material = pointsMaterial("#9fb4cc");
   private parts: { points: THREE.Points; decoded: Decoded; from: number }[] = [];
   private settings: ViewSettings | null = null;
+  private alone = true;
 
   get shown(): number {
     return this.parts.reduce((sum, part) => sum + part.decoded.vertices, 0);
@@ -37,11 +38,17 @@ export class PointLayer {
 
   apply(settings: ViewSettings): void {
     this.settings = settings;
-    this.group.visible = settings.show !== "mesh";
+    this.group.visible = settings.show !== "mesh" || this.alone;
     this.material.uniforms["mode"]!.value = this.modeOf(settings);
     for (const { points, decoded } of this.parts) {
       if (settings.pointColour === "added") showValues(points.geometry, decoded, "added");
     }
+  }
+
+  /// Without a mesh the points are shown in any case.
+  setAlone(alone: boolean): void {
+    this.alone = alone;
+    if (this.settings) this.apply(this.settings);
   }
 
   /// @param distance  at which points have the size that is set, world units

@@ -35,7 +35,15 @@ export class Section {
     const away = new THREE.Vector3(...plane.point).sub(centre).dot(normal);
     this.outline.position.copy(centre).addScaledVector(normal, away);
     this.outline.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
-    this.outline.scale.setScalar(0.8 * radiusOf(box));
+    const turn = this.outline.quaternion.clone().invert();
+    const half = new THREE.Vector3();
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = [0, 1, 2].map((i) => ((corner >> i) & 1 ? box.upper[i]! : box.lower[i]!)) as Vec3;
+      const local = new THREE.Vector3(...at).sub(centre).applyQuaternion(turn);
+      half.max(new THREE.Vector3(Math.abs(local.x), Math.abs(local.y), 0));
+    }
+    const margin = 0.04 * radiusOf(box);
+    this.outline.scale.set(half.x + margin, half.y + margin, 1);
     this.outline.updateMatrixWorld(true);
   }
 }

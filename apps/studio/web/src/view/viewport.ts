@@ -12,6 +12,9 @@ import { PointLayer } from "./point_layer";
 import { Section } from "./section";
 import { SurfaceLayer } from "./surface_layer";
 
+// Colours are sRGB from the style sheet to the canvas; nothing is converted on the way.
+THREE.ColorManagement.enabled = false;
+
 const kEmptyBox: Box = { lower: [-1, -1, -1], upper: [1, 1, 1] };
 
 export class Viewport {
@@ -62,6 +65,7 @@ export class Viewport {
 
   setMesh(decoded: Decoded | null): void {
     this.surface.set(decoded);
+    this.points.setAlone(!decoded || decoded.triangles === 0);
     this.contentChanged();
   }
 

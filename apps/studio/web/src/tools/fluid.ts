@@ -27,7 +27,7 @@ class FluidTool implements Tool {
   readonly title = "Water";
   readonly key = "w";
   readonly icon = "M3 8c3-3 6 3 9 0s6 3 9 0M3 13c3-3 6 3 9 0s6 3 9 0M3 18c3-3 6 3 9 0s6 3 9 0";
-  readonly hint = "Drag pushes or stirs the water or moves the obstacle; [ ] radius, P pauses, Backspace restarts";
+  readonly hint = "Drag to push, stir or move the obstacle; [ ] radius, P pauses, Backspace restarts";
   private scene = "dam-break";
   private particles = 20_000;
   private hand: Hand = "push";
@@ -162,7 +162,7 @@ class FluidTool implements Tool {
       return this.send({ obstacle: insideTank(to, facts.tank, radius) });
     }
     const now = performance.now() / 1000;
-    const force: Force | null = forceOf(this.hand, held.at, to, now - held.seconds, view.back, this.radius, this.strength);
+    const force: Force | null = forceOf(this.hand, held.at, to, now - held.seconds, { radius: this.radius, strength: this.strength, back: view.back });
     this.held = { ...held, at: to, seconds: now };
     this.send({ push: force ? [force] : [] });
   }

@@ -1,20 +1,11 @@
 // The bar at the bottom: what runs, what there is, what each stage took, on which device.
 import { css, html, nothing } from "lit";
 import { customElement } from "lit/decorators.js";
-import type { StageTimes } from "../engine/protocol";
 import { count, duration, percent } from "../ui/format";
 import { styled } from "../ui/styled";
 import { base } from "../ui/styles";
 import { Part, tell } from "./context";
-
-export const kStages = ["octree", "splat", "solve", "extract", "encode", "transfer", "decode", "draw"] as const;
-
-/// The stages that took any time, with their share of the sum.
-export function stageShares(ms: StageTimes): { stage: string; ms: number; share: number }[] {
-  const known = kStages.flatMap((stage) => (ms[stage] ? [{ stage, ms: ms[stage] }] : []));
-  const sum = known.reduce((total, { ms: value }) => total + value, 0);
-  return known.map((entry) => ({ ...entry, share: entry.ms / sum }));
-}
+import { stageShares } from "./stages";
 
 @customElement("psk-status-bar")
 export class StatusBar extends Part {

@@ -3,7 +3,7 @@ import { css, html, nothing } from "lit";
 import type { StudioContext } from "../app/context";
 import { tell } from "../app/context";
 import type { HistoryStep, Operation, Options } from "../engine/protocol";
-import { chipText } from "../app/toasts";
+import { chipText } from "../app/chip";
 import { duration } from "../ui/format";
 
 export const historyStyles = css`

@@ -6,7 +6,7 @@ import { button, facts, segmentsRow, selectRow, sliderRow } from "../ui/controls
 import { count, measure } from "../ui/format";
 import { normalsCard } from "./normals_card";
 
-const triple = (v: Vec3) => v.map(measure).join("  ");
+const place = (v: Vec3) => v.map(measure).join(", ");
 
 function cloud(info: CloudInfo) {
   const size = info.box.upper.map((value, i) => value - info.box.lower[i]!) as Vec3;
@@ -14,12 +14,12 @@ function cloud(info: CloudInfo) {
   const rows: [string, unknown, string?][] = [
     ["Points", count(info.points), "cloud-points"],
     ["Normals", info.normals ? "yes" : "none"],
-    ["Size", triple(size)],
-    ["From", triple(info.box.lower)],
-    ["To", triple(info.box.upper)],
+    ["Size", size.map(measure).join(" × ")],
+    ["From", place(info.box.lower)],
+    ["To", place(info.box.upper)],
     ["Dropped", count(info.dropped), "cloud-dropped"],
   ];
-  if (shifted) rows.push(["Shift", triple(info.shift)]);
+  if (shifted) rows.push(["Shift", place(info.shift)]);
   return html`<h3>${info.name}</h3>
     ${facts(rows)}`;
 }

@@ -45,13 +45,21 @@ export class LiveOptions {
   /// Back to what is applied. @returns false if nothing was pending
   cancel(): boolean {
     if (!this.active) return false;
-    this.drop();
-    void this.connection.request("preview_end").catch(() => undefined);
+    this.goBack();
     return true;
   }
 
   private merge(patch: Options): void {
     this.store.update({ pendingOptions: { ...this.store.pendingOptions, ...patch } });
+  }
+
+  /// The committed surface again, without what was shown while the hand moved.
+  private goBack(): void {
+    const trimmed = this.store.pendingOptions?.trim !== undefined;
+    this.drop();
+    if (!this.store.scene) return;
+    void this.connection.request("preview_end").catch(() => undefined);
+    if (trimmed) void this.connection.request("values_end").catch(() => undefined);
   }
 
   private drop(): void {
@@ -79,11 +87,7 @@ export class LiveOptions {
     this.frame = 0;
     const applied = this.store.scene?.options ?? {};
     const same = Object.entries(patch).every(([key, value]) => applied[key] === value);
-    if (same || !this.store.scene) {
-      this.drop();
-      if (this.store.scene) void this.connection.request("preview_end").catch(() => undefined);
-      return;
-    }
+    if (same || !this.store.scene) return this.goBack();
     await this.send(patch, true);
     if (this.store.pendingOptions === patch) this.drop();
   }
@@ -94,7 +98,7 @@ export class LiveOptions {
     } catch (error) {
       if (error instanceof EngineError && (error.quiet || error.code === "lost")) return;
       this.notice("error", (error as Error).message);
-      if (final) this.drop();
+      if (final) this.goBack();
     }
   }
 }

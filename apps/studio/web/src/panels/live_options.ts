@@ -11,6 +11,7 @@ export class LiveOptions {
   private timer = 0;
   private frame = 0;
   private sending = false;
+  private moving = false; // between the first input and the change that ends it
 
   constructor(
     private readonly connection: Connection,
@@ -25,6 +26,7 @@ export class LiveOptions {
   /// A control moves.
   input(patch: Options): void {
     this.merge(patch);
+    this.moving = true;
     clearTimeout(this.timer);
     if (!this.frame) this.frame = requestAnimationFrame(() => void this.preview());
   }
@@ -32,12 +34,14 @@ export class LiveOptions {
   /// A control moves whose effect the page shows by itself.
   hold(patch: Options): void {
     this.merge(patch);
+    this.moving = false;
     clearTimeout(this.timer);
   }
 
   /// A control rests.
   change(patch: Options): void {
     this.merge(patch);
+    this.moving = false;
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.commit(), kRest);
   }
@@ -63,6 +67,7 @@ export class LiveOptions {
   }
 
   private drop(): void {
+    this.moving = false;
     clearTimeout(this.timer);
     cancelAnimationFrame(this.frame);
     this.frame = 0;
@@ -72,7 +77,7 @@ export class LiveOptions {
   private async preview(): Promise<void> {
     this.frame = 0;
     const patch = this.store.pendingOptions;
-    if (!patch || !this.store.scene || this.sending) return;
+    if (!patch || !this.moving || !this.store.scene || this.sending) return;
     this.sending = true;
     await this.send(patch, false);
     this.sending = false;

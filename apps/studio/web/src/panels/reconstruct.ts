@@ -2,6 +2,7 @@
 import { css, html, nothing, svg } from "lit";
 import type { StudioContext } from "../app/context";
 import { tell } from "../app/context";
+import { EngineError } from "../engine/connection";
 import type { Options } from "../engine/protocol";
 import { segmentsRow, slider, sliderRow, numberField, switchRow } from "../ui/controls";
 import { bytes, duration, percent } from "../ui/format";
@@ -170,7 +171,7 @@ export function reconstructPanel(context: StudioContext) {
       change: live(context, "fixed_screening").change,
     })}
     ${trimControl(context)}
-    ${pendingOptions ? html`<p class="hint pending" data-testid="options-pending">Preview. Release to apply, Esc to go back.</p>` : nothing}`;
+    ${pendingOptions ? html`<p class="hint pending" data-testid="options-pending">Not applied yet. Esc goes back.</p>` : nothing}`;
 }
 
 const asked = new WeakMap<StudioContext, { estimate: string; histogram: unknown }>();
@@ -190,6 +191,10 @@ export function refreshReconstruct(context: StudioContext): void {
     connection.request("estimate", { options: { depth } }).then((estimate) => store.update({ estimate })).catch((error) => tell(context, error));
   }
   if (version !== before.histogram) {
-    connection.request("histogram").then((histogram) => store.update({ histogram })).catch(() => store.update({ histogram: null }));
+    connection.request("histogram").then((histogram) => store.update({ histogram })).catch((error) => {
+      // Something more urgent came between: asked again with the next change.
+      if (error instanceof EngineError && error.quiet) asked.delete(context);
+      else store.update({ histogram: null });
+    });
   }
 }

@@ -45,8 +45,8 @@ function tetrahedron(): Uint8Array {
     "mesh",
     [
       { name: "positions", data: bytesOf(kPositions), count: 4, stride: 8, type: "u16x4" },
-      { name: "normals", data: new Uint8Array([1, 2, 3, 4, 5, 6, 7, 8]), count: 4, stride: 2, type: "u8x2" },
-      { name: "triangles", data: bytesOf(kTetrahedron), count: 12, stride: 4, type: "u32" },
+      { name: "normals", data: new Uint8Array(16), count: 4, stride: 4, type: "u8x4" },
+      { name: "triangles", data: bytesOf(kTetrahedron), count: 4, stride: 12, type: "u32x3" },
       { name: "values:density", data: bytesOf(new Float32Array([1, 2, 3, 4])), count: 4, stride: 4, type: "f32" },
     ],
     { vertices: 4, triangles: 4 },
@@ -59,7 +59,7 @@ test("a raw blob decodes into views on its own bytes", async () => {
   assert.deepEqual([...decoded.index!], [...kTetrahedron]);
   assert.deepEqual([...decoded.values["density"]!], [1, 2, 3, 4]);
   assert.deepEqual(decoded.box, { lower: [0, 0, 0], upper: [1, 2, 3] });
-  assert.equal(decoded.normalStride, 2);
+  assert.equal(decoded.normalStride, 4);
   assert.equal(decoded.closed, true);
   assert.equal(buffersOf(decoded).length, 1, "nothing was copied");
 });
@@ -70,7 +70,7 @@ test("coded vertices and indices decode to what was coded", async () => {
     "mesh",
     [
       { name: "positions", data: MeshoptEncoder.encodeVertexBuffer(bytesOf(kPositions), 4, 8), count: 4, stride: 8, codec: "vertex", type: "u16x4" },
-      { name: "triangles", data: MeshoptEncoder.encodeIndexBuffer(bytesOf(kTetrahedron), 12, 4), count: 12, stride: 4, codec: "index", type: "u32" },
+      { name: "triangles", data: MeshoptEncoder.encodeIndexBuffer(bytesOf(kTetrahedron), 12, 4), count: 4, stride: 12, codec: "index", type: "u32x3" },
     ],
     { vertices: 4, triangles: 4 },
   );

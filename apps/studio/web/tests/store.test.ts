@@ -6,6 +6,7 @@ import { Store } from "../src/engine/store";
 import { densityOf, placeOf } from "../src/panels/histogram";
 import { chipText } from "../src/app/chip";
 import { nextFrame } from "../src/app/sequence";
+import { joined, parentOf, withExtension } from "../src/app/paths";
 import { stageShares } from "../src/app/stages";
 
 const scene = (done: number, size: number) => ({ done, history: Array(size).fill({}), options: { depth: 8, trim: 0 }, clouds: [] }) as unknown as SceneState;
@@ -55,20 +56,21 @@ test("attempts to connect come at 250 ms first and every 8 s at last", () => {
 
 test("the chip says what changed and no more", () => {
   const topology = (components: number, genus: number) => ({ components, genus, euler: 2 * (components - genus) });
-  const record = { operation: "guide", added: 1204, removed: 0, points: 1, triangles: 1, edit_ms: 1, reconstruct_ms: 1, total_ms: 2 };
+  const record = { operation: "guide", added: 1204, removed: 0, points: 1, triangles: 1, ms: { edit: 1, reconstruct: 1, total: 2 } };
   const of = (patch: object) => chipText({ ...record, before: topology(2, 3), after: topology(1, 1), ...patch } as StepRecord);
   assert.equal(of({}), "+1,204 points, genus 3 → 1, components 2 → 1");
   assert.equal(of({ added: 0, removed: 7, after: topology(2, 3) }), "−7 points");
   assert.equal(of({ added: 0, after: topology(2, 3) }), "topology unchanged");
+  assert.equal(of({ after: null }), "+1,204 points", "until it is measured");
+  assert.equal(of({ added: 0, flipped: 5, after: null }), "5 normals turned");
 });
 
-test("a quantile of the densities is found between the engine's, or from the bars", () => {
-  const histogram: Histogram = { densities: { edges: [1, 10, 100], counts: [10, 30], log: true }, quantiles: [[0.1, 2], [0.5, 20]] };
-  assert.equal(densityOf(histogram, 0), 1);
+test("a quantile of the densities is found between the engine's", () => {
+  const histogram: Histogram = { edges: [1, 10, 100], shares: [0.25, 0.75], trim: [[0, 0], [0.1, 2], [0.5, 20]] };
+  assert.equal(densityOf(histogram, 0), 0);
+  assert.equal(densityOf(histogram, 0.05), 1);
   assert.ok(Math.abs(densityOf(histogram, 0.3) - 11) < 1e-12);
-  const bare: Histogram = { densities: histogram.densities };
-  assert.equal(densityOf(bare, 0.25), 10);
-  assert.equal(densityOf(bare, 1), 100);
+  assert.equal(densityOf(histogram, 0.9), 20);
   assert.equal(placeOf(histogram, 10), 0.5);
   assert.equal(placeOf(histogram, 0.5), 0);
   assert.equal(placeOf(histogram, 1000), 1);
@@ -87,4 +89,14 @@ test("stages are shares of what was measured", () => {
     { stage: "octree", ms: 10, share: 0.25 },
     { stage: "solve", ms: 30, share: 0.75 },
   ]);
+});
+
+test("folders end at the roots", () => {
+  assert.equal(parentOf("/scans/old", ["/scans"]), "/scans");
+  assert.equal(parentOf("/scans", ["/scans"]), null);
+  assert.equal(parentOf("/scans2/x", ["/scans"]), null);
+  assert.equal(parentOf("/a", ["/"]), "/");
+  assert.equal(joined("/scans/", "a.ply"), "/scans/a.ply");
+  assert.equal(joined("", "a.ply"), "a.ply");
+  assert.equal(withExtension("hand.v2.ply", ".obj"), "hand.v2.obj");
 });

@@ -1,7 +1,7 @@
 // The stages from points to pixels, in their order.
 import type { StageTimes } from "../engine/protocol";
 
-export const kStages = ["octree", "splat", "solve", "extract", "encode", "transfer", "decode", "draw"] as const;
+export const kStages = ["simulate", "surface", "octree", "splat", "solve", "extract", "encode", "transfer", "decode", "draw"] as const;
 
 /// The stages that took any time, with their share of the sum.
 export function stageShares(ms: StageTimes): { stage: string; ms: number; share: number }[] {

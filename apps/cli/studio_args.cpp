@@ -4,7 +4,8 @@ namespace pointskin::cli {
 
 OptionTable studio_options(StudioArgs& args) {
   return {{"Files",
-           {clouds_row(args.clouds, {}), option("--demo", "open a generated shape, if there is no CLOUD", &args.demo),
+           {option("CLOUD", "clouds to open, merged; others can be opened in the page", &args.clouds),
+            option("--demo", "open a generated shape, if there is no CLOUD", &args.demo),
             option("--root DIR", "folder that pages may read and write (repeatable) [default those of CLOUD]",
                    &args.roots, {}, {.check = needs_a_name}),
             option("--session FILE", "journal of all that is done, to go on later [default a new one]", &args.session,

@@ -141,7 +141,7 @@ Json to_json(const Document& document, const fs::path& folder) {
 
 void write_document(const std::string& path, const Document& document) {
   const fs::path folder = fs::absolute(path).parent_path();
-  write_file_atomically(path, to_json(document, folder).dump(2) + "\n");
+  write_file_atomically(path, json_text(to_json(document, folder), 2) + "\n");
 }
 
 std::vector<std::string> check_clouds(const Base& base) {

@@ -43,7 +43,7 @@ void sync_folder(const std::string& path) {
   if (!synced) fail(folder, "cannot be synced");
 }
 
-std::string line_of(const Json& json) { return json.dump() + "\n"; }
+std::string line_of(const Json& json) { return json_text(json, -1) + "\n"; }
 
 /// The lines that a journal with this beginning has.
 std::string lines_of(const Document& beginning) {

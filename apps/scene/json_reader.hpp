@@ -59,6 +59,9 @@ class JsonReader {
 /// The bytes of the file `path`; "-" is stdin. @throws Error invalid_input if it cannot be read
 std::string read_text(const std::string& path);
 
+/// `json` as text; bytes of file names that are no UTF-8 are replaced. @param indent  -1: in one line
+std::string json_text(const nlohmann::ordered_json& json, int indent);
+
 /// `text` as JSON. @param name  of the file, for errors @throws Error invalid_input, with the byte, if it is none
 nlohmann::json parse_json(const std::string& text, const std::string& name);
 

@@ -118,8 +118,7 @@ Json Connection::receive(const std::function<bool(const Json&)>& wanted) {
   while (true) {
     Json message = receive();
     const std::string event = message.value("event", "");
-    if (event == "mesh") send("ack", {{"version", message["version"]}});
-    if (event == "frame") send("ack", {{"frame", message["index"]}});
+    if (event == "mesh" || event == "frame") send("ack", {{"version", message["version"]}});
     if (wanted(message)) return message;
   }
 }

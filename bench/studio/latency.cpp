@@ -71,7 +71,7 @@ void measure_strokes(Connection& connection, const Box& box, int strokes) {
     fetch(connection, mesh);
     waited.push_back(ms_since(start));
     const Json reply = connection.receive([id](const Json& message) { return message.value("id", 0) == id; });
-    engine.push_back(reply["record"]["ms"]["total"]);
+    engine.push_back(reply["record"]["total_ms"]);
     connection.ask("undo");
   }
   print_times("stroke to decoded mesh", waited);

@@ -24,9 +24,9 @@ class Server::Running {
 
   /// @param secret  that the page exchanges for a cookie
   [[nodiscard]] std::string url(const std::string& secret) const {
-    const net::ip::address address = acceptors_.front().local_endpoint().address();
-    const std::string text = address.is_unspecified() ? "127.0.0.1" : address.to_string();
-    const std::string host = address.is_v6() && !address.is_unspecified() ? "[" + text + "]" : text;
+    std::string host = options_.hosts.front();
+    if (host == "0.0.0.0" || host == "::") host = "127.0.0.1";
+    if (host.find(':') != std::string::npos) host = "[" + host + "]";
     return "http://" + host + ":" + std::to_string(port_) + "/#" + secret;
   }
 

@@ -101,7 +101,7 @@ Json problems_json(const std::vector<ProblemRegion>& regions) {
                     {"centroid", region.centroid_world},
                     {"lower", region.lower_world},
                     {"upper", region.upper_world},
-                    {"normal", region.mean_normal},
+                    {"mean_normal", region.mean_normal},
                     {"views", std::move(views)}});
   }
   return list;
@@ -140,7 +140,8 @@ Json density_histogram(const Mesh& mesh, int bins) {
   }
   Json edges = Json::array();
   for (int i = 0; i <= bins; ++i) edges.push_back(std::exp(from + i * step));
-  return {{"edges", edges}, {"shares", shares}, {"trim", trim_thresholds(density, area)}};
+  return {{"densities", {{"edges", edges}, {"counts", shares}, {"log", true}}},
+          {"quantiles", trim_thresholds(density, area)}};
 }
 
 std::optional<Place> first_hit(const Mesh& mesh, const Vec3d& origin, const Vec3d& direction) {
@@ -191,6 +192,7 @@ Json estimate_json(const Cloud& cloud, const Options& options, const TimeModel& 
   constexpr int kAround = 3;
   constexpr int kDeepest = 20;
   Json depths = Json::array();
+  Json present = {{"bytes", nullptr}, {"ms", nullptr}};
   for (int depth = std::max(1, options.depth - kAround); depth <= std::min(kDeepest, options.depth + kAround);
        ++depth) {
     Options tried = options;
@@ -204,9 +206,11 @@ Json estimate_json(const Cloud& cloud, const Options& options, const TimeModel& 
     } catch (const Error& error) {
       if (error.code() != ErrorCode::over_limit) throw;
     }
+    if (depth == options.depth) present = {{"bytes", bytes}, {"ms", ms}};
     depths.push_back({{"depth", depth}, {"bytes", bytes}, {"ms", ms}});
   }
-  return {{"depths", depths}};
+  present["depths"] = std::move(depths);
+  return present;
 }
 
 }  // namespace pointskin::studio

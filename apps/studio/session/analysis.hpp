@@ -22,7 +22,7 @@ nlohmann::ordered_json comparison_json(const MeshComparison& comparison);
 
 /// Shares of the surface's area by the density of the samples there, and what a trim would cut.
 ///
-/// {"edges": [bins + 1], "shares": [bins], "trim": [[q, density], ...]}: edges are equally far apart in the logarithm;
+/// {"densities": {"edges": [bins + 1], "counts": [bins], "log": true}, "quantiles": [[q, density], ...]}: edges are equally far apart in the logarithm;
 /// below the density of an entry the surface is cut with that trim. The q-th part of the samples lies at densities up to
 /// the threshold times 1.75^2, and a piece of surface holds its area times its density of them.
 /// @param mesh  not trimmed, with the attribute "density"
@@ -51,7 +51,7 @@ class TimeModel {
   double count_ = 0, bytes_ = 0, ms_ = 0, bytes_squared_ = 0, bytes_ms_ = 0;
 };
 
-/// What depths around that of `options` would take: {"depths": [{"depth", "bytes", "ms"}, ...]}, ms null where nothing
+/// What depths around that of `options` would take: {"bytes", "ms", "depths": [{"depth", "bytes", "ms"}, ...]}, ms null where nothing
 /// is known, bytes null where the octree would not fit its ids. A few estimates of memory long.
 nlohmann::ordered_json estimate_json(const Cloud& cloud, const Options& options, const TimeModel& model, int threads);
 

@@ -47,6 +47,28 @@ bool Audience::somebody_waits() const {
                      [](const auto& seat) { return seat.second.undrawn.size() < kMostUndrawn; });
 }
 
+void Audience::remember(const std::string& kind, std::vector<Json> events) {
+  const std::lock_guard lock(mutex_);
+  remembered_[kind] = std::move(events);
+}
+
+void Audience::remember_more(const std::string& kind, const Json& event) {
+  const std::lock_guard lock(mutex_);
+  remembered_[kind].push_back(event);
+}
+
+Json Audience::remembered(const std::string& kind) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = remembered_.find(kind);
+  return found == remembered_.end() || found->second.empty() ? Json(nullptr) : found->second.front();
+}
+
+void Audience::brief(Client& client) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [kind, events] : remembered_)
+    for (const Json& event : events) client.send(event.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
 void Audience::drew(std::uint64_t client, std::uint64_t version) {
   const std::lock_guard lock(mutex_);
   const auto seat = seats_.find(client);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "requests.hpp"
 
@@ -31,6 +32,14 @@ class Audience {
   /// Whether show(.., true) would tell anybody.
   [[nodiscard]] bool somebody_waits() const;
 
+  /// What a page that comes later is told first: the newest events of each kind. Replaces those before.
+  void remember(const std::string& kind, std::vector<Json> events);
+  void remember_more(const std::string& kind, const Json& event);
+  /// Of a kind that has one event; null if there is none.
+  [[nodiscard]] Json remembered(const std::string& kind) const;
+  /// Tells a page all that is remembered.
+  void brief(Client& client) const;
+
   /// A page has drawn a version, and so all before it.
   void drew(std::uint64_t client, std::uint64_t version);
 
@@ -42,6 +51,7 @@ class Audience {
 
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Seat> seats_;
+  std::map<std::string, std::vector<Json>> remembered_;
 };
 
 }  // namespace pointskin::studio

@@ -10,12 +10,10 @@
 #include <utility>
 
 #include <pointskin/error.hpp>
-#include <pointskin/formats.hpp>
 #include <pointskin/io.hpp>
 
 #include "scene/options.hpp"
 #include "scene/sha256.hpp"
-#include "shapes.hpp"
 
 namespace pointskin::studio {
 namespace {
@@ -32,17 +30,6 @@ fs::path newest_journal(const fs::path& folder) {
     if (entry->path().extension() == ".jsonl" && (newest.empty() || entry->path().filename() > newest.filename()))
       newest = entry->path();
   return newest;
-}
-
-Json formats_json() {
-  Json list = Json::array();
-  for (const FormatInfo& format : file_formats())
-    list.push_back({{"name", format.name},
-                    {"extensions", format.extensions},
-                    {"cloud", format.writes_clouds},
-                    {"mesh", format.writes_meshes},
-                    {"reads", format.reads_clouds || format.reads_meshes}});
-  return list;
 }
 
 }  // namespace
@@ -87,7 +74,7 @@ void Engine::start() {
 void Engine::run(const JobQueue::Job& job) {
   const Entry& entry = *find(job.request.what);
   try {
-    answer(job, entry);
+    reply(job.request, entry.handle(*this, job.request));
   } catch (const Error& error) {
     const bool is_old = error.code() == ErrorCode::interrupted && !job.slot.empty();
     refuse(job.request, is_old ? "superseded" : name_of(error.code()), error.what());
@@ -98,12 +85,6 @@ void Engine::run(const JobQueue::Job& job) {
   }
 }
 
-void Engine::answer(const JobQueue::Job& job, const Entry& entry) {
-  reply(job.request, entry.handle(*this, job.request));
-  if (job.request.what != "hello") return;
-  teller_.tell_all(*job.request.client);
-}
-
 bool Engine::work_ahead() {
   try {
     return desk_.work_ahead() || live_.work_ahead();
@@ -112,25 +93,6 @@ bool Engine::work_ahead() {
     live_.stop();
     return false;
   }
-}
-
-Json Engine::hello(const Request& request) {
-  (void)request.reader({});
-  Json roots = Json::array();
-  for (const fs::path& root : services_.roots.folders()) roots.push_back(root.string());
-  Json shapes = Json::array();
-  for (const char* name : bench::kShapeNames) shapes.push_back(name);
-  Json answer = {{"program", "pointskin"},
-                 {"version", options_.version},
-                 {"device", services_.device.name()},
-                 {"loopback", request.client->loopback()},
-                 {"roots", std::move(roots)},
-                 {"shapes", std::move(shapes)},
-                 {"formats", formats_json()},
-                 {"max_upload", options_.max_upload}};
-  answer["root"] = answer["roots"][0];
-  answer["scene"] = desk_.state()["scene"];
-  return answer;
 }
 
 Json Engine::open(const Request& request) {

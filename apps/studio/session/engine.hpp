@@ -47,13 +47,10 @@ class Engine {
   Json open(const Request& request);
   Json save(const Request& request);
   Json resume(const Request& request);
-  Json hello(const Request& request);
   Json digest();
   [[nodiscard]] nlohmann::json with_files(nlohmann::json operation) const;
   [[nodiscard]] std::filesystem::path new_journal() const;
   void notice(const char* level, const std::string& text) const;
-  /// The reply of a job, or its error.
-  void answer(const JobQueue::Job& job, const Entry& entry);
 
   const StudioOptions& options_;
   Services services_;

@@ -75,11 +75,13 @@ Json Measures::compare(const scene::SolidSource& reference, const std::string& n
   const ComparedSurface other = surface_of(*solid);
   const int threads = services_.device.threads;
   constexpr std::int64_t kSamples = 200'000;
-  const MeshComparison comparison = pointskin::compare(mesh, other, {.samples = kSamples, .threads = threads});
+  const CompareOptions options{.samples = kSamples, .threads = threads};
+  const MeshComparison comparison = pointskin::compare(mesh, other, options);
   show(mesh, {"distance", to_floats(distances(mesh, other, {.threads = threads}))});
   Json table = comparison_json(comparison);
   table["reference"] = name;
-  return {{"table", std::move(table)}};
+  table["tau"] = options.tau;
+  return table;
 }
 
 Json Measures::values(const std::string& name) {
@@ -118,8 +120,8 @@ Json Measures::estimate(const nlohmann::json& patch) {
 
 Json Measures::pick(const Vec3d& origin, const Vec3d& direction) const {
   const auto hit = first_hit(desk_.present().mesh(), origin, direction);
-  if (!hit) return {{"hit", nullptr}};
-  return {{"hit", {{"point", hit->point}, {"normal", hit->normal}, {"distance", hit->distance}}}};
+  if (!hit) return {{"point", nullptr}};
+  return {{"point", hit->point}, {"normal", hit->normal}, {"distance", hit->distance}};
 }
 
 }  // namespace pointskin::studio

@@ -36,7 +36,7 @@ std::vector<std::byte> encoded(const wire::PointSet& points) {
 
 std::uint64_t MeshTeller::announce(Json event, bool may_drop) {
   const int told = services_.audience.show(event, may_drop);
-  if (!may_drop) last_mesh_ = std::move(event);
+  if (!may_drop) services_.audience.remember("mesh", {std::move(event)});
   return told > 0 || !may_drop ? version_ : 0;
 }
 
@@ -76,7 +76,7 @@ bool MeshTeller::show_frame(const Mesh& mesh, Json facts) {
 
 void MeshTeller::show_points(const Cloud& cloud, std::int64_t most_points) {
   services_.blobs.forget("points");
-  last_points_.clear();
+  services_.audience.remember("points", {});
   const std::vector<std::int64_t> order = wire::even_order(cloud.positions);
   const std::int64_t total = cloud.size();
   const std::int64_t shown = std::min(total, most_points);
@@ -96,13 +96,10 @@ void MeshTeller::show_points(const Cloud& cloud, std::int64_t most_points) {
       part.colours.insert(part.colours.end(), colour, colour + 4);
     }
     const std::uint64_t blob = services_.blobs.add("points", encode_points(part, box, false), SIZE_MAX);
-    last_points_.push_back({{"event", "points"},
-                            {"blob", blob},
-                            {"from", from},
-                            {"count", count},
-                            {"total", total},
-                            {"final", from + count == shown}});
-    services_.audience.tell(last_points_.back());
+    const Json event = {{"event", "points"}, {"blob", blob},   {"from", from},
+                        {"count", count},    {"total", total}, {"final", from + count == shown}};
+    services_.audience.remember_more("points", event);
+    services_.audience.tell(event);
     from += count;
   } while (from < shown && !services_.queue.waiting("open"));
 }
@@ -129,10 +126,5 @@ void MeshTeller::show_tinted(const Cloud& cloud, std::vector<std::uint8_t> tint,
 }
 
 void MeshTeller::hide_ghosts() { show_ghosts({}, {}); }
-
-void MeshTeller::tell_all(Client& client) const {
-  if (last_mesh_) client.send(last_mesh_->dump());
-  for (const Json& points : last_points_) client.send(points.dump());
-}
 
 }  // namespace pointskin::studio

@@ -45,16 +45,11 @@ class MeshTeller {
   void show_tinted(const Cloud& cloud, std::vector<std::uint8_t> tint, Json facts);
   void hide_ghosts();
 
-  /// What a page that comes late must be told: the last mesh that is no preview, and the points.
-  void tell_all(Client& client) const;
-
  private:
   std::uint64_t announce(Json event, bool may_drop);
 
   Services& services_;
   std::uint64_t version_ = 0;
-  std::optional<Json> last_mesh_;
-  std::vector<Json> last_points_;
 };
 
 }  // namespace pointskin::studio

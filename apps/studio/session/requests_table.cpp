@@ -92,7 +92,6 @@ struct Handlers {
 
 const std::map<std::string, Engine::Entry>& Engine::table() {
   static const std::map<std::string, Entry> entries = {
-      {"hello", {"", [](Engine& e, const Request& r) { return e.hello(r); }}},
       {"open", {"", [](Engine& e, const Request& r) { return e.open(r); }}},
       {"resume", {"", [](Engine& e, const Request& r) { return e.resume(r); }}},
       {"apply", {"", Handlers::apply}},

@@ -52,6 +52,7 @@ SceneDesk::Opened SceneDesk::open(const scene::Document& document) {
                          scene::MissingNormals::allowed, facts);
   opened.notices = std::move(facts.notices);
   opened.points = facts_of(base);
+  teller_.show_points(base, kMostPoints);  // what was read is seen at once
   opened.dropped = facts.not_finite + facts.no_normal;
   scene::SceneOptions options;
   options.reconstruction = document.options;
@@ -108,6 +109,7 @@ void SceneDesk::begin(const scene::Document& document, const std::filesystem::pa
   journal_ = std::move(begun);
   last_ms_ = ms_since(start);
   changed(progress.phase_ms());
+  points_are_old_ = scene_->size() > 0;
 }
 
 void SceneDesk::resume(const std::filesystem::path& journal) {

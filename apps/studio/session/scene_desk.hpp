@@ -49,7 +49,7 @@ class SceneDesk {
 
   /// The event `state`.
   [[nodiscard]] Json state() const;
-  void tell_state() const { services_.audience.tell(state()); }
+  void tell_state() const;
   /// Shows the present mesh, as after an operation.
   void show_mesh(Json ms = Json::object());
   /// Work that may wait until nobody does: the points. @returns whether there was some

@@ -37,7 +37,10 @@ Json SceneDesk::record_json(std::size_t i) const {
                {"flipped", record.flipped},     {"points", record.points},    {"triangles", record.triangles},
                {"snapped", record.snapped},     {"before", topology_json(i)}, {"after", topology_json(i + 1)},
                {"notes", record.notes}};
-  json["ms"] = {{"edit", record.edit_ms}, {"reconstruct", record.reconstruct_ms}, {"total", record.total_ms}};
+  json["warm"] = record.warm;
+  json["edit_ms"] = record.edit_ms;
+  json["reconstruct_ms"] = record.reconstruct_ms;
+  json["total_ms"] = record.total_ms;
   return json;
 }
 
@@ -59,6 +62,12 @@ Json SceneDesk::surface_json() const {
           {"area", r.area}};
 }
 
+void SceneDesk::tell_state() const {
+  const Json event = state();
+  services_.audience.remember("state", {event});
+  services_.audience.tell(event);
+}
+
 Json SceneDesk::state() const {
   Json event = {{"event", "state"}, {"scene", nullptr}};
   if (scene_ == nullptr) return event;
@@ -69,11 +78,19 @@ Json SceneDesk::state() const {
   const Json box = {{"lower", world(points_.box.lower)}, {"upper", world(points_.box.upper)}};
   Json clouds = Json::array();
   for (const scene::CloudSource& source : base_.clouds)
-    clouds.push_back({{"name", name_of_cloud(source)}, {"file", source.file}, {"shape", source.shape}, {"box", box}});
+    clouds.push_back({{"name", name_of_cloud(source)}, {"file", source.file}, {"shape", source.shape}});
+  for (Json& cloud : clouds)  // merged, they have all in common
+    cloud.update({{"points", points_.count},
+                  {"normals", points_.has_normals},
+                  {"box", box},
+                  {"shift", points_.origin},
+                  {"dropped", dropped_}});
   Json history = Json::array();
   for (std::size_t i = 0; i < scene_->size(); ++i) history.push_back(entry(i));
-  Json scene = {
-      {"clouds", std::move(clouds)}, {"points", points_.count}, {"normals", points_.has_normals}, {"box", box}};
+  const std::string more = clouds.size() > 1 ? " and " + std::to_string(clouds.size() - 1) + " more" : "";
+  Json scene = {{"base_label", clouds.empty() ? "" : clouds[0]["name"].get<std::string>() + more}};
+  scene["clouds"] = std::move(clouds);
+  scene.update({{"points", points_.count}, {"normals", points_.has_normals}, {"box", box}});
   scene["shift"] = points_.origin;
   scene["dropped"] = dropped_;
   scene["options"] = scene::options_json(scene_->options());

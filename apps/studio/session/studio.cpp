@@ -9,8 +9,10 @@
 #include <utility>
 
 #include <pointskin/error.hpp>
+#include <pointskin/formats.hpp>
 
 #include "engine.hpp"
+#include "shapes.hpp"
 
 namespace pointskin::studio {
 
@@ -22,6 +24,21 @@ fs::path default_folder() {
   const char* home = std::getenv("HOME");
   return fs::path(home != nullptr && *home != 0 ? home : "/tmp") / ".local/state/pointskin";
 }
+
+namespace {
+
+Json formats_json() {
+  Json list = Json::array();
+  for (const FormatInfo& format : file_formats())
+    list.push_back({{"name", format.name},
+                    {"extensions", format.extensions},
+                    {"cloud", format.writes_clouds},
+                    {"mesh", format.writes_meshes},
+                    {"reads", format.reads_clouds || format.reads_meshes}});
+  return list;
+}
+
+}  // namespace
 
 class Studio::Impl {
  private:
@@ -57,7 +74,7 @@ class Studio::Impl {
   void message(const std::shared_ptr<Client>& client, std::string_view text) {
     std::optional<Request> request = parse_request(client, text);
     if (!request) return;
-    if (request->what == "ack" || request->what == "cancel")
+    if (request->what == "ack" || request->what == "cancel" || request->what == "hello")
       now(*request);
     else if (Engine::find(request->what) == nullptr)
       refuse(*request, "usage", "there is no request '" + request->what + "'");
@@ -71,12 +88,33 @@ class Studio::Impl {
     return options;
   }
 
+  /// What a page needs to begin, even while the engine is at work.
+  Json hello(const Request& request) const {
+    (void)request.reader({});
+    Json roots = Json::array();
+    for (const fs::path& root : roots_.folders()) roots.push_back(root.string());
+    Json shapes = Json::array();
+    for (const char* name : bench::kShapeNames) shapes.push_back(name);
+    Json answer = {{"program", "pointskin"},           {"version", options_.version},
+                   {"device", options_.device.name()}, {"loopback", request.client->loopback()},
+                   {"roots", std::move(roots)},        {"shapes", std::move(shapes)},
+                   {"formats", formats_json()},        {"max_upload", options_.max_upload}};
+    answer["root"] = answer["roots"][0];
+    const Json state = audience_.remembered("state");
+    answer["scene"] = state.is_object() ? state["scene"] : Json(nullptr);
+    return answer;
+  }
+
   /// What must not wait for the engine.
   void now(const Request& request) {
     try {
       if (request.what == "cancel") {
         (void)request.reader({});
         queue_.cancel();
+      } else if (request.what == "hello") {
+        reply(request, hello(request));
+        audience_.brief(*request.client);
+        return;
       } else {
         constexpr std::int64_t kLast = std::int64_t{1} << 53;
         const std::int64_t version = request.reader({"version"}).at("version").whole_number(0, kLast);
@@ -118,7 +156,9 @@ class Studio::Impl {
     try {
       engine.start();
     } catch (const std::exception& error) {
-      failure_ = error.what();
+      const Json event = {{"event", "notice"}, {"level", "error"}, {"text", error.what()}};
+      audience_.remember("failure", {event});
+      audience_.tell(event);
     }
   }
 
@@ -129,9 +169,6 @@ class Studio::Impl {
       const milliseconds wait{more ? 0 : engine.is_busy() ? 1 : 200};
       if (auto job = queue_.next(wait)) {
         engine.run(*job);
-        if (!failure_.empty() && job->request.what == "hello")
-          job->request.client->send(Json{{"event", "notice"}, {"level", "error"}, {"text", failure_}}.dump(
-              -1, ' ', false, Json::error_handler_t::replace));
         queue_.finished();
         more = true;
       } else {
@@ -141,7 +178,6 @@ class Studio::Impl {
   }
 
   JobQueue queue_;
-  std::string failure_;  ///< of opening what was named on the command line
   std::thread thread_;
 };
 

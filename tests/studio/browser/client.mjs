@@ -88,7 +88,7 @@ export class Client {
       return;
     }
     this.events.push(message);
-    if (message.event === 'mesh' && this.acknowledges)
+    if ('version' in message && this.acknowledges)
       this.socket.send(JSON.stringify({ id: this.#next++, do: 'ack', version: message.version }));
     const ready = this.#waiting.filter(waiting => waiting.accepts(message));
     this.#waiting = this.#waiting.filter(waiting => !ready.includes(waiting));

@@ -121,8 +121,8 @@ export class App extends LitElement {
   override render() {
     const context = this.context;
     return html`
-      ${context ? html`<psk-top-bar .context=${context}></psk-top-bar>` : nothing}
-      ${context ? html`<psk-tool-bar .context=${context}></psk-tool-bar>` : nothing}
+      ${context ? html`<psk-top-bar role="banner" .context=${context}></psk-top-bar>` : nothing}
+      ${context ? html`<psk-tool-bar role="region" aria-label="Tool bar" .context=${context}></psk-tool-bar>` : nothing}
       <main aria-label="View">
         <canvas
           data-testid="viewport"
@@ -155,9 +155,9 @@ export class App extends LitElement {
       this.canvas.focus({ preventScroll: true });
     };
     return html`
-      <psk-side .context=${context} .beat=${this.beat}></psk-side>
-      <psk-timeline .context=${context}></psk-timeline>
-      <psk-status-bar .context=${context}></psk-status-bar>
+      <psk-side role="complementary" aria-label="Panels" .context=${context} .beat=${this.beat}></psk-side>
+      <psk-timeline role="region" aria-label="Sequence" .context=${context}></psk-timeline>
+      <psk-status-bar role="contentinfo" .context=${context}></psk-status-bar>
       ${this.dialog ? html`<psk-dialogs .context=${context} .which=${this.dialog} @close=${close}></psk-dialogs>` : nothing}
       ${this.palette ? html`<psk-palette .commands=${context.commands} @close=${() => (this.palette = false)}></psk-palette>` : nothing}
     `;

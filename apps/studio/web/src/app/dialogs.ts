@@ -73,7 +73,7 @@ export class Dialogs extends Part {
   private content() {
     const done = () => this.close();
     if (this.which === "save") return html`<psk-save-dialog .context=${this.context} @done=${done}></psk-save-dialog>`;
-    if (this.which === "keys") return html`<psk-keys-list .context=${this.context}></psk-keys-list>`;
+    if (this.which === "keys") return html`<psk-keys-list tabindex="0" role="region" aria-label="List of keys" .context=${this.context}></psk-keys-list>`;
     return html`<psk-open-dialog .context=${this.context} .reference=${this.which === "reference"} @done=${done}></psk-open-dialog>`;
   }
 }

@@ -46,7 +46,7 @@ export class Legend extends Part {
     if (!legend) return nothing;
     const middle = (legend.low + legend.high) / 2;
     return html`<figure data-testid="legend" aria-label=${`Colours: ${legend.title} from ${measure(legend.low)} to ${measure(legend.high)}`}>
-      ${legend.title === "distance" ? "distance to the reference" : legend.title}
+      ${legend.title}
       <canvas width="128" height="1" aria-hidden="true"></canvas>
       <div><span>${measure(legend.low)}</span><span>${measure(middle)}</span><span>${measure(legend.high)}</span></div>
     </figure>`;

@@ -2,23 +2,15 @@
 import { css, html, nothing } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import type { FileEntry, FilePlace } from "../engine/protocol";
-import { button, switchRow } from "../ui/controls";
+import { button, selectRow, switchRow } from "../ui/controls";
 import { bytes, percent } from "../ui/format";
 import { glyph, icons } from "../ui/icons";
 import { styled } from "../ui/styled";
 import { base } from "../ui/styles";
 import { Part, tell } from "./context";
 import { chooseFiles, openPlaces, resume, uploadAll } from "./opening";
+import { joined, parentOf } from "./paths";
 import { startSequence } from "./sequence";
-
-export function joined(folder: string, name: string): string {
-  if (name === "") return folder;
-  return folder === "" || folder === "." ? name : `${folder.replace(/\/$/, "")}/${name}`;
-}
-
-export function parentOf(folder: string): string {
-  return folder.split("/").slice(0, -1).join("/");
-}
 
 @customElement("psk-open-dialog")
 export class OpenDialog extends Part {
@@ -123,7 +115,7 @@ export class OpenDialog extends Part {
       const { entries, folder: named } = await this.context.connection.request("files", { folder });
       const order = (entry: FileEntry) => (entry.kind === "folder" ? 0 : 1);
       this.entries = [...entries].sort((a, b) => order(a) - order(b) || a.name.localeCompare(b.name, "en", { numeric: true }));
-      this.folder = named === "." ? "" : named;
+      this.folder = named;
       this.chosen = new Set();
     } catch (error) {
       this.entries ??= [];
@@ -131,13 +123,31 @@ export class OpenDialog extends Part {
     }
   }
 
+  /// The folder above, as long as one of the roots holds it; null: there is none.
+  private get above(): string | null {
+    return parentOf(this.folder, this.store.hello?.roots ?? []);
+  }
+
+  private async goUp(): Promise<void> {
+    if (this.above !== null) await this.enter(this.above);
+  }
+
+  private roots() {
+    const roots = this.store.hello?.roots ?? [];
+    if (roots.length < 2) return nothing;
+    const choices = roots.map((value) => ({ value, label: value }));
+    const root = roots.find((value) => this.folder.startsWith(value)) ?? roots[0]!;
+    return selectRow({ label: "Root", testid: "open-root", value: root, choices, change: (value) => void this.enter(value) });
+  }
+
   override render() {
-    const { hello, scene } = this.store;
-    return html`<div class="path">
-        <button class="icon" aria-label="Folder above" title="Folder above (Backspace)" data-testid="open-up" ?disabled=${this.folder === ""} @click=${() => void this.enter(parentOf(this.folder))}>
+    const { scene } = this.store;
+    return html`${this.roots()}
+      <div class="path">
+        <button class="icon" aria-label="Folder above" title="Folder above (Backspace)" data-testid="open-up" ?disabled=${this.above === null} @click=${() => void this.goUp()}>
           ${glyph(icons.up)}
         </button>
-        <span title=${hello?.root ?? ""}>${joined(hello?.root ?? "", this.folder)}</span>
+        <span title=${this.folder}>${this.folder}</span>
       </div>
       <ul role="listbox" aria-label="Files" aria-multiselectable=${String(!this.reference)} @keydown=${(event: KeyboardEvent) => this.key(event)}>
         ${this.entries?.map((entry, i) => this.entry(entry, i))}
@@ -164,7 +174,7 @@ export class OpenDialog extends Part {
         @click=${(event: MouseEvent) => this.select(entry, event)}
         @dblclick=${() => !folder && void this.confirm()}
       >
-        ${glyph(folder ? icons.folder : icons.file)}<span>${entry.name}</span><span class="hint">${folder ? "" : entry.kind}</span><span class="hint">${folder ? "" : bytes(entry.bytes)}</span>
+        ${glyph(folder ? icons.folder : icons.file)}<span>${entry.name}</span><span class="hint">${folder ? "" : entry.kind}</span><span class="hint">${folder || entry.bytes === 0 ? "" : bytes(entry.bytes)}</span>
       </button>
     </li>`;
   }
@@ -183,8 +193,8 @@ export class OpenDialog extends Part {
     if (step) {
       const buttons = [...this.renderRoot.querySelectorAll<HTMLElement>("li button")];
       buttons[buttons.indexOf(event.target as HTMLElement) + step]?.focus();
-    } else if (event.key === "Backspace" && this.folder) {
-      void this.enter(parentOf(this.folder));
+    } else if (event.key === "Backspace") {
+      void this.goUp();
     } else {
       return;
     }
@@ -217,7 +227,7 @@ export class OpenDialog extends Part {
 
   private async compare(reference: FilePlace): Promise<void> {
     try {
-      const comparison = await this.context.connection.request("compare", { reference });
+      const { table: comparison } = await this.context.connection.request("compare", { reference });
       this.store.update({ comparison, panel: "surface", view: { ...this.store.view, colour: "distance" } });
     } catch (error) {
       tell(this.context, error);

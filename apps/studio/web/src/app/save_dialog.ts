@@ -7,16 +7,10 @@ import { button, segmentsRow, selectRow, switchRow } from "../ui/controls";
 import { bytes } from "../ui/format";
 import { base } from "../ui/styles";
 import { Part, tell } from "./context";
-import { joined, parentOf } from "./open_dialog";
+import { joined, parentOf, withExtension } from "./paths";
 import { handOver, savePicture, takePicture } from "./picture";
 
 const kFixed: Partial<Record<SaveWhat, string>> = { session: "json", script: "json", picture: "png" };
-
-/// The name with this extension instead of its own.
-export function withExtension(name: string, extension: string): string {
-  const stem = name.replace(/\.[A-Za-z0-9]{1,5}$/, "");
-  return `${stem || "scene"}.${extension.replace(/^\./, "")}`;
-}
 
 @customElement("psk-save-dialog")
 export class SaveDialog extends Part {
@@ -57,9 +51,9 @@ export class SaveDialog extends Part {
   }
 
   private async look(folder: string): Promise<void> {
-    this.folder = folder;
     try {
-      const { entries } = await this.context.connection.request("files", { folder });
+      const { entries, folder: named } = await this.context.connection.request("files", { folder });
+      this.folder = named;
       this.folders = entries.filter((entry: FileEntry) => entry.kind === "folder").map((entry) => entry.name);
     } catch (error) {
       tell(this.context, error);
@@ -122,16 +116,16 @@ export class SaveDialog extends Part {
   }
 
   private where() {
-    const here = joined(this.store.hello?.root ?? "", this.folder);
+    const roots = this.store.hello?.roots ?? [];
+    const above = parentOf(this.folder, roots);
     const choices = [
-      { value: "", label: here },
-      ...(this.folder ? [{ value: "..", label: "↑ folder above" }] : []),
-      ...this.folders.map((name) => ({ value: name, label: `→ ${name}` })),
+      { value: this.folder, label: this.folder },
+      ...(above === null ? [] : [{ value: above, label: "↑ folder above" }]),
+      ...this.folders.map((name) => ({ value: joined(this.folder, name), label: `→ ${name}` })),
+      ...roots.filter((root) => root !== this.folder && root !== above).map((root) => ({ value: root, label: root })),
     ];
-    const go = (value: string) => {
-      if (value !== "") void this.look(value === ".." ? parentOf(this.folder) : joined(this.folder, value));
-    };
-    return html`${selectRow({ label: "Folder", testid: "save-folder", value: "", choices, change: go })}
+    const go = (value: string) => void this.look(value);
+    return html`${selectRow({ label: "Folder", testid: "save-folder", value: this.folder, choices, change: go })}
     ${switchRow({ label: "Replace a file", testid: "save-overwrite", title: "A file of this name is replaced without a question", value: this.overwrite, change: (value) => (this.overwrite = value) })}`;
   }
 

@@ -29,12 +29,23 @@ export class Player {
   constructor(private readonly context: StudioContext) {}
 
   show(index: number): void {
-    const { connection, store } = this.context;
+    const { store } = this.context;
     const { sequence } = store;
     if (!sequence) return;
     const inside = sequence.frames > 0 ? Math.min(Math.max(index, 0), sequence.frames - 1) : index;
     store.update({ sequence: { ...sequence, index: inside } });
-    connection.request("frame", { index: inside }).catch((error) => tell(this.context, error));
+    void this.ask(inside);
+  }
+
+  /// The engine drops a frame while two are not drawn yet; the one that the hand rests on is asked for again.
+  private async ask(index: number): Promise<void> {
+    const { connection, store } = this.context;
+    try {
+      const { shown } = await connection.request("frame", { index });
+      if (!shown && store.sequence?.index === index && !store.sequence.playing) setTimeout(() => void this.ask(index), 60);
+    } catch (error) {
+      tell(this.context, error);
+    }
   }
 
   toggle(): void {
@@ -75,6 +86,9 @@ export class Player {
     const { connection, store } = this.context;
     const kind = store.sequence?.kind;
     store.update({ sequence: null });
-    connection.request(kind === "fluid" ? "fluid" : "sequence", { stop: true }).catch((error) => tell(this.context, error));
+    connection
+      .request(kind === "fluid" ? "fluid" : "sequence", { stop: true })
+      .then(() => store.scene && connection.request("reference_end")) // the scene's own surface is shown again
+      .catch((error) => tell(this.context, error));
   }
 }

@@ -1,20 +1,11 @@
 // The bar at the bottom: what runs, what there is, what each stage took, on which device.
 import { css, html, nothing } from "lit";
 import { customElement } from "lit/decorators.js";
-import type { StageTimes } from "../engine/protocol";
 import { count, duration, percent } from "../ui/format";
 import { styled } from "../ui/styled";
 import { base } from "../ui/styles";
 import { Part, tell } from "./context";
-
-export const kStages = ["octree", "splat", "solve", "extract", "encode", "transfer", "decode", "draw"] as const;
-
-/// The stages that took any time, with their share of the sum.
-export function stageShares(ms: StageTimes): { stage: string; ms: number; share: number }[] {
-  const known = kStages.flatMap((stage) => (ms[stage] ? [{ stage, ms: ms[stage] }] : []));
-  const sum = known.reduce((total, { ms: value }) => total + value, 0);
-  return known.map((entry) => ({ ...entry, share: entry.ms / sum }));
-}
+import { stageShares } from "./stages";
 
 @customElement("psk-status-bar")
 export class StatusBar extends Part {
@@ -141,7 +132,7 @@ export class StatusBar extends Part {
 
   private progress() {
     const { phase = "working", fraction = 0, eta_ms } = this.store.progress ?? {};
-    const rest = eta_ms !== undefined && eta_ms > 400 ? `${duration(eta_ms)} left` : "";
+    const rest = eta_ms && eta_ms > 400 && fraction > 0.2 ? `${duration(eta_ms)} left` : "";
     const cancel = () => void this.context.connection.request("cancel").catch((error) => tell(this.context, error));
     return html`<span data-testid="progress" class="left" role="status">
       <span class="track" role="progressbar" aria-label="Progress" aria-valuenow=${Math.round(100 * fraction)}
@@ -160,9 +151,9 @@ export class StatusBar extends Part {
   private counts() {
     const { scene, mesh } = this.store;
     if (!scene) return nothing;
-    const topology = mesh?.topology ?? scene.topology ?? undefined;
+    const topology = scene.topology ?? undefined;
     return html`${this.fact("points", scene.points, "status-points")}
-    ${this.fact("triangles", mesh?.full_triangles ?? mesh?.triangles, "status-triangles")}
+    ${this.fact("triangles", mesh?.preview ? mesh.triangles : scene.triangles, "status-triangles")}
     ${this.fact("genus", topology?.genus, "status-genus")} ${this.fact("components", topology?.components, "status-components")}`;
   }
 

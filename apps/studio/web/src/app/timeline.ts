@@ -8,6 +8,7 @@ import { icons } from "../ui/icons";
 import { base } from "../ui/styles";
 import { Part } from "./context";
 import { Player } from "./sequence";
+import { stageShares } from "./stages";
 
 /// Runs of cached frames as [first, after the last].
 export function runsOf(cached: ReadonlySet<number>): [number, number][] {
@@ -97,8 +98,8 @@ export class Timeline extends Part {
   }
 
   private numbers({ index, frames, frame }: SequenceState) {
-    const ms = typeof frame?.ms === "number" ? frame.ms : frame?.ms?.total;
-    return html`${frame ? html`<span class="hint">${count(frame.particles)} particles, ${count(frame.triangles)} triangles${ms ? `, ${duration(ms)}` : ""}</span>` : nothing}
+    const ms = frame ? stageShares(frame.ms).reduce((sum, stage) => sum + stage.ms, 0) : 0;
+    return html`${frame ? html`<span class="hint">${frame.particles ? `${count(frame.particles)} particles, ` : ""}${count(frame.triangles)} triangles${ms ? `, ${duration(ms)}` : ""}</span>` : nothing}
       <span class="count" data-testid="timeline-index">${frames > 0 ? `${index + 1} / ${frames}` : `${frame?.seconds?.toFixed(2) ?? "0.00"} s`}</span>`;
   }
 }

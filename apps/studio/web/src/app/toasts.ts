@@ -2,23 +2,12 @@
 import { css, html, nothing } from "lit";
 import { customElement } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import type { StepRecord } from "../engine/protocol";
 import type { Notice } from "../engine/store";
-import { duration, signed } from "../ui/format";
+import { duration } from "../ui/format";
 import { glyph, icons } from "../ui/icons";
 import { base } from "../ui/styles";
+import { chipText } from "./chip";
 import { Part } from "./context";
-
-/// "+1,204 points, genus 3 → 1, components 2 → 1": only what changed.
-export function chipText(record: StepRecord): string {
-  const parts: string[] = [];
-  if (record.added > 0) parts.push(`${signed(record.added)} points`);
-  if (record.removed > 0) parts.push(`${signed(-record.removed)} points`);
-  const { before, after } = record;
-  if (before.genus !== after.genus) parts.push(`genus ${before.genus} → ${after.genus}`);
-  if (before.components !== after.components) parts.push(`components ${before.components} → ${after.components}`);
-  return parts.length > 0 ? parts.join(", ") : "topology unchanged";
-}
 
 @customElement("psk-toasts")
 export class Toasts extends Part {
@@ -85,7 +74,7 @@ export class Toasts extends Part {
     return html`<div class="unseen" role="status" aria-live="polite">${chip ? chipText(chip.record) : ""}</div>
       ${repeat(notices, (n) => n.id, (n) => this.toast(n))}
       ${chip
-        ? html`<div class="chip" data-testid="chip">${chipText(chip.record)}<small>${duration(chip.record.total_ms)}</small></div>`
+        ? html`<div class="chip" data-testid="chip">${chipText(chip.record)}<small>${duration(chip.record.ms.total)}</small></div>`
         : nothing}`;
   }
 

@@ -27,6 +27,8 @@ export class TopBar extends Part {
         flex: none;
       }
       .name {
+        margin: 0;
+        font: inherit;
         min-width: 0;
         overflow: hidden;
         text-overflow: ellipsis;
@@ -100,7 +102,7 @@ export class TopBar extends Part {
     const clouds = this.store.scene?.clouds ?? [];
     const first = clouds[0]?.name ?? "No scene";
     const more = clouds.length > 1 ? html`<small>+ ${clouds.length - 1}</small>` : nothing;
-    return html`<span class="name" data-testid="scene-name" title=${clouds.map((c) => c.name).join(", ") || first}>${first}${more}</span>`;
+    return html`<h1 class="name" data-testid="scene-name" title=${clouds.map((c) => c.name).join(", ") || first}>${first}${more}</h1>`;
   }
 
   private views() {
@@ -117,8 +119,8 @@ export class TopBar extends Part {
         ],
         change: (show) => this.store.setView({ show }),
       })}
-      ${this.toggle("wireframe", "Wireframe (W)", icons.wire, view.wireframe)}
-      ${this.toggle("grid", "Ground grid (G)", icons.grid, view.grid)} ${this.command("frame", icons.frame)}
+      ${this.toggle("wireframe", "Wireframe (Shift+W)", icons.wire, view.wireframe)}
+      ${this.toggle("grid", "Ground grid (Shift+G)", icons.grid, view.grid)} ${this.command("frame", icons.frame)}
     `;
   }
 
@@ -131,7 +133,6 @@ export class TopBar extends Part {
       class="button find"
       data-testid="open-palette"
       title="All commands (Ctrl+K)"
-      aria-label="All commands"
       @click=${() => this.context.openPalette()}
     >
       ${glyph(icons.search)}<span>Commands</span><kbd>Ctrl K</kbd>

@@ -3,7 +3,7 @@ import { MeshoptDecoder } from "meshoptimizer/decoder";
 import type { Box } from "./protocol";
 
 type Codec = "raw" | "vertex" | "index";
-type SectionType = "u16x4" | "u8x2" | "u32" | "u8x4" | "f32" | "u8";
+type SectionType = "u16x4" | "u8x4" | "u32x3" | "f32" | "u8";
 export interface Section {
   name: string;
   offset: number;
@@ -61,7 +61,7 @@ function sectionBytes(bytes: Uint8Array, start: number, section: Section): Uint8
   if (section.codec === "raw") return coded;
   const target = new Uint8Array(section.count * section.stride);
   if (section.codec === "vertex") MeshoptDecoder.decodeVertexBuffer(target, section.count, section.stride, coded);
-  else MeshoptDecoder.decodeIndexBuffer(target, section.count, section.stride, coded);
+  else MeshoptDecoder.decodeIndexBuffer(target, target.byteLength / 4, 4, coded); // an element is a triangle
   return target;
 }
 

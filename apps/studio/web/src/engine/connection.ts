@@ -3,7 +3,7 @@ import type { EventName, Events, Hello, Reply, Verb } from "./protocol";
 
 export type ConnectionState = "connecting" | "open" | "lost";
 
-/// An error reply. `code` is the engine's name for it; "superseded" and "cancelled" are no mistakes of anyone.
+/// An error reply. `code` is the engine's name for it; "superseded" and "interrupted" are no mistakes of anyone.
 export class EngineError extends Error {
   constructor(
     readonly code: string,
@@ -12,7 +12,7 @@ export class EngineError extends Error {
     super(text);
   }
   get quiet(): boolean {
-    return this.code === "superseded" || this.code === "cancelled";
+    return this.code === "superseded" || this.code === "interrupted";
   }
 }
 

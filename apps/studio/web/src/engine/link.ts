@@ -2,9 +2,9 @@
 // and versions that a newer one overtook are acknowledged without being drawn.
 import type { Blobs } from "./blobs";
 import type { Decoded } from "./blob";
-import type { Connection } from "./connection";
-import type { FrameEvent, GhostsEvent, Hello, MeshEvent, PointsEvent, SceneState, StageTimes } from "./protocol";
-import type { Store } from "./store";
+import type { Connection, EngineError } from "./connection";
+import type { FrameEvent, GhostsEvent, Hello, MeshEvent, PointsEvent, ProgressEvent, SceneState, StageTimes } from "./protocol";
+import type { ColourMode, Store } from "./store";
 import type { Viewport } from "../view/viewport";
 
 export class Link {
@@ -29,7 +29,6 @@ export class Link {
     connection.on("mesh", (event) => void this.mesh(event));
     connection.on("points", (event) => this.points(event));
     connection.on("ghosts", (event) => void this.ghosts(event));
-    connection.on("values", (event) => void this.values(event.blob));
     connection.on("frame", (event) => void this.frame(event));
     connection.on("notice", ({ level, text }) => store.addNotice(level, text));
     connection.on("closing", () => store.addNotice("info", "The program has ended"));
@@ -52,17 +51,24 @@ export class Link {
 
   private setScene(scene: SceneState | null): void {
     const before = this.store.scene;
-    const label = (state: SceneState | null) => state?.clouds.map((cloud) => cloud.name).join("\n");
+    const label = (state: SceneState | null) => state && [...state.clouds.map((cloud) => cloud.file + cloud.shape), state.journal].join("\n");
     if (label(before) !== label(scene)) {
       this.framed = false;
       this.store.update({ histogram: null, problems: null, problem: -1, estimate: null, comparison: null, chip: null });
-    } else if (before && scene && scene.done > before.done) {
-      const step = scene.history[scene.done - 1];
-      if (step?.record) this.store.chip = { id: this.chips++, operation: step.operation.op, record: step.record };
+    } else if (before && scene) {
+      this.chip(before.done, scene);
     }
-    if (before && scene && scene.done < before.done) this.store.update({ chip: null });
     if (!scene || scene.clouds.length === 0) this.clear();
     this.store.update({ scene });
+  }
+
+  /// What the newest step did; the topology is measured a little later, and then told by another state.
+  private chip(before: number, scene: SceneState): void {
+    const record = scene.history[scene.done - 1]?.record;
+    const { chip } = this.store;
+    if (scene.done > before && record) this.store.chip = { id: this.chips++, step: scene.done, record };
+    else if (chip && chip.step === scene.done && record) this.store.chip = { ...chip, record };
+    else this.store.chip = null;
   }
 
   private clear(): void {
@@ -72,9 +78,7 @@ export class Link {
     this.store.update({ mesh: null, pointsShown: 0, ghosts: null });
   }
 
-  private progress(event: { job: number; finished?: boolean }): void {
-    const fresh = this.store.progress?.job !== event.job;
-    if (fresh) this.store.progressSince = performance.now();
+  private progress(event: ProgressEvent): void {
     this.store.update({ progress: event.finished ? null : event });
   }
 
@@ -94,13 +98,17 @@ export class Link {
 
   private async mesh(event: MeshEvent): Promise<void> {
     this.meshWanted = Math.max(this.meshWanted, event.version);
+    const ghosts = this.ghostsWanted; // those asked for from now on belong to the new mesh
     const decoded = await this.load(event.blob);
     if (!decoded || event.version < this.meshShown) return this.ack(event.version);
     this.meshShown = event.version;
     const begun = performance.now();
     this.viewport.setMesh(decoded);
     this.frameOnce();
-    if (!event.preview) this.store.update({ problems: null, problem: -1 });
+    if (!event.preview) {
+      if (ghosts === this.ghostsWanted) this.endGhosts();
+      this.store.update({ problems: null, problem: -1 });
+    }
     this.viewport.afterNextFrame(() => this.meshDrawn(event, decoded, performance.now() - begun));
     void this.lines();
   }
@@ -112,13 +120,37 @@ export class Link {
     const meshAttributes = [...Object.keys(decoded.values), ...(decoded.colors ? ["colour"] : [])];
     this.store.update({ mesh: { ...event, ms }, meshAttributes });
     this.legend();
+    if (!event.preview) void this.renewColours(decoded);
+  }
+
+  /// Colours the surface; the engine works values out when they are asked for, and sends the mesh again with them.
+  async colour(colour: ColourMode): Promise<void> {
+    const shown = this.viewport.surface.decoded;
+    this.store.setView({ colour });
+    const measured = colour !== "plain" && colour !== "colour";
+    try {
+      if (measured && !shown?.values[colour]) await this.connection.request("values", { name: colour });
+      else if (!measured && shown && Object.keys(shown.values).length > 0) await this.connection.request("values_end");
+    } catch (error) {
+      if (!(error as EngineError).quiet) this.store.addNotice("warning", (error as Error).message);
+      if (this.store.view.colour === colour) this.store.setView({ colour: "plain" });
+    }
+  }
+
+  /// A new surface has no values yet; those of a comparison are of the surface before.
+  private async renewColours(decoded: Decoded): Promise<void> {
+    const { view, comparison } = this.store;
+    if (view.colour === "plain" || view.colour === "colour" || decoded.values[view.colour]) return;
+    if (view.colour === "distance" && comparison) this.store.update({ comparison: null, view: { ...view, colour: "plain" } });
+    else await this.colour(view.colour);
   }
 
   /// Numbers of the colours on the screen.
   legend(): void {
     const { colour, show } = this.store.view;
     const range = show === "points" ? undefined : this.viewport.surface.decoded?.ranges[colour];
-    const next = range ? { title: colour, low: range[0], high: range[1] } : null;
+    const of = this.store.comparison ? "the reference" : "the points";
+    const next = range ? { title: colour === "distance" ? `distance to ${of}` : colour, low: range[0], high: range[1] } : null;
     if (JSON.stringify(next) !== JSON.stringify(this.store.legend)) this.store.update({ legend: next });
   }
 
@@ -141,23 +173,16 @@ export class Link {
     const added = event.blob !== null ? await this.load(event.blob) : null;
     const removed = event.removed_blob != null ? await this.load(event.removed_blob) : null;
     if (wanted !== this.ghostsWanted) return;
-    this.viewport.setGhosts(added, removed);
+    this.viewport.setGhosts(added, removed, event.tinted);
     this.store.update({ ghosts: added || removed ? event : null });
     this.viewport.afterNextFrame(() => performance.mark("psk:preview-drawn"));
   }
 
-  private async values(blob: number): Promise<void> {
-    const decoded = await this.load(blob);
-    const shown = this.viewport.surface.decoded;
-    if (!decoded || !shown) return;
-    for (const [name, values] of Object.entries(decoded.values)) {
-      if (values.length !== shown.vertices) continue; // of a mesh that is gone
-      shown.values[name] = values;
-      shown.ranges[name] = decoded.ranges[name]!;
-    }
-    this.store.update({ meshAttributes: [...Object.keys(shown.values), ...(shown.colors ? ["colour"] : [])] });
-    this.viewport.apply(this.store.view);
-    this.legend();
+  /// What was previewed has happened, or is not to happen: points on their way come too late.
+  private endGhosts(): void {
+    this.ghostsWanted++;
+    this.viewport.setGhosts(null);
+    this.store.update({ ghosts: null });
   }
 
   private async frame(event: FrameEvent): Promise<void> {
@@ -165,10 +190,12 @@ export class Link {
     const { sequence } = this.store;
     if (decoded) this.viewport.setMesh(decoded);
     this.frameOnce();
-    this.viewport.afterNextFrame(() => this.ack(event.version ?? event.index));
+    this.viewport.afterNextFrame(() => this.ack(event.version));
     if (!sequence) return;
-    const cached = sequence.kind === "files" ? new Set([...sequence.cached, event.index]) : sequence.cached;
-    this.store.update({ sequence: { ...sequence, index: event.index, frame: event, cached } });
+    const files = sequence.kind === "files";
+    const cached = files ? new Set([...sequence.cached, event.index]) : sequence.cached;
+    const index = files && !sequence.playing ? sequence.index : event.index; // the hand is ahead of what it asked for
+    this.store.update({ sequence: { ...sequence, index, frame: event, cached } });
   }
 
   private frameOnce(): void {

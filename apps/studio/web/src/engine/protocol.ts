@@ -56,6 +56,7 @@ export interface FlipOperation {
 export interface InsertOperation extends Similarity {
   op: "insert";
   file?: string;
+  upload?: number; // of a file that the page has sent; the history has its path
   shape?: string;
   box?: Partial<Box>;
   snap?: boolean;
@@ -84,7 +85,7 @@ export interface DeformOperation {
 export interface BooleanOperation extends Similarity {
   op: "boolean";
   operation: "union" | "intersection" | "difference" | "symmetric";
-  with: { file: string } | { shape: string; points?: number };
+  with: { file: string } | { upload: number } | { shape: string; points?: number };
   creases?: "sampled" | "none";
   coincidence?: number;
 }
@@ -133,25 +134,32 @@ export interface StepRecord {
   removed: number;
   points: number;
   triangles: number;
-  before: Topology;
-  after: Topology;
-  warm?: boolean;
+  before: Topology | null; // null until it is measured, which another state event tells
+  after: Topology | null;
+  flipped?: number;
   snapped?: boolean;
-  edit_ms: number;
-  reconstruct_ms: number;
-  total_ms: number;
+  ms: { edit: number; reconstruct: number; total: number };
   notes?: string[];
 }
 export interface CloudInfo {
   name: string;
-  points: number;
-  normals: boolean;
+  file: string;
+  shape: string;
   box: Box;
-  shift: Vec3;
-  dropped: number;
+}
+/// What is measured of the whole surface while nothing else is to do.
+export interface SurfaceMeasures {
+  vertices: number;
+  triangles: number;
+  boundary_edges: number;
+  closed: boolean;
+  manifold: boolean;
+  watertight: boolean;
+  volume: number;
+  area: number;
 }
 export interface HistoryStep {
-  operation: Operation;
+  operation: Operation; // without cameras, strokes and areas
   record: StepRecord | null;
 }
 export interface SceneState {
@@ -160,15 +168,21 @@ export interface SceneState {
   history: HistoryStep[];
   done: number;
   points: number;
+  normals: boolean;
+  box: Box;
+  shift: Vec3;
+  dropped: number;
+  triangles: number;
   topology: Topology | null;
-  base_label: string;
-  saved?: boolean;
+  surface: SurfaceMeasures | null;
+  journal: string;
 }
 export interface FormatInfo {
   name: string;
   extensions: string[];
   cloud: boolean;
   mesh: boolean;
+  reads: boolean;
 }
 export interface Hello {
   scene: SceneState | null;
@@ -176,7 +190,8 @@ export interface Hello {
   version: string;
   device: string;
   loopback: boolean;
-  root: string;
+  root: string; // the first of roots
+  roots: string[];
   shapes: string[];
   formats: FormatInfo[];
   max_upload: number;
@@ -206,7 +221,7 @@ export interface ProblemRegion {
   centroid: Vec3;
   lower: Vec3;
   upper: Vec3;
-  mean_normal: Vec3;
+  normal: Vec3;
   views: ProblemView[];
 }
 export interface Distances {
@@ -221,7 +236,6 @@ export interface Distances {
 }
 export interface Comparison {
   reference: string;
-  tau: number;
   to_reference: Distances;
   from_reference: Distances;
   two_sided: Distances;
@@ -232,14 +246,13 @@ export interface Comparison {
   [key: string]: unknown;
 }
 export interface Estimate {
-  bytes: number;
-  ms: number;
-  depths: { depth: number; bytes: number; ms: number }[];
+  depths: { depth: number; bytes: number | null; ms: number | null }[]; // those around the present depth
 }
+/// Densities of the surface: shares of its area between edges that are even in their logarithm.
 export interface Histogram {
-  densities: { edges: number[]; counts: number[]; log: boolean };
-  /// pairs (quantile, density), rising, so that the slider's quantile finds its density
-  quantiles?: [number, number][];
+  edges: number[];
+  shares: number[];
+  trim: [number, number][]; // quantile of a trim and the density below which it cuts, rising
 }
 export interface FilePlace {
   path?: string;
@@ -266,14 +279,17 @@ export interface Replies {
   files: { folder: string; entries: FileEntry[] };
   save: { path?: string; download?: number; bytes: number };
   problems: { regions: ProblemRegion[] };
-  compare: Comparison;
+  compare: { table: Comparison };
+  values: Record<string, never>;
+  values_end: Record<string, never>;
+  operation: { operation: Operation };
   reference_end: Record<string, never>;
   estimate: Estimate;
   histogram: Histogram;
-  pick: { point: Vec3; normal: Vec3; distance: number } | { point: null };
+  pick: { hit: { point: Vec3; normal: Vec3; distance: number } | null };
   fluid: Record<string, unknown>;
   sequence: { frames: number; name: string };
-  frame: Record<string, unknown>;
+  frame: { index: number; kept: boolean; shown: boolean };
   digest: { sha256: string };
 }
 export type Verb = keyof Replies;
@@ -282,6 +298,8 @@ export type Reply<V extends Verb> = Replies[V] & { id: number; ok: true };
 // ---- events ----
 
 export interface StageTimes {
+  simulate?: number;
+  surface?: number;
   octree?: number;
   splat?: number;
   solve?: number;
@@ -303,8 +321,7 @@ export interface MeshEvent {
   vertices: number;
   full_triangles: number;
   ms: StageTimes;
-  topology: Topology | null;
-  sha256?: string;
+  values?: string[];
 }
 export interface PointsEvent {
   blob: number;
@@ -313,26 +330,35 @@ export interface PointsEvent {
   total: number;
   final: boolean;
 }
+export interface ClassCounts {
+  kept: number;
+  flipped: number;
+  dropped: number;
+}
 export interface GhostsEvent {
   blob: number | null;
   added: number;
   removed: number;
   removed_blob?: number | null;
+  tinted?: boolean; // the points have classes: of a set operation, whose counts follow
+  a?: ClassCounts;
+  b?: ClassCounts;
 }
 export interface FrameEvent {
-  version?: number;
+  version: number;
   index: number;
   blob: number | null;
   triangles: number;
-  particles: number;
-  seconds: number;
-  ms: StageTimes | number;
+  particles?: number; // of a simulation
+  seconds?: number;
+  kept?: boolean;
+  ms: StageTimes;
 }
 export interface ProgressEvent {
-  job: number;
+  job: string;
   phase?: string;
   fraction?: number;
-  eta_ms?: number;
+  eta_ms?: number | null;
   finished?: boolean;
 }
 export interface NoticeEvent {
@@ -345,7 +371,6 @@ export interface Events {
   mesh: MeshEvent;
   points: PointsEvent;
   ghosts: GhostsEvent;
-  values: { blob: number; name: string };
   frame: FrameEvent;
   notice: NoticeEvent;
   closing: Record<string, never>;

@@ -31,7 +31,7 @@ export interface Notice {
 /// What the last operation did, for the chip.
 export interface Chip {
   id: number;
-  operation: string;
+  step: number; // of the history, from 1
   record: StepRecord;
 }
 
@@ -63,7 +63,6 @@ export class Store extends EventTarget {
   mesh: MeshEvent | null = null; // on the screen
   ghosts: GhostsEvent | null = null;
   progress: ProgressEvent | null = null;
-  progressSince = 0;
   notices: Notice[] = [];
   chip: Chip | null = null;
   pendingOptions: Options | null = null; // dragged, not applied yet

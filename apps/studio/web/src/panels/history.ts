@@ -3,7 +3,7 @@ import { css, html, nothing } from "lit";
 import type { StudioContext } from "../app/context";
 import { tell } from "../app/context";
 import type { HistoryStep, Operation, Options } from "../engine/protocol";
-import { chipText } from "../app/toasts";
+import { chipText } from "../app/chip";
 import { duration } from "../ui/format";
 
 export const historyStyles = css`
@@ -57,7 +57,7 @@ function changed(options: Options): string {
 export function operationTitle(operation: Operation): string {
   switch (operation.op) {
     case "guide":
-      return operation.stroke ? "Guide by a stroke" : "Guide by an area";
+      return operation.normals === "stroke" ? "Guide by a stroke" : "Guide";
     case "remove":
       return operation.originals ? "Erase points" : "Erase added points";
     case "flip":
@@ -65,7 +65,7 @@ export function operationTitle(operation: Operation): string {
     case "insert":
       return `Copy part of ${operation.shape ?? operation.file?.split("/").pop() ?? "a cloud"}`;
     case "deform":
-      return operation.lattices?.length ? "Bend by a lattice" : "Bend";
+      return operation.handles?.length ? "Bend by handles" : "Bend by a lattice";
     case "boolean":
       return operation.operation.charAt(0).toUpperCase() + operation.operation.slice(1);
     case "orient":
@@ -78,7 +78,7 @@ export function operationTitle(operation: Operation): string {
 function step(context: StudioContext, entry: HistoryStep | null, index: number, done: number) {
   const { connection, store } = context;
   const go = () => void connection.request("go", { done: index }).catch((error) => tell(context, error));
-  const title = entry ? operationTitle(entry.operation) : (store.scene?.base_label ?? "Opened");
+  const title = entry ? operationTitle(entry.operation) : `Opened ${store.scene?.clouds.map((cloud) => cloud.name).join(", ") ?? ""}`;
   const record = entry?.record;
   return html`<li>
     <button
@@ -88,7 +88,7 @@ function step(context: StudioContext, entry: HistoryStep | null, index: number, 
       title=${index === done ? "The scene is here" : index < done ? "Go back to here" : "Do again up to here"}
       @click=${go}
     >
-      <span class="rank">${index}</span><span>${title}</span><span class="ms">${record ? duration(record.total_ms) : ""}</span>
+      <span class="rank">${index}</span><span>${title}</span><span class="ms">${record ? duration(record.ms.total) : ""}</span>
       ${record ? html`<span class="hint">${chipText(record)}</span>` : nothing} ${(record?.notes ?? []).map((note) => html`<span class="hint">${note}</span>`)}
     </button>
   </li>`;

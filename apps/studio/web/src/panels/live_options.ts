@@ -11,6 +11,7 @@ export class LiveOptions {
   private timer = 0;
   private frame = 0;
   private sending = false;
+  private moving = false; // between the first input and the change that ends it
 
   constructor(
     private readonly connection: Connection,
@@ -25,6 +26,7 @@ export class LiveOptions {
   /// A control moves.
   input(patch: Options): void {
     this.merge(patch);
+    this.moving = true;
     clearTimeout(this.timer);
     if (!this.frame) this.frame = requestAnimationFrame(() => void this.preview());
   }
@@ -32,12 +34,14 @@ export class LiveOptions {
   /// A control moves whose effect the page shows by itself.
   hold(patch: Options): void {
     this.merge(patch);
+    this.moving = false;
     clearTimeout(this.timer);
   }
 
   /// A control rests.
   change(patch: Options): void {
     this.merge(patch);
+    this.moving = false;
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.commit(), kRest);
   }
@@ -45,8 +49,7 @@ export class LiveOptions {
   /// Back to what is applied. @returns false if nothing was pending
   cancel(): boolean {
     if (!this.active) return false;
-    this.drop();
-    void this.connection.request("preview_end").catch(() => undefined);
+    this.goBack();
     return true;
   }
 
@@ -54,7 +57,17 @@ export class LiveOptions {
     this.store.update({ pendingOptions: { ...this.store.pendingOptions, ...patch } });
   }
 
+  /// The committed surface again, without what was shown while the hand moved.
+  private goBack(): void {
+    const trimmed = this.store.pendingOptions?.trim !== undefined;
+    this.drop();
+    if (!this.store.scene) return;
+    void this.connection.request("preview_end").catch(() => undefined);
+    if (trimmed) void this.connection.request("values_end").catch(() => undefined);
+  }
+
   private drop(): void {
+    this.moving = false;
     clearTimeout(this.timer);
     cancelAnimationFrame(this.frame);
     this.frame = 0;
@@ -64,7 +77,7 @@ export class LiveOptions {
   private async preview(): Promise<void> {
     this.frame = 0;
     const patch = this.store.pendingOptions;
-    if (!patch || !this.store.scene || this.sending) return;
+    if (!patch || !this.moving || !this.store.scene || this.sending) return;
     this.sending = true;
     await this.send(patch, false);
     this.sending = false;
@@ -79,11 +92,7 @@ export class LiveOptions {
     this.frame = 0;
     const applied = this.store.scene?.options ?? {};
     const same = Object.entries(patch).every(([key, value]) => applied[key] === value);
-    if (same || !this.store.scene) {
-      this.drop();
-      if (this.store.scene) void this.connection.request("preview_end").catch(() => undefined);
-      return;
-    }
+    if (same || !this.store.scene) return this.goBack();
     await this.send(patch, true);
     if (this.store.pendingOptions === patch) this.drop();
   }
@@ -94,7 +103,7 @@ export class LiveOptions {
     } catch (error) {
       if (error instanceof EngineError && (error.quiet || error.code === "lost")) return;
       this.notice("error", (error as Error).message);
-      if (final) this.drop();
+      if (final) this.goBack();
     }
   }
 }

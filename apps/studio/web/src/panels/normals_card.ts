@@ -43,17 +43,15 @@ function estimate(context: StudioContext, state: CardState): void {
 }
 
 export function normalsCard(context: StudioContext) {
-  const clouds = context.store.scene?.clouds ?? [];
-  const without = clouds.filter((cloud) => !cloud.normals);
-  const history = context.store.scene?.history.slice(0, context.store.scene.done) ?? [];
-  if (without.length === 0 || history.some((step) => step.operation.op === "orient")) return nothing;
+  const { scene } = context.store;
+  if (!scene || scene.normals || scene.points === 0) return nothing;
   const state = stateOf(context);
   const view = () => {
     state.sensors = [...state.sensors, context.viewport.view.eye];
     context.store.update();
   };
   return html`<section class="card" data-testid="normals-card" aria-label="Normals">
-    <p>${without.length === clouds.length ? "The cloud has no normals." : `${without.length} of ${clouds.length} clouds have no normals.`} A surface needs them.</p>
+    <p>The cloud has no normals. A surface needs them.</p>
     ${state.sensors.map((sensor) => html`<p class="hint">Sensor at ${sensor.map(measure).join(", ")}</p>`)}
     <div class="actions">
       ${button({ label: "Estimate normals", testid: "estimate-normals", primary: true, run: () => estimate(context, state) })}

@@ -1,27 +1,27 @@
 // What was read, and how the points are drawn.
 import { html } from "lit";
 import type { StudioContext } from "../app/context";
-import type { CloudInfo, Vec3 } from "../engine/protocol";
+import type { SceneState, Vec3 } from "../engine/protocol";
 import { button, facts, segmentsRow, selectRow, sliderRow } from "../ui/controls";
 import { count, measure } from "../ui/format";
 import { normalsCard } from "./normals_card";
 
-const triple = (v: Vec3) => v.map(measure).join("  ");
+const place = (v: Vec3) => v.map(measure).join(", ");
 
-function cloud(info: CloudInfo) {
-  const size = info.box.upper.map((value, i) => value - info.box.lower[i]!) as Vec3;
-  const shifted = info.shift.some((value) => value !== 0);
+/// What was read, of all clouds together: they are merged.
+function read(scene: SceneState) {
+  const { lower, upper } = scene.box;
+  const size = upper.map((value, i) => value - lower[i]!);
   const rows: [string, unknown, string?][] = [
-    ["Points", count(info.points), "cloud-points"],
-    ["Normals", info.normals ? "yes" : "none"],
-    ["Size", triple(size)],
-    ["From", triple(info.box.lower)],
-    ["To", triple(info.box.upper)],
-    ["Dropped", count(info.dropped), "cloud-dropped"],
+    ["Points", count(scene.points), "cloud-points"],
+    ["Normals", scene.normals ? "yes" : "none", "cloud-normals"],
+    ["Size", size.map(measure).join(" × ")],
+    ["From", place(lower)],
+    ["To", place(upper)],
+    ["Dropped", count(scene.dropped), "cloud-dropped"],
   ];
-  if (shifted) rows.push(["Shift", triple(info.shift)]);
-  return html`<h3>${info.name}</h3>
-    ${facts(rows)}`;
+  if (scene.shift.some((value) => value !== 0)) rows.push(["Shift", place(scene.shift)]);
+  return html`${scene.clouds.map((cloud) => html`<h3 title=${cloud.file || cloud.shape}>${cloud.name}</h3>`)} ${facts(rows)}`;
 }
 
 export function pointsPanel(context: StudioContext) {
@@ -60,5 +60,5 @@ export function pointsPanel(context: StudioContext) {
       ${button({ label: "Turn normals round", testid: "turn-normals", title: "All normals point to the other side: inside becomes outside", run: turn })}
       ${button({ label: "Repair normals", testid: "repair-normals", title: "Turns the normals that disagree with most around them", run: repair })}
     </div>
-    ${scene.clouds.map(cloud)}`;
+    ${read(scene)}`;
 }

@@ -60,7 +60,7 @@ function item(context: StudioContext, region: ProblemRegion, index: number, most
       @click=${() => fly(context, region, index)}
     >
       <span class="rank">${index + 1}</span>
-      <span>${count(region.triangles)} triangles <span class="hint">weakness ${region.peak.toFixed(2)}, area ${measure(region.area)}</span></span>
+      <span>${count(region.triangles)} triangles<br /><span class="hint">weakness ${region.peak.toFixed(2)}, area ${measure(region.area)}</span></span>
       <svg viewBox="0 0 20 3" preserveAspectRatio="none" width="64" height="6" role="img" aria-label="Score ${measure(region.score)}">
         <rect width="20" height="3" fill="var(--field)"></rect><rect width=${share} height="3" fill="var(--orange)"></rect>
       </svg>

@@ -2,6 +2,7 @@
 import { css, html, nothing, svg } from "lit";
 import type { StudioContext } from "../app/context";
 import { tell } from "../app/context";
+import { EngineError } from "../engine/connection";
 import type { Options } from "../engine/protocol";
 import { segmentsRow, slider, sliderRow, numberField, switchRow } from "../ui/controls";
 import { bytes, duration, percent } from "../ui/format";
@@ -73,15 +74,15 @@ function depthCost({ store }: StudioContext) {
   const depth = Number(store.options.depth ?? 8);
   const cost = store.estimate?.depths.find((entry) => entry.depth === depth);
   if (!cost) return nothing;
-  return html`<div class="cost hint" data-testid="depth-cost" title="Expected on this device, from the cloud's points"><span>about ${bytes(cost.bytes)}</span><span>${duration(cost.ms)}</span></div>`;
+  return html`<div class="cost hint" data-testid="depth-cost" title="Expected on this device, from the cloud's points"><span>${cost.bytes === null ? "more than any memory" : `about ${bytes(cost.bytes)}`}</span><span>${cost.ms === null ? "" : duration(cost.ms)}</span></div>`;
 }
 
 /// The bars, what goes in orange.
 function bars({ store }: StudioContext, trim: number) {
   const histogram = store.histogram;
   if (!histogram) return nothing;
-  const { counts } = histogram.densities;
-  const most = Math.max(...counts, 1);
+  const counts = histogram.shares;
+  const most = Math.max(...counts, 1e-9);
   const edge = trim > 0 ? placeOf(histogram, densityOf(histogram, trim)) : 0;
   const label = trim > 0 ? `Densities; what is sparser than ${densityOf(histogram, trim).toPrecision(3)} goes` : "Densities of the surface";
   return html`<svg class="histogram" viewBox="0 0 ${counts.length} 40" preserveAspectRatio="none" role="img" aria-label=${label} data-testid="trim-histogram">
@@ -93,17 +94,27 @@ function bars({ store }: StudioContext, trim: number) {
   </svg>`;
 }
 
+/// Tints what a trim would cut away, once the mesh on the screen has the densities.
+function showTrim({ store, viewport }: StudioContext): void {
+  const trim = store.pendingOptions?.trim;
+  const { histogram } = store;
+  viewport.surface.setTrim(trim !== undefined && trim > 0 && histogram ? densityOf(histogram, trim) : -1);
+  viewport.requestRender();
+}
+
+/// The hand is on the trim: the engine sends the whole surface with its densities, once; all else the page shows itself.
+function holdTrim(context: StudioContext, trim: number): void {
+  const { store, connection, viewport, live: options } = context;
+  const first = store.pendingOptions?.trim === undefined;
+  if (!store.histogram) return options.input({ trim });
+  options.hold({ trim });
+  if (first && !viewport.surface.decoded?.values["density"]) {
+    connection.request("values", { name: "density" }).catch((error) => tell(context, error));
+  }
+}
+
 function trimControl(context: StudioContext) {
   const trim = Number(context.store.options.trim ?? 0);
-  // Tinting says it at once where the mesh has what will go; what is cut away already the engine must bring back.
-  const show = (value: number): boolean => {
-    const { histogram, scene } = context.store;
-    const { surface } = context.viewport;
-    const tinted = !!histogram && value > Number(scene?.options.trim ?? 0) && !!surface.decoded?.values["density"];
-    surface.setTrim(tinted ? densityOf(histogram, value) : -1);
-    context.viewport.requestRender();
-    return tinted;
-  };
   const spec = {
     label: "Trim",
     testid: "opt-trim",
@@ -112,14 +123,8 @@ function trimControl(context: StudioContext) {
     min: 0,
     max: 0.5,
     step: 0.005,
-    input: (value: number) => {
-      if (show(value)) context.live.hold({ trim: value });
-      else context.live.input({ trim: value });
-    },
-    change: (value: number) => {
-      show(value);
-      context.live.change({ trim: value });
-    },
+    input: (value: number) => holdTrim(context, value),
+    change: (value: number) => context.live.change({ trim: value }),
   };
   return html`<h3>Trim</h3>
     ${bars(context, trim)}
@@ -166,26 +171,30 @@ export function reconstructPanel(context: StudioContext) {
       change: live(context, "fixed_screening").change,
     })}
     ${trimControl(context)}
-    ${pendingOptions ? html`<p class="hint pending" data-testid="options-pending">Preview. Release to apply, Esc to go back.</p>` : nothing}`;
+    ${pendingOptions ? html`<p class="hint pending" data-testid="options-pending">Not applied yet. Esc goes back.</p>` : nothing}`;
 }
 
 const asked = new WeakMap<StudioContext, { estimate: string; histogram: unknown }>();
 
 /// Asks for what the panel shows besides the options, once for every cloud and mesh.
 export function refreshReconstruct(context: StudioContext): void {
-  const { store, connection, viewport } = context;
+  const { store, connection } = context;
   const { scene, mesh } = store;
-  if (!store.pendingOptions) viewport.surface.setTrim(-1);
+  showTrim(context);
   if (store.panel !== "reconstruct" || !scene || store.connection !== "open") return;
   const before = asked.get(context) ?? { estimate: "", histogram: null };
-  const { depth: _depth, ...rest } = scene.options;
-  const key = `${scene.points} ${scene.clouds.map((cloud) => cloud.name).join()} ${JSON.stringify(rest)}`;
+  const depth = Number(store.options.depth ?? 8);
+  const key = `${scene.journal} ${scene.points} ${depth} ${JSON.stringify(scene.options)}`;
   const version = mesh && !mesh.preview ? mesh.version : before.histogram;
   asked.set(context, { estimate: key, histogram: version });
   if (key !== before.estimate) {
-    connection.request("estimate", { options: scene.options }).then((estimate) => store.update({ estimate })).catch((error) => tell(context, error));
+    connection.request("estimate", { options: { depth } }).then((estimate) => store.update({ estimate })).catch((error) => tell(context, error));
   }
   if (version !== before.histogram) {
-    connection.request("histogram").then((histogram) => store.update({ histogram })).catch(() => store.update({ histogram: null }));
+    connection.request("histogram").then((histogram) => store.update({ histogram })).catch((error) => {
+      // Something more urgent came between: asked again with the next change.
+      if (error instanceof EngineError && error.quiet) asked.delete(context);
+      else store.update({ histogram: null });
+    });
   }
 }

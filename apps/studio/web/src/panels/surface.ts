@@ -36,7 +36,7 @@ const kColours: [ColourMode, string][] = [
   ["density", "density of the points"],
   ["confidence", "confidence"],
   ["weakness", "weakness"],
-  ["distance", "distance to the reference"],
+  ["distance", "distance to the points"],
 ];
 
 interface SectionState {
@@ -114,17 +114,20 @@ export function surfacePanel(context: StudioContext) {
   const { store } = context;
   const { mesh, view, scene } = store;
   if (!scene || !mesh) return html`<p class="hint">No surface yet.</p>`;
-  const topology = mesh.topology ?? scene.topology;
+  const { topology, surface } = scene;
   const shown = mesh.triangles < mesh.full_triangles;
+  const tight = surface?.watertight ?? context.viewport.surface.decoded?.closed;
   return html`<h3>Measures</h3>
     ${facts([
-      ["Triangles", count(mesh.full_triangles)],
-      ["Vertices", shown ? "–" : count(mesh.vertices)],
+      ["Triangles", count(scene.triangles)],
+      ["Vertices", surface ? count(surface.vertices) : "–"],
       ["Depth", mesh.depth],
       ["Genus", topology ? count(topology.genus) : "–"],
       ["Components", topology ? count(topology.components) : "–"],
       ["Euler number", topology ? topology.euler.toString().replace("-", "−") : "–"],
-      ["Watertight", context.viewport.surface.decoded?.closed ? "yes" : "no, it has edges", "surface-watertight"],
+      ["Watertight", tight ? "yes" : surface ? `no, ${count(surface.boundary_edges)} open edges` : "no", "surface-watertight"],
+      ["Area", surface ? measure(surface.area) : "–"],
+      ["Volume", surface && surface.closed ? measure(surface.volume) : "–"],
       ["Sent", bytes(mesh.bytes)],
     ])}
     ${shown ? html`<p class="hint" data-testid="shown-coarser">Shown with ${count(mesh.triangles)} triangles; saving writes all.</p>` : nothing}
@@ -133,10 +136,10 @@ export function surfacePanel(context: StudioContext) {
       label: "Colour by",
       testid: "surface-colour",
       value: view.colour,
-      choices: kColours.map(([value, label]) => ({ value, label, disabled: value !== "plain" && !store.meshAttributes.includes(value) })),
-      change: (colour) => store.setView({ colour }),
+      choices: kColours.map(([value, label]) => ({ value, label, disabled: value === "colour" && !store.meshAttributes.includes(value) })),
+      change: (colour) => void context.link.colour(colour),
     })}
-    ${switchRow({ label: "Wireframe", testid: "wireframe", title: "Edges of the triangles (W)", value: view.wireframe, change: (wireframe) => store.setView({ wireframe }) })}
+    ${switchRow({ label: "Wireframe", testid: "wireframe", title: "Edges of the triangles (Shift+W)", value: view.wireframe, change: (wireframe) => store.setView({ wireframe }) })}
     ${section(context)}
     <h3>Reference</h3>
     ${comparison(context)}`;

@@ -26,7 +26,7 @@ class BendTool extends DeformTool<BendState> {
   readonly title = "Bend by handles";
   readonly key = "d";
   readonly icon = "M4 18c6 0 5-11 14-11M4 18h.01M18 7h.01M7 18a3 3 0 11-6 0 3 3 0 016 0zM22 7a3 3 0 11-6 0 3 3 0 016 0z";
-  readonly hint = "Click the surface to set handles; drag one by its gizmo, the others hold; [ and ] change the radius, Delete removes";
+  readonly hint = "Click to set handles, drag one by its gizmo; [ ] radius, Delete removes";
   protected state: BendState = { balls: [], chosen: -1 };
   private affine = false;
   private radius = 0; // of the next handle; 0: a tenth of the scene
@@ -213,7 +213,7 @@ class BendTool extends DeformTool<BendState> {
 
   private eachDragRow(): TemplateResult {
     return switchRow({
-      label: "Apply each drag",
+      label: "Auto-apply",
       title: "A drag is a step of the history when it ends; else Enter applies",
       testid: "bend-each-drag",
       value: this.eachDrag,

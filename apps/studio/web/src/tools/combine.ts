@@ -1,7 +1,8 @@
 // Set operations with a second solid: a cloud, a mesh or a generated shape, placed by a gizmo.
-import { type TemplateResult, html } from "lit";
-import type { BooleanOperation, Box, Operation } from "../engine/protocol";
+import { type TemplateResult, html, nothing } from "lit";
+import type { BooleanOperation, Box, ClassCounts, Operation } from "../engine/protocol";
 import { segmentsRow, selectRow } from "../ui/controls";
+import { count } from "../ui/format";
 import { booleanOf } from "./shared/documents";
 import { applyBar, note } from "./shared/fields";
 import { centreOf, diagonalOf } from "./shared/interval";
@@ -24,8 +25,9 @@ class CombineTool extends PlacedTool {
   readonly title = "Combine solids";
   readonly key = "u";
   readonly icon = "M15 9.5a6 6 0 11-6-6 6 6 0 016 6zM21 14.5a6 6 0 11-6-6 6 6 0 016 6z";
-  readonly hint = "Choose a second solid, place it by the gizmo, choose what is made of both; Enter combines, Esc drops";
+  readonly hint = "Choose a second solid, place it by the gizmo; Enter combines, Esc drops";
   private kind: Kind = "union";
+  private asItIs = false;
   private creases: "sampled" | "none" = "sampled";
 
   constructor(context: ToolContext) {
@@ -34,7 +36,15 @@ class CombineTool extends PlacedTool {
 
   /// In the middle of the scene: there it meets the surface.
   protected firstPlace(extent: Box): Pose {
-    return this.posed(centreOf(this.context.viewport.box), this.fitting(extent, 0.4));
+    const scale = this.asItIs ? 1 : this.fitting(extent, 0.4);
+    this.asItIs = false;
+    return this.posed(centreOf(this.context.viewport.box), scale);
+  }
+
+  /// A mesh without normals has no points to show: it stays where it is by itself.
+  protected override unseen(): Box {
+    this.asItIs = true;
+    return this.context.viewport.box;
   }
 
   protected renewed(): void {}
@@ -69,9 +79,21 @@ class CombineTool extends PlacedTool {
           this.preview();
         },
       })}
-      ${this.part ? this.gizmo.fields(this.part.pose, diagonalOf(this.context.viewport.box) / 200) : ""}
+      ${this.part ? this.gizmo.fields(this.part.pose, diagonalOf(this.context.viewport.box) / 200) : nothing}
+      ${this.part ? this.counts() : nothing}
       ${note(this.state(), "tool-state", this.previews.error !== "")}
       ${applyBar({ ready: !!this.part, busy: this.previews.committing, label: "Combine", apply: () => void this.commit(), drop: () => this.drop() })}`;
+  }
+
+  /// What becomes of the points, in the colours that they have in the view.
+  private counts(): TemplateResult | typeof nothing {
+    const { ghosts } = this.context.store;
+    if (!ghosts?.a || !ghosts.b) return nothing;
+    const sum = (what: keyof ClassCounts) => (ghosts.a?.[what] ?? 0) + (ghosts.b?.[what] ?? 0);
+    const dot = (colour: string) => html`<svg width="10" height="10" viewBox="0 0 10 10" aria-hidden="true"><circle cx="5" cy="5" r="4" fill=${colour} /></svg>`;
+    return html`<p class="hint" data-testid="combine-counts">
+      ${dot("#d3d8df")} ${count(sum("kept"))} kept &nbsp; ${dot("#f0954e")} ${count(sum("flipped"))} turned &nbsp; ${dot("#4aa3ea")} ${count(sum("dropped"))} dropped
+    </p>`;
   }
 
   private state(): string {

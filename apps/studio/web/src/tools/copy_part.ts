@@ -6,7 +6,7 @@ import { type Part, areaOf, insertOf } from "./shared/documents";
 import { drawPath } from "./shared/draw";
 import { actions, applyBar, countOf, note, vectorRow } from "./shared/fields";
 import { LassoGesture } from "./shared/gestures";
-import { diagonalOf } from "./shared/interval";
+import { centreOf, diagonalOf } from "./shared/interval";
 import { type FaceDrag, dragFace, drawBox, faceAt } from "./shared/part_box";
 import { type PlacedPart, PlacedTool } from "./shared/placed_tool";
 import type { Pose } from "./shared/pose";
@@ -23,7 +23,7 @@ class CopyPartTool extends PlacedTool {
   readonly title = "Copy a part";
   readonly key = "c";
   readonly icon = "M9 9h11v11H9zM15 9V4H4v11h5M14.5 12v5M12 14.5h5";
-  readonly hint = "Choose another cloud, a box or a lasso on it, place it by the gizmo; Enter adds its points, Esc drops them";
+  readonly hint = "Choose a cloud, place a part of it by the gizmo; Enter adds, Esc drops";
   private mode: Mode = "place";
   private box: Box | null = null;
   private lasso: Part["lasso"] = null;
@@ -38,11 +38,16 @@ class CopyPartTool extends PlacedTool {
   /// Beside the scene, on the right as it is seen now.
   protected firstPlace(extent: Box): Pose {
     const { viewport } = this.context;
+    const { right } = new View(viewport.cameraDocument());
     const scale = this.fitting(extent, 0.5);
-    const { lower, upper } = viewport.box;
-    const middle = lower.map((l, a) => (l + upper[a]!) / 2) as Box["lower"];
-    const apart = 0.45 * (diagonalOf(viewport.box) + scale * diagonalOf(extent));
-    return this.posed(along(middle, new View(viewport.cameraDocument()).right, apart), scale);
+    const reach = (box: Box) => box.upper.reduce((sum, u, a) => sum + (Math.abs(right[a]!) * (u - box.lower[a]!)) / 2, 0);
+    const apart = reach(viewport.box) + scale * reach(extent) + 0.05 * diagonalOf(viewport.box);
+    return this.posed(along(centreOf(viewport.box), right, apart), scale);
+  }
+
+  protected override unseen(error: Error): null {
+    this.context.notice("error", error.message);
+    return null;
   }
 
   protected renewed(): void {

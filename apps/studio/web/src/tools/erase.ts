@@ -14,7 +14,7 @@ class EraseTool extends AreaTool {
   readonly title = "Erase points";
   readonly key = "e";
   readonly icon = "M9 19l-5-5 9-9 6 6-8 8zM8 10l6 6M9 19h10";
-  readonly hint = "Draw around points that were added to take them away, with Shift around any point; Enter removes, Esc drops";
+  readonly hint = "Draw around added points, with Shift around any; Enter removes, Esc drops";
   private originals = false;
   private shifted = false; // Shift was held when the shape was begun
 

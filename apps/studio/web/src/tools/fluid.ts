@@ -3,10 +3,11 @@
 import { type SVGTemplateResult, type TemplateResult, html, nothing, svg } from "lit";
 import type { Vec3 } from "../engine/protocol";
 import { button, numberRow, segmentsRow, selectRow, sliderRow } from "../ui/controls";
+import type { ShowMode } from "../engine/store";
 import { drawRing, kOrange } from "./shared/draw";
 import { actions, note } from "./shared/fields";
 import { View, pixelOf } from "./shared/view";
-import { type Force, forceOf, insideTank, middleOf, placeInWater, readFacts, widestRadius } from "./shared/water";
+import { type Force, type WaterFacts, forceOf, insideTank, middleOf, placeInWater, readFacts, widestRadius } from "./shared/water";
 import { register } from "./registry";
 import type { Tool, ToolContext, ToolPointer } from "./tool";
 
@@ -26,20 +27,33 @@ class FluidTool implements Tool {
   readonly title = "Water";
   readonly key = "w";
   readonly icon = "M3 8c3-3 6 3 9 0s6 3 9 0M3 13c3-3 6 3 9 0s6 3 9 0M3 18c3-3 6 3 9 0s6 3 9 0";
-  readonly hint = "Start a scene; dragging pushes or stirs the water, or moves the obstacle; P pauses, Backspace restarts";
+  readonly hint = "Drag to push, stir or move the obstacle; [ ] radius, P pauses, Backspace restarts";
   private scene = "dam-break";
   private particles = 20_000;
   private hand: Hand = "push";
   private radius = 0.25;
   private strength = 40;
   private starting = false;
+  private tank: WaterFacts | null = null; // as the scene began
+  private showBefore: ShowMode | null = null;
   private held: { at: Vec3; depth: Vec3; seconds: number } | null = null;
   private cursor: Vec3 | null = null;
   private last = ""; // the request that was sent last, so that none is sent twice
   private sending = false;
   private next: object | null = null;
 
-  constructor(private readonly context: ToolContext) {}
+  constructor(private readonly context: ToolContext) {
+    context.store.addEventListener("change", () => this.running || this.starting || this.restoreView());
+  }
+
+  /// The scene is shown again as it was before the water.
+  private restoreView(): void {
+    if (!this.showBefore) return;
+    const show = this.showBefore;
+    this.showBefore = null;
+    this.context.store.setView({ show });
+    this.context.viewport.frame();
+  }
 
   private get running(): boolean {
     return this.context.store.sequence?.kind === "fluid";
@@ -51,7 +65,7 @@ class FluidTool implements Tool {
 
   private get facts() {
     const frame = this.context.store.sequence?.frame;
-    return this.running && frame ? readFacts(frame) : null;
+    return this.running ? ((frame && readFacts(frame)) ?? this.tank) : null;
   }
 
   // ---- requests ----
@@ -63,9 +77,11 @@ class FluidTool implements Tool {
     const label = kScenes.find(({ value }) => value === this.scene)!.label;
     store.update({ sequence: { kind: "fluid", name: label, frames: 0, index: 0, playing: true, loop: false, cached: new Set(), frame: null } });
     try {
-      await connection.request("fluid", { start: { scene: this.scene, particles: this.particles } });
-      viewport.setPoints(null);
-      viewport.afterNextFrame(() => viewport.frame());
+      const facts = await connection.request("fluid", { start: { scene: this.scene, particles: this.particles } });
+      this.tank = readFacts(facts);
+      this.showBefore ??= store.view.show;
+      store.setView({ show: "mesh" }); // the scene's points have nothing to do with the water
+      if (this.tank) viewport.frame({ lower: [0, 0, 0], upper: this.tank.tank });
     } catch (error) {
       store.update({ sequence: null });
       this.context.notice("error", (error as Error).message);
@@ -86,8 +102,11 @@ class FluidTool implements Tool {
   }
 
   private async stop(): Promise<void> {
+    const { connection, store } = this.context;
+    store.update({ sequence: null });
     await this.ask({ stop: true });
-    this.context.store.update({ sequence: null });
+    // The scene's own surface is shown again.
+    if (store.scene) await connection.request("reference_end").catch(() => undefined);
     this.held = null;
     this.context.redraw();
   }
@@ -143,7 +162,7 @@ class FluidTool implements Tool {
       return this.send({ obstacle: insideTank(to, facts.tank, radius) });
     }
     const now = performance.now() / 1000;
-    const force: Force | null = forceOf(this.hand, held.at, to, now - held.seconds, view.back, this.radius, this.strength);
+    const force: Force | null = forceOf(this.hand, held.at, to, now - held.seconds, { radius: this.radius, strength: this.strength, back: view.back });
     this.held = { ...held, at: to, seconds: now };
     this.send({ push: force ? [force] : [] });
   }

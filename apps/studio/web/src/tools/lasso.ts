@@ -9,5 +9,5 @@ export const lasso = register((context) =>
     title: "Guide by a lasso",
     key: "l",
     icon: "M12 4c5 0 9 2.5 9 6s-4 6-9 6-9-2.5-9-6 4-6 9-6zM6 15c-1 2 0 3 2 3s2 2 0 3",
-    hint: "Draw a loop to fill it with points; hold Alt or Shift for further loops, one inside another is a hole; Enter adds, Esc drops",
+    hint: "Draw a loop to fill it; Alt or Shift adds loops and holes, Enter adds, Esc drops",
   }));

@@ -29,7 +29,7 @@ class LatticeTool extends DeformTool<LatticeState> {
   readonly title = "Bend by a lattice";
   readonly key = "g";
   readonly icon = "M4 5c5-2 11 2 16 0v14c-5 2-11-2-16 0zM9.3 4.6v14M14.7 5.4v14M4 12c5-2 11 2 16 0";
-  readonly hint = "Drag control points; Shift adds to the choice, Shift and drag chooses by a rectangle; X, Y, Z drag along an axis";
+  readonly hint = "Drag control points; Shift chooses more, X Y Z keep to an axis, Enter applies";
   protected state: LatticeState;
   private chosen = new Set<string>();
   private along: Constraint = "view";
@@ -45,14 +45,14 @@ class LatticeTool extends DeformTool<LatticeState> {
     return { box: grown(this.context.viewport.box, kMargin), spans, moves: new Map(), outside };
   }
 
-  override activate(): void {
-    super.activate();
-    if (!this.pending) this.refit();
-  }
-
   protected operation(): DeformOperation | null {
     const moved = [...this.state.moves.values()].some((by) => by.some((v) => v !== 0));
     return moved ? latticeOf(this.state) : null;
+  }
+
+  /// The lattice keeps around the surface while nobody drags it.
+  protected override meshChanged(): void {
+    if (!this.pending && !this.hold && !this.previews.committing) this.refit();
   }
 
   /// The lattice is straight again, around the surface as it is now.
@@ -227,7 +227,7 @@ class LatticeTool extends DeformTool<LatticeState> {
         change: (value) => this.set({ outside: value }),
       })}
       ${switchRow({
-        label: "Apply each drag",
+        label: "Auto-apply",
         title: "A drag is a step of the history when it ends; else Enter applies",
         testid: "lattice-each-drag",
         value: this.eachDrag,

@@ -22,7 +22,7 @@ class OrientTool extends AreaTool {
   readonly title = "Orient normals";
   readonly key = "o";
   readonly icon = "M3 17c4-5 14-5 18 0M7 13.5L5.5 8M12 13V6M17 13.5L18.5 8M10.5 7.5L12 5l1.5 2.5";
-  readonly hint = "Estimate, repair or turn normals; an area turns those in it, a click sets where a scanner stood; Enter applies";
+  readonly hint = "Draw around normals to turn them, or click where the scanner stood; Enter applies";
   private mode: Mode = "flip";
   private sensors: Vec3[] = [];
   private chosen = -1;
@@ -155,8 +155,8 @@ class OrientTool extends AreaTool {
         testid: "orient-mode",
         value: this.mode,
         choices: [
-          { value: "flip", label: "Turn an area", title: "Normals in the area drawn are turned round" },
-          { value: "sensor", label: "Set a sensor", title: "A click says where a scanner stood" },
+          { value: "flip", label: "Area", title: "Normals in the area drawn are turned round" },
+          { value: "sensor", label: "Sensor", title: "A click says where a scanner stood" },
         ],
         change: (mode) => this.setMode(mode),
       })}

@@ -9,5 +9,5 @@ export const polygon = register((context) =>
     title: "Guide by a polygon",
     key: "p",
     icon: "M5 9l8-5 7 7-5 9-9-2z",
-    hint: "Click corners; Backspace takes the last back, Enter or a click on the first closes, Enter again adds the points, Esc drops",
+    hint: "Click corners, Backspace takes one back; Enter closes, then adds, Esc drops",
   }));

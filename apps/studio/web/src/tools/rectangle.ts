@@ -9,5 +9,5 @@ export const rectangle = register((context) =>
     title: "Guide by a rectangle",
     key: "r",
     icon: "M4 6h16v12H4zM4 6h.01M20 6h.01M4 18h.01M20 18h.01",
-    hint: "Drag a rectangle to fill its inside with points; Enter adds them, Esc drops them, corners can be dragged",
+    hint: "Drag a rectangle to fill it with points; [ ] interval, Enter adds, Esc drops",
   }));

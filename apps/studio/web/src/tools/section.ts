@@ -25,7 +25,7 @@ class SectionTool implements Tool {
   readonly title = "Section plane";
   readonly key = "x";
   readonly icon = "M4 8l8-4 8 4-8 4zM4 8v8l8 4 8-4V8M2 13l20-4";
-  readonly hint = "Cuts the view open: drag the arrow along the normal, the rings turn the plane; X, Y and Z in the settings; Esc closes";
+  readonly hint = "Drag the arrow to move the cut, the rings to turn it; [ ] steps, Esc closes";
   private pose: Pose | null = null;
   private on = false;
   private readonly gizmo: GizmoControl;

@@ -9,5 +9,5 @@ export const stroke = register((context) =>
     title: "Guide by a stroke",
     key: "b",
     icon: "M4 20c4-1 3-6 7-7s5-1 9-9M4 20l1-4M4 20l4-1",
-    hint: "Drag to draw a membrane of points along the view; Enter adds them, Esc drops them, [ and ] change the interval",
+    hint: "Drag a membrane of points along the view; [ ] interval, Enter adds, Esc drops",
   }));

@@ -33,7 +33,11 @@ export function score(query: string, title: string): number {
   const [q, t] = [query.trim().toLowerCase(), title.toLowerCase()];
   if (q === "") return 1;
   const whole = t.indexOf(q);
-  if (whole >= 0) return 1000 - whole + (whole === 0 || t[whole - 1] === " " ? 500 : 0) - t.length / 100;
+  if (whole >= 0) {
+    const begins = whole === 0 || t[whole - 1] === " " ? 500 : 0;
+    const ends = /^(\W|$)/.test(t.slice(whole + q.length)) ? 100 : 0;
+    return 1000 - whole + begins + ends - t.length / 100;
+  }
   let [at, sum] = [0, 0];
   for (const letter of q) {
     if (letter === " ") continue;

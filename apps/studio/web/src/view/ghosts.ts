@@ -36,6 +36,7 @@ export class GhostLayer {
   readonly group = new THREE.Group();
   private readonly added = pointsMaterial(kAdded);
   private readonly removed = pointsMaterial(kRemoved);
+  private readonly classes = pointsMaterial("#aab2bd");
   private readonly spikes = new THREE.ShaderMaterial({
     vertexShader: spikesVertex,
     fragmentShader: spikesFragment,
@@ -44,25 +45,33 @@ export class GhostLayer {
     uniforms: { plain: { value: rgb(kAdded) }, spike: { value: 0 } },
   });
 
+  private get materials(): THREE.ShaderMaterial[] {
+    return [this.added, this.removed, this.classes];
+  }
+
   constructor() {
-    for (const material of [this.added, this.removed]) {
+    for (const material of this.materials) {
       material.polygonOffset = true;
       material.polygonOffsetUnits = -4;
     }
+    // What goes is orange, as for a trim; what is turned is blue.
+    const tints = this.classes.uniforms["tints"]!.value as THREE.Vector3[];
+    tints[1] = rgb(kRemoved);
+    tints[2] = rgb(kAdded);
   }
 
-  set(added: Decoded | null, removed: Decoded | null): void {
+  set(added: Decoded | null, removed: Decoded | null, tinted = false): void {
     for (const child of this.group.children) (child as THREE.Points).geometry.dispose();
     this.group.clear();
-    if (added) this.show(added, this.added);
+    if (added) this.show(added, tinted ? this.classes : this.added);
     if (removed) this.show(removed, this.removed);
   }
 
   /// Sizes: points in pixels at the centre, normals as a share of the scene.
   setReference(distance: number, pixelRatio: number, radius: number): void {
-    for (const material of [this.added, this.removed]) {
+    for (const material of this.materials) {
       material.uniforms["reference"]!.value = distance;
-      material.uniforms["size"]!.value = 4.5 * pixelRatio;
+      material.uniforms["size"]!.value = (material === this.classes ? 2.5 : 4.5) * pixelRatio;
     }
     this.spikes.uniforms["spike"]!.value = Math.min(0.02 * radius, 0.02 * distance);
   }

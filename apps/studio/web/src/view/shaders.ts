@@ -4,7 +4,7 @@ import { kMapShader } from "./colours";
 
 const kOctahedral = /* glsl */ `
 vec3 octahedral(vec2 e) {
-  vec2 f = e * 2.0 - 1.0;
+  vec2 f = (e * 255.0 - 127.0) / 127.0; // 255 steps around 127, so that axes are exact
   vec3 n = vec3(f, 1.0 - abs(f.x) - abs(f.y));
   float t = max(-n.z, 0.0);
   n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);

@@ -22,6 +22,7 @@ export abstract class DeformTool<T> implements Tool {
   private readonly snapshots = new Snapshots<T>();
   private readonly watch = () => this.historyMoved();
   private clouds = "";
+  private mesh: unknown = null;
 
   constructor(protected readonly context: ToolContext) {
     this.previews = new Previews(context.connection, () => context.redraw());
@@ -56,11 +57,18 @@ export abstract class DeformTool<T> implements Tool {
       this.snapshots.clear();
       this.forget();
     }
+    if (this.context.store.mesh !== this.mesh) {
+      this.mesh = this.context.store.mesh;
+      this.meshChanged();
+    }
     const state = scene ? this.snapshots.arrive(scene.done) : null;
     if (!state || this.previews.committing) return;
     this.state = state;
     this.context.redraw();
   }
+
+  /// Another mesh is on the screen.
+  protected meshChanged(): void {}
 
   protected get pending(): boolean {
     return this.operation() !== null;
@@ -85,7 +93,6 @@ export abstract class DeformTool<T> implements Tool {
     const record = await this.previews.commit(operation);
     if (record) {
       this.state = after;
-      this.previews.shown = false; // the committed mesh has taken the preview's place
     } else {
       if (this.previews.error) this.context.notice("error", this.previews.error);
       this.drop();

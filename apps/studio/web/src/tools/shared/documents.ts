@@ -52,7 +52,8 @@ export function flipOf(camera: CameraJson, shape: Shape, layers: Layers): FlipOp
   return { op: "flip", camera, ...regionOf(shape), layers };
 }
 
-export type Source = { file: string } | { shape: string; points?: number };
+/// A file below the root, one that the page has sent, or a generated shape.
+export type Source = { file: string } | { upload: number } | { shape: string; points?: number };
 
 export interface Part {
   source: Source;

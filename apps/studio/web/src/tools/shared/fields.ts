@@ -1,7 +1,9 @@
 // Rows that the settings of several tools have.
 import { type TemplateResult, html, nothing } from "lit";
 import type { Vec3 } from "../../engine/protocol";
-import { button, numberField } from "../../ui/controls";
+import { button } from "../../ui/controls";
+import { count } from "../../ui/format";
+import "./vector_field";
 
 /// A sentence below the controls. Warnings are read out as they come.
 export function note(text: string, testid: string, warning = false): TemplateResult {
@@ -36,32 +38,23 @@ export interface VectorSpec {
   value: Vec3;
   step?: number;
   min?: number;
-  unit?: string;
-  disabled?: boolean;
   input?(value: Vec3): void; // while it moves
   change(value: Vec3): void;
 }
 
 /// Three numbers in a row, x, y and z.
 export function vectorRow(spec: VectorSpec): TemplateResult {
-  const with_ = (axis: number, value: number) => spec.value.map((v, a) => (a === axis ? value : v)) as Vec3;
-  const { input } = spec;
   return html`<div class="row" title=${spec.title ?? ""}>
     <span class="label" aria-hidden="true">${spec.label}</span>
-    <div class="segments vector">
-      ${["x", "y", "z"].map((letter, axis) =>
-        numberField({
-          label: `${spec.label} ${letter}`,
-          testid: `${spec.testid}-${letter}`,
-          value: spec.value[axis]!,
-          ...(spec.step === undefined ? {} : { step: spec.step }),
-          ...(spec.min === undefined ? {} : { min: spec.min }),
-          disabled: spec.disabled ?? false,
-          ...(input ? { input: (value: number) => input(with_(axis, value)) } : {}),
-          change: (value) => spec.change(with_(axis, value)),
-        }),
-      )}
-    </div>
+    <psk-vector
+      .label=${spec.label}
+      .testid=${spec.testid}
+      .value=${spec.value}
+      .step=${spec.step ?? 0}
+      .min=${spec.min ?? -Infinity}
+      @input=${(event: Event) => event instanceof CustomEvent && spec.input?.(event.detail as Vec3)}
+      @change=${(event: Event) => event instanceof CustomEvent && spec.change(event.detail as Vec3)}
+    ></psk-vector>
   </div>`;
 }
 
@@ -72,5 +65,5 @@ export function actions(...buttons: (TemplateResult | typeof nothing)[]): Templa
 
 /// 1204 -> "1,204 points", 1 -> "1 point".
 export function countOf(n: number, thing: string): string {
-  return `${String(n).replace(/\B(?=(\d{3})+(?!\d))/g, ",")} ${thing}${n === 1 ? "" : "s"}`;
+  return `${count(n)} ${thing}${n === 1 ? "" : "s"}`;
 }

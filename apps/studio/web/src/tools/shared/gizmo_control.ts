@@ -120,57 +120,44 @@ export class GizmoControl {
 
   /// @param step  world units that a step of a position field is
   fields(pose: Pose, step: number): TemplateResult {
-    const options = this.host.options();
-    const set = (patch: Partial<Pose>) => {
-      const { spin: _, ...rest } = pose;
-      this.host.moved("rotation" in patch ? { ...rest, ...patch } : { ...pose, ...patch });
-    };
-    const settle = (patch: Partial<Pose>) => {
-      set(patch);
-      this.host.released();
-    };
-    const position = (position: Vec3) => ({ position });
-    const rotation = (degrees: Vec3) => ({ rotation: turnOfDegrees(degrees) });
+    const { move, turn, scale } = this.host.options();
     return html`
-      ${options.move ? this.row("Position", "position", pose.position, step, position, set, settle) : nothing}
-      ${options.turn ? this.row("Turn, degrees", "turn", degreesOf(pose.rotation), 1, rotation, set, settle) : nothing}
-      ${options.scale === "none" ? nothing : this.scaleRow(pose, options.scale, set, settle)}`;
+      ${move ? this.row(pose, "Position", pose.position, step, (position) => ({ position })) : nothing}
+      ${turn ? this.row(pose, "Turn °", degreesOf(pose.rotation), 1, (degrees) => ({ rotation: turnOfDegrees(degrees) })) : nothing}
+      ${scale === "axes" ? this.row(pose, "Scale", pose.scale, 0, (s) => ({ scale: s })) : nothing}
+      ${scale === "uniform" ? this.scaleRow(pose) : nothing}`;
   }
 
-  private row(
-    label: string,
-    what: string,
-    value: Vec3,
-    step: number,
-    patch: (value: Vec3) => Partial<Pose>,
-    set: (patch: Partial<Pose>) => void,
-    settle: (patch: Partial<Pose>) => void,
-  ): TemplateResult {
+  private set(pose: Pose, patch: Partial<Pose>): void {
+    const { spin: _, ...rest } = pose;
+    this.host.moved("rotation" in patch ? { ...rest, ...patch } : { ...pose, ...patch });
+  }
+
+  private settle(pose: Pose, patch: Partial<Pose>): void {
+    this.set(pose, patch);
+    this.host.released();
+  }
+
+  private row(pose: Pose, label: string, value: Vec3, step: number, patch: (value: Vec3) => Partial<Pose>): TemplateResult {
     return vectorRow({
       label,
-      testid: `${this.name}-${what}`,
+      testid: `${this.name}-${label.split(" ")[0]!.toLowerCase()}`,
       value,
       step,
-      input: (v) => set(patch(v)),
-      change: (v) => settle(patch(v)),
+      input: (v) => this.set(pose, patch(v)),
+      change: (v) => this.settle(pose, patch(v)),
     });
   }
 
-  private scaleRow(
-    pose: Pose,
-    kind: "uniform" | "axes",
-    set: (patch: Partial<Pose>) => void,
-    settle: (patch: Partial<Pose>) => void,
-  ): TemplateResult {
-    if (kind === "axes") return this.row("Scale", "scale", pose.scale, 0, (scale) => ({ scale }), set, settle);
+  private scaleRow(pose: Pose): TemplateResult {
     const all = (s: number) => ({ scale: [s, s, s] as Vec3 });
     return numberRow({
       label: "Scale",
       testid: `${this.name}-scale`,
       value: pose.scale[0],
       min: 1e-9,
-      input: (s) => set(all(s)),
-      change: (s) => settle(all(s)),
+      input: (s) => this.set(pose, all(s)),
+      change: (s) => this.settle(pose, all(s)),
     });
   }
 }

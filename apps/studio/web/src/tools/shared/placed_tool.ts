@@ -6,10 +6,12 @@ import type { Tool, ToolContext, ToolPointer } from "../tool";
 import type { Source } from "./documents";
 import { boxOfLayer } from "./ghost_box";
 import { GizmoControl } from "./gizmo_control";
-import { centreOf, diagonalOf } from "./interval";
+import { centreOf, diagonalOf, unionOf } from "./interval";
+import { placed } from "./part_box";
 import { type Pose, poseAt } from "./pose";
 import { Previews } from "./previews";
 import { SourcePicker } from "./source_picker";
+import { View } from "./view";
 
 /// Milliseconds that the points of the first preview may take to be on the screen.
 const kPatience = 4000;
@@ -65,11 +67,35 @@ export abstract class PlacedTool implements Tool {
     this.previews.end();
     const extent = await this.measure(source);
     this.measuring = false;
-    if (extent && this.picker.source) {
-      this.part = { source: this.picker.source, pose: this.firstPlace(extent), pivot: centreOf(extent), extent };
-      this.preview();
-    }
+    // Another one may have been chosen while this one was measured.
+    if (this.picker.source && this.picker.source !== source) return this.begin();
+    if (extent && this.picker.source) this.place(source, extent);
     this.context.redraw();
+  }
+
+  private place(source: Source, extent: Box): void {
+    this.part = { source, pose: this.firstPlace(extent), pivot: centreOf(extent), extent };
+    this.preview();
+    const { viewport } = this.context;
+    const seen = this.corners(this.part).every((corner) => this.isSeen(corner));
+    if (!seen) viewport.frame(unionOf([viewport.box, ...this.corners(this.part).map((p) => ({ lower: p, upper: p }))])!);
+  }
+
+  /// Of the box of the part, placed.
+  private corners({ extent, pose, pivot }: PlacedPart): Vec3[] {
+    const corner = (bits: number) => [0, 1, 2].map((a) => (bits & (1 << a) ? extent.upper[a]! : extent.lower[a]!)) as Vec3;
+    return [0, 1, 2, 3, 4, 5, 6, 7].map((bits) => placed(corner(bits), pose, pivot));
+  }
+
+  private isSeen(p: Vec3): boolean {
+    const camera = this.context.viewport.cameraDocument();
+    const at = new View(camera).project(p);
+    return at !== null && at.x > 0 && at.y > 0 && at.x < camera.width && at.y < camera.height;
+  }
+
+  /// Where a part is taken to be whose points cannot be shown beforehand; null: it cannot be used.
+  protected unseen(_: Error): Box | null {
+    return null;
   }
 
   /// Box of the part where it lies by itself, from the points of its preview; null where there is none.
@@ -89,8 +115,7 @@ export abstract class PlacedTool implements Tool {
     try {
       await connection.request("preview", { operation });
     } catch (error) {
-      this.context.notice("error", (error as Error).message);
-      return null;
+      return this.unseen(error as Error);
     }
     await drawn;
     this.previews.shown = true;

@@ -14,7 +14,8 @@ function isQuiet(error: unknown): boolean {
 export class Previews {
   shown = false; // a preview was asked for and not ended
   committing = false;
-  error = ""; // of the newest preview, empty if it came
+  error = ""; // of the newest preview or commit, empty if it came
+  told: Record<string, unknown> = {}; // what the reply to the newest preview said
   private running = false;
   private waiting: Operation | null = null;
 
@@ -35,7 +36,7 @@ export class Previews {
       const operation = this.waiting;
       this.waiting = null;
       try {
-        await this.connection.request("preview", { operation });
+        this.told = { ...(await this.connection.request("preview", { operation })) };
         this.error = "";
       } catch (error) {
         if (!isQuiet(error) && !this.waiting && this.shown) this.error = (error as Error).message;
@@ -54,7 +55,7 @@ export class Previews {
     this.connection.request("preview_end").catch(() => undefined);
   }
 
-  /// Applies an operation. The record of what it did, or null where it failed, which `error` says, or another one is
+  /// Applies an operation, which ends its preview: the committed mesh takes its place. The record of what it did, or null where it failed, which `error` says, or another one is
   /// still under way.
   async commit(operation: Operation): Promise<StepRecord | null> {
     if (this.committing) return null;
@@ -65,6 +66,7 @@ export class Previews {
     try {
       const reply = (await this.connection.request("apply", { operation })) as { record: StepRecord };
       this.error = "";
+      this.shown = false;
       return reply.record;
     } catch (error) {
       if (!isQuiet(error)) this.error = (error as Error).message;

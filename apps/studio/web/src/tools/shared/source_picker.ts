@@ -1,6 +1,8 @@
-// Chooses a second cloud, mesh or generated shape: one of the shapes that the engine makes, or a file below its root.
+// Chooses a second cloud, mesh or generated shape: one of the shapes that the engine makes, a file below its root, or
+// one of this computer, which is sent.
 import { type TemplateResult, html, nothing } from "lit";
 import type { FileEntry, FileKind } from "../../engine/protocol";
+import { upload } from "../../engine/session";
 import { button, segmentsRow, selectRow } from "../../ui/controls";
 import type { ToolContext } from "../tool";
 import type { Source } from "./documents";
@@ -8,6 +10,8 @@ import type { Source } from "./documents";
 export class SourcePicker {
   source: Source | null = null;
   private kind: "shape" | "file" = "shape";
+  private sent = ""; // name of the file that was sent
+  private sending = -1; // share of it that has gone; -1: none is
   private folder = "";
   private entries: FileEntry[] = [];
   private listed = false;
@@ -22,6 +26,7 @@ export class SourcePicker {
 
   get title(): string {
     if (!this.source) return "nothing yet";
+    if ("upload" in this.source) return this.sent;
     return "file" in this.source ? this.source.file.split("/").pop()! : this.source.shape;
   }
 
@@ -48,6 +53,32 @@ export class SourcePicker {
       this.error = (error as Error).message;
     }
     this.context.redraw();
+  }
+
+  /// A file of this computer goes to the engine.
+  private async send(): Promise<void> {
+    const input = document.createElement("input");
+    input.type = "file";
+    input.dataset["testid"] = `${this.name}-input`;
+    await new Promise<void>((resolve) => {
+      input.onchange = input.oncancel = () => resolve();
+      input.click();
+    });
+    const file = input.files?.[0];
+    if (!file) return;
+    const progress = (share: number) => {
+      this.sending = share;
+      this.context.redraw();
+    };
+    progress(0);
+    try {
+      const reply = await upload(file, file.name, progress);
+      this.sent = file.name;
+      this.choose({ upload: reply.upload });
+    } catch (error) {
+      this.context.notice("error", `${file.name}: ${(error as Error).message}`);
+    }
+    progress(-1);
   }
 
   private path(name: string): string {
@@ -95,6 +126,13 @@ export class SourcePicker {
             ? this.entryButton(entry.name, `${entry.name}/`, () => void this.list(this.path(entry.name)))
             : this.entryButton(entry.name, entry.name, () => this.choose({ file: this.path(entry.name) }), this.path(entry.name) === chosen),
         )}
+        ${button({
+          label: this.sending < 0 ? "This computer…" : `Sending ${Math.round(100 * this.sending)} %`,
+          testid: `${this.name}-upload`,
+          title: "Send a file of this computer to the engine",
+          disabled: this.sending >= 0,
+          run: () => void this.send(),
+        })}
       </div>`;
   }
 

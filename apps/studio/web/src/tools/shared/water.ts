@@ -36,8 +36,14 @@ export function insideTank(p: Vec3, tank: Vec3, margin: number): Vec3 {
 /// Speed at which a push has its full strength, metres / second.
 const kFullSpeed = 1.5;
 
+export interface Hand {
+  radius: number; // metres
+  strength: number; // metres / second^2
+  back: Vec3; // towards the eye: swirls turn about it
+}
+
 /// The force of a hand that went from one place to another in so many seconds; null while it rests.
-export function forceOf(kind: Force["kind"], from: Vec3, to: Vec3, seconds: number, back: Vec3, radius: number, strength: number): Force | null {
+export function forceOf(kind: Force["kind"], from: Vec3, to: Vec3, seconds: number, { radius, strength, back }: Hand): Force | null {
   const way = sub(to, from);
   const speed = length(way) / Math.max(seconds, 1e-3);
   if (kind === "swirl") return { kind, centre: to, direction: back, radius, strength };

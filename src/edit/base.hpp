@@ -24,7 +24,7 @@ struct BaseFit {
 };
 
 /// Fits the field of a base cloud. With EditOptions::continued the cube is that of the original points as long as it
-/// holds all of them well, as in the session that the cloud is from (docs/decisions/0037-front-layer-and-continuing.md).
+/// holds all of them well, as in the session that the cloud is from (docs/decisions/0037-front-layer-and-continued-sessions.md).
 /// @throws Error as Reconstructor::solve; invalid_input as EditSession
 template <exec::Space Exec>
 BaseFit fit_base(Exec& ex, const Cloud& base, const EditOptions& options,

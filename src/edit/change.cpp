@@ -85,15 +85,22 @@ Change find(Exec& ex, const EditInput& input, const Guide& guide) {
   return change;
 }
 
-/// Indices of the points that the camera shows in the area, ascending.
+/// An area in the view of a camera that looks at points relative to `origin`.
+struct AreaInView {
+  const Camera& camera;
+  const Area& area;
+  Vec3d origin;
+};
+
+/// Indices of the points that the view shows in the area, ascending.
 /// @param candidates  as points_in
 template <exec::Space Exec>
-exec::Buffer<std::int32_t> shown_in(Exec& ex, const Camera& camera, const Area& area, const Vec3d& origin,
-                                    const PointBuffers& points, ArrayView<const std::uint8_t> candidates) {
-  const std::vector<PlaneEdge> edges = edges_of(camera, area);
+exec::Buffer<std::int32_t> shown_in(Exec& ex, const AreaInView& lasso, const PointBuffers& points,
+                                    ArrayView<const std::uint8_t> candidates) {
+  const std::vector<PlaneEdge> edges = edges_of(lasso.camera, lasso.area);
   auto on_device = exec::make_buffer<PlaneEdge>(ex, static_cast<std::int64_t>(edges.size()));
   copy_to_device(ex, edges.data(), on_device.view());
-  return points_in(ex, frame_of(camera, origin), {on_device.cview()}, points.positions.cview(), candidates);
+  return points_in(ex, frame_of(lasso.camera, lasso.origin), {on_device.cview()}, points.positions.cview(), candidates);
 }
 
 /// The points that a removal or a flip is about.
@@ -102,7 +109,7 @@ template <exec::Space Exec, class Chooser>
 exec::Buffer<std::int32_t> chosen_by(Exec& ex, const EditInput& input, const Chooser& chooser,
                                      ArrayView<const std::uint8_t> candidates) {
   exec::Buffer<std::int32_t> chosen =
-      shown_in(ex, chooser.camera, chooser.area, input.origin, input.points, candidates);
+      shown_in(ex, {chooser.camera, chooser.area, input.origin}, input.points, candidates);
   if (!chooser.front_layer || chosen.empty()) return chosen;
   // Points whose normals are to be turned have made the surface bulge before them.
   constexpr bool kTurns = std::is_same_v<Chooser, Flip>;
@@ -154,7 +161,7 @@ struct IsInBox {
 /// The part's points that its view shows in the area.
 template <exec::Space Exec>
 PointBuffers in_view(Exec& ex, const Insert& insert, PointBuffers part) {
-  const exec::Buffer<std::int32_t> kept = shown_in(ex, insert.camera, insert.area, insert.part->origin, part, {});
+  const exec::Buffer<std::int32_t> kept = shown_in(ex, {insert.camera, insert.area, insert.part->origin}, part, {});
   if (kept.empty()) throw Error(ErrorCode::usage, "the view of the inserted part shows none of its points in the area");
   return choose(ex, part, kept.cview());
 }

@@ -82,6 +82,22 @@ PSK_HD Sight sight_of(const ViewFrame& view, const octree::Frame& cube, const Ve
   return sight;
 }
 
+/// A leaf with the field in it.
+struct Cell {
+  octree::Leaf leaf;
+  octree::Coordinates place;
+  float isovalue = 0;
+  float corners[8] = {};
+
+  [[nodiscard]] PSK_HD bool is_inside(const Vec3f& p) const {
+    const Vec3f local = octree::local_in_cell(p, place, leaf.depth);
+    float value = 0;
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) value += corners[s] * octree::corner_weight(s, local);
+    return value >= isovalue;
+  }
+};
+
 struct IsSeen {
   ViewFrame view;
   Screen screen;
@@ -96,42 +112,37 @@ struct IsSeen {
     // A step that is lost in rounding at the face of a leaf goes on by a little.
     const double least = 1e-3 / static_cast<double>(std::int64_t{1} << tree.depth);
     double t = kSurfaceCells * width_of(own);
-    bool was_inside = t < end && is_inside(cell_at(sight.at(t)), sight.at(t));
+    bool was_inside = t < end && cell_at(sight.at(t)).is_inside(sight.at(t));
     if (was_inside && !screen.only_at_samples) return false;
     while (t < end) {
       const Cell cell = cell_at(sight.at(t + least));
       double next = sight.leaves(cell.place, width_of(cell.leaf));
       if (!(next > t + least)) next = t + least;
       if (next > end) next = end;
-      bool crosses = false;
-      const double places[2] = {0.5 * (t + next), next};
-      for (const double at : places) {
-        const bool inside = is_inside(cell, sight.at(at));
-        if (inside && !screen.only_at_samples) return false;
-        if (inside != was_inside) crosses = true;
-        was_inside = inside;
-      }
-      if (crosses && holds_samples(tree, cell.leaf, cell.leaf.depth >= own.depth)) return false;
+      const bool in_middle = cell.is_inside(sight.at(0.5 * (t + next)));
+      const bool in_end = cell.is_inside(sight.at(next));
+      if ((in_middle || in_end) && !screen.only_at_samples) return false;
+      if ((in_middle != was_inside || in_end != in_middle) &&
+          holds_samples(tree, cell.leaf, cell.leaf.depth >= own.depth))
+        return false;
+      was_inside = in_end;
       t = next;
     }
     return true;
   }
 
-  /// A leaf and where it is.
-  struct Cell {
-    octree::Leaf leaf;
-    octree::Coordinates place;
-  };
   [[nodiscard]] PSK_HD Cell cell_at(const Vec3f& p) const {
-    const std::uint64_t key = octree::point_key(p.x, p.y, p.z);
-    const octree::Leaf leaf = leaf_at(screen.field, key);
-    return {leaf, octree::decode(octree::cell_key(key, leaf.depth))};
-  }
-  [[nodiscard]] PSK_HD bool is_inside(const Cell& cell, const Vec3f& p) const {
     const field::FieldView& f = screen.field;
-    const octree::LevelView& level = f.tree.levels[cell.leaf.depth];
-    return octree::interpolated(level, f.values + level.first_node, cell.leaf.cell,
-                                octree::local_in_cell(p, cell.place, cell.leaf.depth)) >= f.isovalue;
+    const std::uint64_t key = octree::point_key(p.x, p.y, p.z);
+    const octree::Leaf leaf = leaf_at(f, key);
+    const octree::LevelView& level = f.tree.levels[leaf.depth];
+    Cell cell{leaf, octree::decode(octree::cell_key(key, leaf.depth)), f.isovalue};
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
+      const std::int32_t corner = level.neighbour(leaf.cell, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
+      cell.corners[s] = f.values[level.first_node + corner];
+    }
+    return cell;
   }
 };
 

@@ -84,6 +84,26 @@ TEST(AContinuedSession, HasTheBytesWithEveryKindOfField) {
   }
 }
 
+TEST(AContinuedSession, HasTheCubeAndTheDepthOfTheOriginalPoints) {
+  EditSession whole(two_fingers_cloud(20'000, 10), cold_options(), Device::cpu(2));
+  Guide longer;  // than the fingers, which end at 0.9; the cube at 0.99
+  longer.camera = front_camera();
+  longer.stroke = {pixel_at(0, -0.93), pixel_at(0, 0.93)};
+  longer.inside_only = false;
+  whole.apply(longer);
+  EditSession second = continued(whole, cold_options());
+  expect_same_bytes(second.mesh(), whole.mesh());
+  Guide from_above;
+  from_above.camera = front_camera();
+  from_above.camera.view = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+  from_above.stroke = {pixel_at(-0.1, 0), pixel_at(0.1, 0)};
+  from_above.inside_only = false;
+  whole.apply(from_above);
+  second.apply(from_above);
+  expect_same_points(second.cloud(), whole.cloud());
+  expect_same_bytes(second.mesh(), whole.mesh());
+}
+
 TEST(AContinuedSession, KeepsTheCubeThatAnInsertedPartHasWidened) {
   EditSession whole(test::sphere_cloud(20'000, 3), cold_options(), Device::cpu(2));
   Insert insert;

@@ -17,8 +17,8 @@
 #include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
-#include "spacing.hpp"
 #include "scene/vector_json.hpp"
+#include "spacing.hpp"
 
 namespace pointskin::cli {
 namespace {

@@ -67,6 +67,17 @@ def violations_in(path, where, allowed, may_name_backend, may_ask_compiler):
             yield f"{place}: includes {target}; it may include only {', '.join(sorted(allowed))}"
 
 
+def violations_in_scene(path, where):
+    """apps/scene is shared by the command line and the studio, and knows neither."""
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = INCLUDE.match(line)
+        target = match.group(2) if match else ""
+        if BACKEND.match(target):
+            yield f"{where}:{number}: includes {target}; only src/exec names a backend"
+        elif match and match.group(1) == '"' and not target.startswith("scene/") and target != "shapes.hpp":
+            yield f"{where}:{number}: includes {target}; apps/scene includes itself, the shapes and <pointskin/...>"
+
+
 def find_violations(root):
     found = []
     for path in sorted((root / "src").rglob("*")):
@@ -80,6 +91,8 @@ def find_violations(root):
             continue
         is_cuda = path.suffix in {".cu", ".cuh"}
         found += violations_in(path, where, LAYERS.get(folder), folder == "exec" or is_cuda, folder in {"core", "exec"})
+    for path in sorted((root / "apps" / "scene").glob("*.[hc]pp")):
+        found += violations_in_scene(path, path.relative_to(root))
     for path in sorted((root / "include").rglob("*.h*")):
         where = path.relative_to(root)
         found += violations_in(path, where, set(), False, False)
@@ -92,6 +105,7 @@ CLEAN = {
     "src/surface/mesh.cu": '#include <cub/cub.cuh>\n#include "field/field.hpp"\n',
     "src/reconstruct.cpp": '#include "surface/mesh.hpp"\n#include "io/ply.hpp"\n',
     "include/pointskin/a.hpp": "#include <vector>\n#include <pointskin/b.hpp>\n",
+    "apps/scene/a.cpp": '#include "scene/a.hpp"\n#include "shapes.hpp"\n#include <pointskin/a.hpp>\n',
 }
 PLANTED = {
     "src/core/a.hpp": '#include "exec/cpu.hpp"\n',
@@ -109,6 +123,8 @@ PLANTED = {
     "src/unheard_of/a.cpp": "\n",
     "include/pointskin/a.hpp": "#include <cuda_runtime.h>\n",
     "include/pointskin/b.hpp": '#include "core/view.hpp"\n',
+    "apps/scene/a.cpp": '#include "console.hpp"\n',
+    "apps/scene/b.hpp": "#include <tbb/parallel_for.h>\n",
 }
 
 

@@ -1,0 +1,5 @@
+// Starts the page: theme, session, connection.
+import "./app/app";
+import { exchangeToken } from "./engine/session";
+
+void exchangeToken();

@@ -1,0 +1,92 @@
+// Points that an operation would add, orange with their normals, and those it would take away, blue and larger.
+import * as THREE from "three";
+import type { Decoded } from "../engine/blob";
+import { geometryOf, place, pointsMaterial, rgb } from "./layers";
+import { spikesFragment, spikesVertex } from "./shaders";
+
+const kAdded = "#f0954e";
+const kRemoved = "#4aa3ea";
+const kMostSpikes = 20000;
+
+/// Every point twice, so that a line goes from it along its normal; a subsample where there are many.
+function spikesOf(decoded: Decoded, material: THREE.ShaderMaterial): THREE.LineSegments {
+  const step = Math.ceil(decoded.vertices / kMostSpikes);
+  const count = Math.floor(decoded.vertices / step);
+  const positions = new Uint16Array(count * 8);
+  const oct = new Uint8Array(count * 4);
+  const end = new Float32Array(count * 2);
+  for (let k = 0; k < count; ++k) {
+    const i = k * step;
+    const p = decoded.positions.subarray(4 * i, 4 * i + 4);
+    positions.set(p, 8 * k);
+    positions.set(p, 8 * k + 4);
+    const n = decoded.normals!.subarray(decoded.normalStride * i, decoded.normalStride * i + 2);
+    oct.set(n, 4 * k);
+    oct.set(n, 4 * k + 2);
+    end[2 * k + 1] = 1;
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(positions, 4, true));
+  geometry.setAttribute("oct", new THREE.BufferAttribute(oct, 2, true));
+  geometry.setAttribute("end", new THREE.BufferAttribute(end, 1));
+  return new THREE.LineSegments(geometry, material);
+}
+
+export class GhostLayer {
+  readonly group = new THREE.Group();
+  private readonly added = pointsMaterial(kAdded);
+  private readonly removed = pointsMaterial(kRemoved);
+  private readonly classes = pointsMaterial("#aab2bd");
+  private readonly spikes = new THREE.ShaderMaterial({
+    vertexShader: spikesVertex,
+    fragmentShader: spikesFragment,
+    transparent: true,
+    depthWrite: false,
+    uniforms: { plain: { value: rgb(kAdded) }, spike: { value: 0 } },
+  });
+
+  private get materials(): THREE.ShaderMaterial[] {
+    return [this.added, this.removed, this.classes];
+  }
+
+  constructor() {
+    for (const material of this.materials) {
+      material.polygonOffset = true;
+      material.polygonOffsetUnits = -4;
+    }
+    // What goes is orange, as for a trim; what is turned is blue.
+    const tints = this.classes.uniforms["tints"]!.value as THREE.Vector3[];
+    tints[1] = rgb(kRemoved);
+    tints[2] = rgb(kAdded);
+  }
+
+  set(added: Decoded | null, removed: Decoded | null, tinted = false): void {
+    for (const child of this.group.children) (child as THREE.Points).geometry.dispose();
+    this.group.clear();
+    if (added) this.show(added, tinted ? this.classes : this.added);
+    if (removed) this.show(removed, this.removed);
+  }
+
+  /// Sizes: points in pixels at the centre, normals as a share of the scene.
+  setReference(distance: number, pixelRatio: number, radius: number): void {
+    for (const material of this.materials) {
+      material.uniforms["reference"]!.value = distance;
+      material.uniforms["size"]!.value = (material === this.classes ? 2.5 : 4.5) * pixelRatio;
+    }
+    this.spikes.uniforms["spike"]!.value = Math.min(0.02 * radius, 0.02 * distance);
+  }
+
+  private show(decoded: Decoded, material: THREE.ShaderMaterial): void {
+    if (decoded.vertices === 0) return;
+    material.uniforms["hasNormals"]!.value = false; // plain colours are told apart more easily than shaded ones
+    const points = new THREE.Points(geometryOf(decoded), material);
+    const objects: THREE.Object3D[] = [points];
+    if (decoded.normals && material === this.added) objects.push(spikesOf(decoded, this.spikes));
+    for (const object of objects) {
+      object.frustumCulled = false;
+      object.renderOrder = 3;
+      place(object, decoded);
+      this.group.add(object);
+    }
+  }
+}

@@ -67,8 +67,25 @@ def violations_in(path, where, allowed, may_name_backend, may_ask_compiler):
             yield f"{place}: includes {target}; it may include only {', '.join(sorted(allowed))}"
 
 
+# Boost is compiled once, for the server of the studio, and named nowhere else.
+MAY_NAME_BOOST = {"apps/studio/server/net.hpp"}
+
+
+def boost_violations(root):
+    for path in sorted(path for folder in ("src", "include", "apps") for path in (root / folder).rglob("*")):
+        where = path.relative_to(root).as_posix()
+        if path.suffix not in SOURCES or "node_modules" in path.parts or where in MAY_NAME_BOOST:
+            continue
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            match = INCLUDE.match(line)
+            if match and match.group(2).startswith("boost/"):
+                yield f"{where}:{number}: includes {match.group(2)}; only apps/studio/server/net.hpp names Boost"
+            if match and match.group(2) == "studio/server/net.hpp" and not where.startswith("apps/studio/server/"):
+                yield f"{where}:{number}: includes {match.group(2)}, which brings Boost; the public header is server.hpp"
+
+
 def find_violations(root):
-    found = []
+    found = list(boost_violations(root))
     for path in sorted((root / "src").rglob("*")):
         if path.suffix not in SOURCES:
             continue
@@ -107,6 +124,8 @@ PLANTED = {
     "src/octree/c.hpp": '#include "exec/this_space.hpp"\n',
     "src/reconstruct.cpp": "#include <cuda_runtime.h>\n",
     "src/unheard_of/a.cpp": "\n",
+    "apps/cli/a.cpp": "#include <boost/asio.hpp>\n",
+    "apps/studio/cmd_studio.cpp": '#include "studio/server/net.hpp"\n',
     "include/pointskin/a.hpp": "#include <cuda_runtime.h>\n",
     "include/pointskin/b.hpp": '#include "core/view.hpp"\n',
 }

@@ -2,6 +2,7 @@
 # to build it; not to run it.
 set(POINTSKIN_HAS_STUDIO OFF)
 if(POINTSKIN_STUDIO STREQUAL "OFF")
+  set(POINTSKIN_STUDIO_BUILT OFF CACHE INTERNAL "")
   return()
 endif()
 
@@ -46,3 +47,4 @@ elseif(POINTSKIN_STUDIO STREQUAL "ON")
 else()
   message(STATUS "The command `studio` is left out: ${problem}")
 endif()
+set(POINTSKIN_STUDIO_BUILT ${POINTSKIN_HAS_STUDIO} CACHE INTERNAL "Whether the program has the command `studio`; ./quickstart asks")

@@ -82,8 +82,8 @@ function showCommands({ store, link }: StudioContext): Command[] {
   const has = (colour: ColourMode) => !!store.mesh && (colour !== "colour" || store.meshAttributes.includes(colour));
   return [
     ...shows.map(([show, key]) => ({ id: `show-${show}`, title: `Show ${show}`, key, group: "View", run: () => store.setView({ show }) })),
-    { id: "wireframe", title: "Wireframe", key: "W", group: "View", run: () => store.setView({ wireframe: !store.view.wireframe }) },
-    { id: "grid", title: "Ground grid", key: "G", group: "View", run: () => store.setView({ grid: !store.view.grid }) },
+    { id: "wireframe", title: "Wireframe", key: "Shift+W", group: "View", run: () => store.setView({ wireframe: !store.view.wireframe }) },
+    { id: "grid", title: "Ground grid", key: "Shift+G", group: "View", run: () => store.setView({ grid: !store.view.grid }) },
     ...colours.map((colour) => ({
       id: `colour-${colour}`,
       title: colour === "plain" ? "Colour the surface plainly" : `Colour the surface by ${colour}`,

@@ -86,6 +86,9 @@ export class Player {
     const { connection, store } = this.context;
     const kind = store.sequence?.kind;
     store.update({ sequence: null });
-    connection.request(kind === "fluid" ? "fluid" : "sequence", { stop: true }).catch((error) => tell(this.context, error));
+    connection
+      .request(kind === "fluid" ? "fluid" : "sequence", { stop: true })
+      .then(() => store.scene && connection.request("reference_end")) // the scene's own surface is shown again
+      .catch((error) => tell(this.context, error));
   }
 }

@@ -119,8 +119,8 @@ export class TopBar extends Part {
         ],
         change: (show) => this.store.setView({ show }),
       })}
-      ${this.toggle("wireframe", "Wireframe (W)", icons.wire, view.wireframe)}
-      ${this.toggle("grid", "Ground grid (G)", icons.grid, view.grid)} ${this.command("frame", icons.frame)}
+      ${this.toggle("wireframe", "Wireframe (Shift+W)", icons.wire, view.wireframe)}
+      ${this.toggle("grid", "Ground grid (Shift+G)", icons.grid, view.grid)} ${this.command("frame", icons.frame)}
     `;
   }
 

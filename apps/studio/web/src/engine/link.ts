@@ -98,13 +98,17 @@ export class Link {
 
   private async mesh(event: MeshEvent): Promise<void> {
     this.meshWanted = Math.max(this.meshWanted, event.version);
+    const ghosts = this.ghostsWanted; // those asked for from now on belong to the new mesh
     const decoded = await this.load(event.blob);
     if (!decoded || event.version < this.meshShown) return this.ack(event.version);
     this.meshShown = event.version;
     const begun = performance.now();
     this.viewport.setMesh(decoded);
     this.frameOnce();
-    if (!event.preview) this.store.update({ problems: null, problem: -1 });
+    if (!event.preview) {
+      if (ghosts === this.ghostsWanted) this.endGhosts();
+      this.store.update({ problems: null, problem: -1 });
+    }
     this.viewport.afterNextFrame(() => this.meshDrawn(event, decoded, performance.now() - begun));
     void this.lines();
   }
@@ -169,9 +173,16 @@ export class Link {
     const added = event.blob !== null ? await this.load(event.blob) : null;
     const removed = event.removed_blob != null ? await this.load(event.removed_blob) : null;
     if (wanted !== this.ghostsWanted) return;
-    this.viewport.setGhosts(added, removed, event.tinted);
+    this.viewport.setGhosts(added, removed);
     this.store.update({ ghosts: added || removed ? event : null });
     this.viewport.afterNextFrame(() => performance.mark("psk:preview-drawn"));
+  }
+
+  /// What was previewed has happened, or is not to happen: points on their way come too late.
+  private endGhosts(): void {
+    this.ghostsWanted++;
+    this.viewport.setGhosts(null);
+    this.store.update({ ghosts: null });
   }
 
   private async frame(event: FrameEvent): Promise<void> {

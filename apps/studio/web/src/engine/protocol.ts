@@ -56,6 +56,7 @@ export interface FlipOperation {
 export interface InsertOperation extends Similarity {
   op: "insert";
   file?: string;
+  upload?: number; // of a file that the page has sent; the history has its path
   shape?: string;
   box?: Partial<Box>;
   snap?: boolean;
@@ -84,7 +85,7 @@ export interface DeformOperation {
 export interface BooleanOperation extends Similarity {
   op: "boolean";
   operation: "union" | "intersection" | "difference" | "symmetric";
-  with: { file: string } | { shape: string; points?: number };
+  with: { file: string } | { upload: number } | { shape: string; points?: number };
   creases?: "sampled" | "none";
   coincidence?: number;
 }
@@ -329,12 +330,19 @@ export interface PointsEvent {
   total: number;
   final: boolean;
 }
+export interface ClassCounts {
+  kept: number;
+  flipped: number;
+  dropped: number;
+}
 export interface GhostsEvent {
   blob: number | null;
   added: number;
   removed: number;
   removed_blob?: number | null;
-  tinted?: boolean; // the points' classes: 0 kept, 1 turned, 2 dropped
+  tinted?: boolean; // the points have classes: of a set operation, whose counts follow
+  a?: ClassCounts;
+  b?: ClassCounts;
 }
 export interface FrameEvent {
   version: number;

@@ -139,7 +139,7 @@ export function surfacePanel(context: StudioContext) {
       choices: kColours.map(([value, label]) => ({ value, label, disabled: value === "colour" && !store.meshAttributes.includes(value) })),
       change: (colour) => void context.link.colour(colour),
     })}
-    ${switchRow({ label: "Wireframe", testid: "wireframe", title: "Edges of the triangles (W)", value: view.wireframe, change: (wireframe) => store.setView({ wireframe }) })}
+    ${switchRow({ label: "Wireframe", testid: "wireframe", title: "Edges of the triangles (Shift+W)", value: view.wireframe, change: (wireframe) => store.setView({ wireframe }) })}
     ${section(context)}
     <h3>Reference</h3>
     ${comparison(context)}`;

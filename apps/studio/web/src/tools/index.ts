@@ -1,5 +1,16 @@
-// The tools in the order of the tool bar; one line a tool.
-import { navigate } from "./navigate";
-import type { ToolFactory } from "./tool";
+// The tools in the order of the tool bar; one line a tool, whose file registers it.
+import "./navigate";
+import "./stroke";
+import "./rectangle";
+import "./lasso";
+import "./polygon";
+import "./erase";
+import "./copy_part";
+import "./bend";
+import "./lattice";
+import "./combine";
+import "./orient";
+import "./section";
+import "./fluid";
 
-export const tools: ToolFactory[] = [navigate];
+export { tools } from "./registry";

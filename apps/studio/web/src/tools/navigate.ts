@@ -1,10 +1,10 @@
 // Navigation alone: takes no event, so that every one moves the view.
-import type { ToolFactory } from "./tool";
+import { register } from "./registry";
 
-export const navigate: ToolFactory = () => ({
+export const navigate = register(() => ({
   id: "navigate",
   title: "Navigate",
   key: "v",
   icon: "M5 3l14 8-6 2-3 6z",
   hint: "Drag turns about the point under the cursor, Shift+drag or middle button moves, wheel goes nearer, double click sets the centre",
-});
+}));

@@ -142,8 +142,8 @@ export function numberField(spec: NumberSpec): TemplateResult {
     .testid=${spec.testid}
     .disabled=${spec.disabled ?? false}
     title=${spec.title ?? spec.label}
-    @input=${(event: CustomEvent<number>) => event.detail !== undefined && spec.input?.(event.detail)}
-    @change=${(event: CustomEvent<number>) => event.detail !== undefined && spec.change(event.detail)}
+    @input=${(event: Event) => event instanceof CustomEvent && spec.input?.(event.detail as number)}
+    @change=${(event: Event) => event instanceof CustomEvent && spec.change(event.detail as number)}
   ></psk-number>`;
 }
 

@@ -76,9 +76,8 @@ export class Viewport {
   }
 
   /// Points that an operation would add and take away; null: none.
-  /// @param tinted  `added` has classes instead: 0 stays, 1 is turned, 2 is dropped
-  setGhosts(added: Decoded | null, removed: Decoded | null = null, tinted = false): void {
-    this.ghosts.set(added, removed, tinted);
+  setGhosts(added: Decoded | null, removed: Decoded | null = null): void {
+    this.ghosts.set(added, removed);
     this.requestRender();
   }
 

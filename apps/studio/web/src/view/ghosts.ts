@@ -1,7 +1,7 @@
 // Points that an operation would add, orange with their normals, and those it would take away, blue and larger.
 import * as THREE from "three";
 import type { Decoded } from "../engine/blob";
-import { geometryOf, place, pointsMaterial, rgb } from "./layers";
+import { geometryOf, kUnitSphere, place, pointsMaterial, rgb } from "./layers";
 import { spikesFragment, spikesVertex } from "./shaders";
 
 const kAdded = "#f0954e";
@@ -29,6 +29,7 @@ function spikesOf(decoded: Decoded, material: THREE.ShaderMaterial): THREE.LineS
   geometry.setAttribute("position", new THREE.BufferAttribute(positions, 4, true));
   geometry.setAttribute("oct", new THREE.BufferAttribute(oct, 2, true));
   geometry.setAttribute("end", new THREE.BufferAttribute(end, 1));
+  geometry.boundingSphere = kUnitSphere;
   return new THREE.LineSegments(geometry, material);
 }
 
@@ -36,7 +37,11 @@ export class GhostLayer {
   readonly group = new THREE.Group();
   private readonly added = pointsMaterial(kAdded);
   private readonly removed = pointsMaterial(kRemoved);
+<<<<<<< HEAD
   private readonly classes = pointsMaterial("#aab2bd");
+=======
+  private readonly kept = pointsMaterial(kKept);
+>>>>>>> shell
   private readonly spikes = new THREE.ShaderMaterial({
     vertexShader: spikesVertex,
     fragmentShader: spikesFragment,
@@ -45,33 +50,40 @@ export class GhostLayer {
     uniforms: { plain: { value: rgb(kAdded) }, spike: { value: 0 } },
   });
 
-  private get materials(): THREE.ShaderMaterial[] {
-    return [this.added, this.removed, this.classes];
-  }
-
   constructor() {
+<<<<<<< HEAD
     for (const material of this.materials) {
+=======
+    for (const material of [this.added, this.removed, this.kept]) {
+>>>>>>> shell
       material.polygonOffset = true;
       material.polygonOffsetUnits = -4;
     }
-    // What goes is orange, as for a trim; what is turned is blue.
-    const tints = this.classes.uniforms["tints"]!.value as THREE.Vector3[];
-    tints[1] = rgb(kRemoved);
-    tints[2] = rgb(kAdded);
   }
 
-  set(added: Decoded | null, removed: Decoded | null, tinted = false): void {
+  set(added: Decoded | null, removed: Decoded | null): void {
     for (const child of this.group.children) (child as THREE.Points).geometry.dispose();
     this.group.clear();
+<<<<<<< HEAD
     if (added) this.show(added, tinted ? this.classes : this.added);
+=======
+    if (added?.tint) this.showClasses(added, added.tint);
+    else if (added) this.show(added, this.added);
+>>>>>>> shell
     if (removed) this.show(removed, this.removed);
   }
 
   /// Sizes: points in pixels at the centre, normals as a share of the scene.
   setReference(distance: number, pixelRatio: number, radius: number): void {
+<<<<<<< HEAD
     for (const material of this.materials) {
       material.uniforms["reference"]!.value = distance;
       material.uniforms["size"]!.value = (material === this.classes ? 2.5 : 4.5) * pixelRatio;
+=======
+    for (const material of [this.added, this.removed, this.kept]) {
+      material.uniforms["reference"]!.value = distance;
+      material.uniforms["size"]!.value = (material === this.kept ? 2.5 : 4.5) * pixelRatio;
+>>>>>>> shell
     }
     this.spikes.uniforms["spike"]!.value = Math.min(0.02 * radius, 0.02 * distance);
   }

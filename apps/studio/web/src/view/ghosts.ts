@@ -1,4 +1,5 @@
-// Points that an operation would add, orange with their normals, and those it would take away, blue and larger.
+// Points that an operation would add, orange with their normals, and those it would take away, blue and larger. Where
+// every point has a class, that of a set operation: kept ones are light, those turned round orange, dropped ones blue.
 import * as THREE from "three";
 import type { Decoded } from "../engine/blob";
 import { geometryOf, kUnitSphere, place, pointsMaterial, rgb } from "./layers";
@@ -6,6 +7,7 @@ import { spikesFragment, spikesVertex } from "./shaders";
 
 const kAdded = "#f0954e";
 const kRemoved = "#4aa3ea";
+const kKept = "#d3d8df";
 const kMostSpikes = 20000;
 
 /// Every point twice, so that a line goes from it along its normal; a subsample where there are many.
@@ -37,11 +39,7 @@ export class GhostLayer {
   readonly group = new THREE.Group();
   private readonly added = pointsMaterial(kAdded);
   private readonly removed = pointsMaterial(kRemoved);
-<<<<<<< HEAD
-  private readonly classes = pointsMaterial("#aab2bd");
-=======
   private readonly kept = pointsMaterial(kKept);
->>>>>>> shell
   private readonly spikes = new THREE.ShaderMaterial({
     vertexShader: spikesVertex,
     fragmentShader: spikesFragment,
@@ -51,11 +49,7 @@ export class GhostLayer {
   });
 
   constructor() {
-<<<<<<< HEAD
-    for (const material of this.materials) {
-=======
     for (const material of [this.added, this.removed, this.kept]) {
->>>>>>> shell
       material.polygonOffset = true;
       material.polygonOffsetUnits = -4;
     }
@@ -64,26 +58,16 @@ export class GhostLayer {
   set(added: Decoded | null, removed: Decoded | null): void {
     for (const child of this.group.children) (child as THREE.Points).geometry.dispose();
     this.group.clear();
-<<<<<<< HEAD
-    if (added) this.show(added, tinted ? this.classes : this.added);
-=======
     if (added?.tint) this.showClasses(added, added.tint);
     else if (added) this.show(added, this.added);
->>>>>>> shell
     if (removed) this.show(removed, this.removed);
   }
 
   /// Sizes: points in pixels at the centre, normals as a share of the scene.
   setReference(distance: number, pixelRatio: number, radius: number): void {
-<<<<<<< HEAD
-    for (const material of this.materials) {
-      material.uniforms["reference"]!.value = distance;
-      material.uniforms["size"]!.value = (material === this.classes ? 2.5 : 4.5) * pixelRatio;
-=======
     for (const material of [this.added, this.removed, this.kept]) {
       material.uniforms["reference"]!.value = distance;
       material.uniforms["size"]!.value = (material === this.kept ? 2.5 : 4.5) * pixelRatio;
->>>>>>> shell
     }
     this.spikes.uniforms["spike"]!.value = Math.min(0.02 * radius, 0.02 * distance);
   }
@@ -100,5 +84,24 @@ export class GhostLayer {
       place(object, decoded);
       this.group.add(object);
     }
+  }
+
+  /// Classes as the engine counts them: 0 kept, 1 turned round, 2 dropped.
+  private showClasses(decoded: Decoded, classes: Uint8Array): void {
+    const whole = geometryOf(decoded);
+    [this.kept, this.added, this.removed].forEach((material, wanted) => {
+      const indices: number[] = [];
+      for (let i = 0; i < decoded.vertices; ++i) if (classes[decoded.tintStride * i] === wanted) indices.push(i);
+      if (indices.length === 0) return;
+      material.uniforms["hasNormals"]!.value = false;
+      const geometry = new THREE.BufferGeometry();
+      for (const [name, values] of Object.entries(whole.attributes)) geometry.setAttribute(name, values);
+      geometry.setIndex(indices);
+      const points = new THREE.Points(geometry, material);
+      points.frustumCulled = false;
+      points.renderOrder = 3;
+      place(points, decoded);
+      this.group.add(points);
+    });
   }
 }

@@ -1,7 +1,6 @@
 #include "args.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
@@ -19,15 +18,6 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-/// Reads a finite number at the start of `text` and moves `text` behind it.
-std::optional<double> take_number(std::string_view& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return value;
-}
-
 /// Power of 1024 that a suffix stands for, or -1.
 int power_of(const std::string& suffix) {
   if (suffix.empty() || suffix == "b") return 0;
@@ -41,15 +31,9 @@ int power_of(const std::string& suffix) {
 
 void throw_usage(const std::string& story) { throw Error(ErrorCode::usage, story); }
 
-std::optional<double> parse_number(const std::string& text) {
-  std::string_view rest = text;
-  const std::optional<double> number = take_number(rest);
-  return rest.empty() ? number : std::nullopt;
-}
-
 std::int64_t parse_bytes(const std::string& text, const char* option) {
   std::string_view rest = text;
-  const std::optional<double> number = take_number(rest);
+  const std::optional<double> number = scene::take_number(rest);
   const int power = power_of(lower_case(std::string(rest)));
   const double bytes = number.value_or(0) * std::pow(1024.0, std::max(power, 0));
   if (!number || power < 0 || !(bytes >= 1) || !(bytes < 9e18)) {
@@ -57,19 +41,6 @@ std::int64_t parse_bytes(const std::string& text, const char* option) {
         fmt::format("{}: '{}' is no amount of memory; write for example 8G, 512M or a number of bytes", option, text));
   }
   return static_cast<std::int64_t>(bytes);
-}
-
-std::optional<Vec3d> parse_vector(const std::string& text) {
-  Vec3d vector{0, 0, 0};
-  std::string_view rest = text;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (axis > 0 && rest.starts_with(',')) rest.remove_prefix(1);
-    const std::optional<double> number = take_number(rest);
-    const bool ends_well = axis == 2 ? rest.empty() : rest.starts_with(',');
-    if (!number || !ends_well) return std::nullopt;
-    vector[axis] = *number;
-  }
-  return vector;
 }
 
 std::optional<Vec3d> parse_shift(const std::string& text) {

@@ -10,20 +10,19 @@
 #include <pointskin/device.hpp>
 #include <pointskin/vector.hpp>
 
+#include "scene/text.hpp"
+
 namespace pointskin::cli {
 
 /// @throws Error usage, with this story
 [[noreturn]] void throw_usage(const std::string& story);
 
-/// `text` as a finite number; unset if it is anything else. Does not depend on the locale.
-std::optional<double> parse_number(const std::string& text);
+using scene::parse_number;
+using scene::parse_vector;
 
 /// "8G", "512M", "1.5T", "4096": bytes, with K, M, G, T as powers of 1024 (also written KB or KiB).
 /// @throws Error usage, naming `option`, for anything else, and for zero
 std::int64_t parse_bytes(const std::string& text, const char* option);
-
-/// "x,y,z": three finite numbers; unset if it is anything else.
-std::optional<Vec3d> parse_vector(const std::string& text);
 
 /// "auto" (unset), "none" (zero) or "x,y,z" in world units.
 /// @throws Error usage for anything else

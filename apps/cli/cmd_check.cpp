@@ -13,7 +13,7 @@
 #include "console.hpp"
 #include "fit_args.hpp"
 #include "json_text.hpp"
-#include "vector_json.hpp"
+#include "scene/vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {

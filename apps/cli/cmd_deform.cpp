@@ -13,15 +13,15 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "deform_reach.hpp"
-#include "deform_script.hpp"
+#include "scene/deform_script.hpp"
 #include "file_plan.hpp"
 #include "fit_args.hpp"
-#include "frame_files.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
 #include "report.hpp"
 #include "run_memory.hpp"
+#include "scene/frame_files.hpp"
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"
@@ -61,7 +61,7 @@ OptionTable deform_options(DeformArgs& args) {
 }
 
 std::string file_of(const DeformArgs& args, const std::string& pattern, int frame) {
-  return args.given.has("--frames") ? frame_file(pattern, frame, args.frames) : pattern;
+  return args.given.has("--frames") ? scene::frame_file(pattern, frame, args.frames) : pattern;
 }
 
 /// With --frames, a file a frame.
@@ -84,8 +84,8 @@ void check_outputs(const DeformArgs& args) {
   if (args.given.has("--frames") && (args.frames < 2 || args.frames > 100'000))
     throw_usage(fmt::format("--frames: {} is not in [2, 100000]", args.frames));
   if (args.given.has("--frames")) {
-    check_pattern(args.output, "-o", "--frames");
-    check_pattern(args.cloud, "--cloud", "--frames");
+    scene::check_pattern(args.output, "-o", "--frames");
+    scene::check_pattern(args.cloud, "--cloud", "--frames");
   }
   check_names(args);
   if (!args.output.empty()) check_mesh_output(file_of(args, args.output, 0));
@@ -194,7 +194,7 @@ int run(const DeformArgs& args) {
   parse_shift(args.shift);
   check_outputs(args);
   const Device device = args.chosen();
-  Deformation deformation = read_deformation(args.script);
+  Deformation deformation = scene::read_deformation(args.script);
   const Stopwatch reading;
   options.envelope = read_envelope(args.envelope, args.threads);
   Cloud cloud = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});

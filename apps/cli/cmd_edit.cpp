@@ -1,15 +1,14 @@
-// pointskin edit: a cloud and a script of strokes, removals and copied parts in, mesh and what every step did out.
+// pointskin edit: a cloud and a script of operations in, or a document with both; mesh and what every step did out.
 
 #include <fmt/format.h>
 
-#include <pointskin/edit.hpp>
 #include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
-#include "edit_script.hpp"
+#include "edit_document.hpp"
 #include "file_plan.hpp"
 #include "fit_args.hpp"
 #include "input.hpp"
@@ -17,6 +16,7 @@
 #include "output_check.hpp"
 #include "report.hpp"
 #include "run_memory.hpp"
+#include "scene/scene.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
 #include "summary_words.hpp"
@@ -39,13 +39,13 @@ struct EditArgs : FitArgs, DeviceArgs {
 OptionGroup file_options(EditArgs& args) {
   const OptionRules named = {.check = needs_a_name};
   return {"Files",
-          {clouds_row(args.inputs),
-           option("--script FILE", "operations, as JSON", &args.script, {"script", 61, kNeverNull},
+          {clouds_row(args.inputs, {}),
+           option("--script FILE", "operations, as JSON, or all of a scene: clouds and options, too", &args.script, {"script", 61, kNeverNull},
                   {.required = true, .check = needs_a_name}),
            output_row(args.output, named),
            option("--cloud FILE", "write the edited points, with the property added, as PLY", &args.cloud,
                   {"cloud", 63}, named),
-           option("--save FILE", "write the operations that are done, as a script", &args.save, {"save", 64}, named),
+           option("--save FILE", "write clouds, options and the operations that are done, as such a script", &args.save, {"save", 64}, named),
            report_row(args.report, "write what every step did as JSON"), overwrite_row(args.overwrite),
            shift_row(args.shift)}};
 }
@@ -60,11 +60,11 @@ OptionTable edit_options(EditArgs& args) {
           quiet_option(args.quiet)};
 }
 
-/// @param parts  files that the script names
-void check_names(const EditArgs& args, const std::vector<std::string>& parts) {
+/// @param named  files that the document names
+void check_names(const EditArgs& args, const std::vector<std::string>& named) {
   std::vector<std::string> inputs = args.inputs;
   inputs.insert(inputs.end(), {args.script, args.envelope});
-  inputs.insert(inputs.end(), parts.begin(), parts.end());
+  inputs.insert(inputs.end(), named.begin(), named.end());
   check_distinct(inputs,
                  {{"-o", args.output},
                   {"--save", args.save, OutputKind::file},
@@ -86,58 +86,69 @@ Json topology_json(const Topology& topology) {
   return {{"components", topology.components}, {"genus", topology.genus}, {"euler", topology.euler}};
 }
 
-Json step_json(const StepReport& step) {
+Json step_json(const scene::StepRecord& step) {
   return {{"operation", step.operation},
           {"added", step.added},
           {"removed", step.removed},
+          {"flipped", step.flipped},
           {"points", step.points},
           {"triangles", step.triangles},
           {"snapped", step.snapped},
           {"warm", step.warm},
           {"before", topology_json(step.before)},
           {"after", topology_json(step.after)},
-          {"ms", {{"edit", step.edit_ms}, {"reconstruct", step.reconstruct_ms}, {"total", step.total_ms}}}};
+          {"ms", {{"edit", step.edit_ms}, {"reconstruct", step.reconstruct_ms}, {"total", step.total_ms}}},
+          {"notes", step.notes}};
 }
 
 /// What every step did, and the mesh in the end.
-void describe(const EditSession& session, const EditArgs& args, Json& json) {
+void describe(const scene::Scene& scene, const EditArgs& args, Json& json) {
   Json steps = Json::array();
-  for (const StepReport& step : session.steps()) steps.push_back(step_json(step));
+  for (std::size_t i = 0; i < scene.done(); ++i) steps.push_back(step_json(scene.record(i)));
   json["steps"] = steps;
-  json["mesh"] = to_json(measure(session.mesh(), args.threads));
+  json["mesh"] = to_json(measure(scene.mesh(), args.threads));
 }
 
-std::string line_of(const StepReport& step, std::size_t number) {
-  return fmt::format("{}: {}: {} points added, {} removed; components {} -> {}, genus {} -> {}; {:.1f} ms", number,
-                     step.operation, step.added, step.removed, step.before.components, step.after.components,
+std::string line_of(const scene::StepRecord& step, std::size_t number) {
+  const std::string flipped = step.flipped > 0 ? fmt::format(", {} turned", step.flipped) : "";
+  return fmt::format("{}: {}: {} points added, {} removed{}; components {} -> {}, genus {} -> {}; {:.1f} ms", number,
+                     step.operation, step.added, step.removed, flipped, step.before.components, step.after.components,
                      step.before.genus, step.after.genus, step.total_ms);
 }
 
-/// Operations that were done and left the points as they were.
-void warn_if_nothing(const StepReport& step, std::size_t number, const EditArgs& args) {
-  if (step.added == 0 && step.removed == 0)
+/// Says what a step did, and warns of one that was to change points and changed none.
+void say(const scene::StepRecord& step, std::size_t number, const EditArgs& args) {
+  if (!args.quiet) print_note(line_of(step, number));
+  if (!args.quiet)
+    for (const std::string& note : step.notes) print_note(fmt::format("{}: {}", number, note));
+  if (step.operation != "options" && step.added == 0 && step.removed == 0 && step.flipped == 0 &&
+      step.operation != "deform")
     print_warning(fmt::format("operations[{}] of {}: the {} changes no point", number, args.script, step.operation));
 }
 
-void run_script(const EditScript& script, const EditArgs& args, EditSession& session) {
-  const auto camera_of_picture = [&session](const RenderOptions& options) {
-    return camera_of(session.mesh(), options);
-  };
-  if (script.size() == 0) print_warning(fmt::format("{}: has no operations", args.script));
-  for (std::size_t i = 0; i < script.size(); ++i) {
+/// Does entry `i` of the document.
+void run_entry(const Json& entry, std::size_t i, const EditArgs& args, scene::Scene& scene) {
+  const auto camera_of_picture = [&scene](const RenderOptions& options) { return camera_of(scene.mesh(), options); };
+  const bool goes_back = scene::is_undo(entry) || scene::is_redo(entry);
+  scene::SceneOperation operation;
+  if (!goes_back)
+    operation =
+        scene::operation_of(entry, fmt::format("{}.operations[{}]", args.script, i), "/", camera_of_picture);
+  try {
+    if (!goes_back) scene.apply(operation);
+    if (scene::is_undo(entry) && !scene.undo()) throw_usage("there is nothing to undo");
+    if (scene::is_redo(entry) && !scene.redo()) throw_usage("there is nothing to redo");
+  } catch (const Error& error) {
+    throw error.while_doing(fmt::format("running operations[{}] of {}", i, args.script));
+  }
+  if (!goes_back) say(scene.record(scene.done() - 1), i, args);
+}
+
+void run_document(const scene::Document& document, const EditArgs& args, scene::Scene& scene) {
+  if (document.operations.empty()) print_warning(fmt::format("{}: has no operations", args.script));
+  for (std::size_t i = 0; i < document.done; ++i) {
     throw_if_interrupted();
-    const ScriptStep step = script.step(i, camera_of_picture);
-    try {
-      if (step.kind == ScriptStep::Kind::apply) session.apply(step.operation);
-      if (step.kind == ScriptStep::Kind::undo && !session.undo()) throw_usage("there is nothing to undo");
-      if (step.kind == ScriptStep::Kind::redo && !session.redo()) throw_usage("there is nothing to redo");
-    } catch (const Error& error) {
-      throw error.while_doing(fmt::format("running operations[{}] of {}", i, args.script));
-    }
-    if (step.kind != ScriptStep::Kind::apply) continue;
-    const StepReport done = session.steps().back();
-    if (!args.quiet) print_note(line_of(done, i));
-    warn_if_nothing(done, i, args);
+    run_entry(document.operations[i], i, args, scene);
   }
 }
 
@@ -148,61 +159,124 @@ void warn_about_options(const EditArgs& args, const Options& options) {
   if (args.cloud.empty()) warn_unused(args.given, {"--keep-attributes"}, "where neither mesh nor cloud is written");
 }
 
+/// The document, and in `args` what it says and the command line does not.
+scene::Document read_script(EditArgs& args) {
+  scene::Document document = scene::read_document(args.script);
+  take_options(document, edit_options(args), args.given, args.options);
+  validate(args.options);
+  if (!args.given.has("--cold")) args.warm_start = document.warm_start;
+  if (!args.given.has("--shift")) args.shift = document.base.shift;
+  if (!args.inputs.empty()) document.base.clouds.clear();
+  for (const std::string& input : args.inputs)
+    if (input != "-") document.base.clouds.push_back(scene::cloud_of_file(input));
+  if (args.inputs.empty() && document.base.clouds.empty())
+    throw_usage(fmt::format("no cloud; name one as IN, or in {} under clouds", args.script));
+  return document;
+}
+
+/// The inputs as the command line names them, or the clouds of the document; says what changed since it was written.
+Cloud read_inputs(const EditArgs& args, const scene::Document& document) {
+  const ReadOptions options{.shift = parse_shift(args.shift), .threads = args.threads};
+  const MissingNormals missing = begins_with_normals(document) ? MissingNormals::allowed : MissingNormals::refused;
+  if (!args.inputs.empty()) return read_clouds(args.inputs, options, missing);
+  for (const std::string& notice : scene::check_clouds(document.base)) print_warning(notice);
+  scene::ReadFacts facts;
+  Cloud base = scene::merge_sources(document.base.clouds, options, missing, facts);
+  for (const std::string& notice : facts.notices) print_warning(notice);
+  return base;
+}
+
 /// Reads, merges and cleans the inputs, and says what is left out.
-Cloud read_base(const EditArgs& args, const Options& options) {
-  Cloud base = read_clouds(args.inputs, {.shift = parse_shift(args.shift), .threads = args.threads});
-  drop_unusable(base);
+Cloud read_base(const EditArgs& args, const scene::Document& document, const Options& options) {
+  Cloud base = read_inputs(args, document);
+  if (base.has_normals())
+    drop_unusable(base);
+  else
+    warn_about_dropped(base.dropped);
   warn_about_unused(args.given, options, base, args.output);
   if (!options.keep_strays) warn_about_strays(base, args.threads);
-  if (options.envelope != nullptr)  // the session does not tell how many are outside
+  if (options.envelope != nullptr)  // the scene does not tell how many are outside
     warn_about_envelope({.samples_outside = count_outside_box(base, *options.envelope)}, base.size());
   return base;
 }
 
-std::string summary(const EditSession& session, const EditArgs& args, double total_ms) {
-  const Mesh& mesh = session.mesh();
+/// The document with what was done: cameras as matrices, and no way back; what was undone in it stays so.
+void save(const scene::Scene& scene, scene::Document document, const EditArgs& args) {
+  std::vector<Json> operations;
+  for (std::size_t i = 0; i < scene.done(); ++i) operations.push_back(scene::to_json(scene.operation(i), ""));
+  const auto undone = document.operations.begin() + static_cast<std::ptrdiff_t>(document.done);
+  operations.insert(operations.end(), undone, document.operations.end());
+  document.done = scene.done();
+  document.operations = std::move(operations);
+  document.options = args.options;
+  document.warm_start = args.warm_start;
+  document.base.shift = args.shift;
+  if (document.base.clouds.size() < args.inputs.size()) document.base.clouds.clear();  // one was stdin
+  scene::stamp_clouds(document.base);
+  if (!args.envelope.empty()) print_warning("--save: the file does not hold the envelope; name it again with --envelope");
+  scene::write_document(args.save, document);
+}
+
+void write_points(const scene::Scene& scene, const EditArgs& args) {
+  Cloud cloud = scene.cloud();
+  if (!args.options.attributes)
+    std::erase_if(cloud.attributes, [](const Attribute& attribute) { return attribute.name != "added"; });
+  write_cloud(args.cloud, cloud, args.threads);
+}
+
+std::string summary(const scene::Scene& scene, const EditArgs& args, double total_ms) {
+  const Mesh& mesh = scene.mesh();
   const std::string file = args.output.empty() ? args.cloud : args.output;
   return fmt::format("{}operations {}, triangles {}, {}; ms: total {:.1f}; memory {} host", file_words(file),
-                     session.steps().size(), mesh.triangles.size(), shape_words(mesh, args.threads), total_ms,
+                     scene.done(), mesh.triangles.size(), shape_words(mesh, args.threads), total_ms,
                      format_bytes(static_cast<double>(host_peak_bytes())));
 }
 
-int run(const EditArgs& args) {
-  const Stopwatch watch;
-  EditOptions options;
-  options.reconstruction = args.options;
-  validate(options.reconstruction);
+scene::SceneOptions scene_options(const EditArgs& args, const Options& reconstruction) {
+  scene::SceneOptions options;
+  options.reconstruction = reconstruction;
   options.warm_start = args.warm_start;
+  options.progress = [](const Progress&) { return !interrupted(); };
+  return options;
+}
+
+void write_outputs(const scene::Scene& scene, const scene::Document& document, const EditArgs& args) {
+  throw_if_interrupted();
+  if (!args.cloud.empty()) write_points(scene, args);
+  if (!args.save.empty()) save(scene, document, args);
+  if (!args.output.empty()) write_mesh(args.output, scene.mesh(), args.threads);
+}
+
+int run(const EditArgs& given) {
+  const Stopwatch watch;
+  EditArgs args = given;
+  validate(args.options);
   parse_shift(args.shift);
   check_outputs(args);
   const Device device = args.chosen();
-  const EditScript script(args.script);
-  check_names(args, script.parts());
-  warn_about_options(args, options.reconstruction);
-  options.reconstruction.envelope = read_envelope(args.envelope, args.threads);
-  Cloud base = read_base(args, options.reconstruction);
+  const scene::Document document = read_script(args);
+  check_names(args, files_of(document));
+  warn_about_options(args, args.options);
+  Options reconstruction = args.options;
+  reconstruction.envelope = read_envelope(args.envelope, args.threads);
+  Cloud base = read_base(args, document, reconstruction);
   Json json = {{"version", 1}, {"command", "edit"}, {"device", to_json(device)}};
   json["input"] = {{"points", base.size() + base.dropped}, {"dropped", base.dropped}};
   json["options"] = report_of(edit_options, args);
   json["ms"]["read"] = watch.ms();
 
   on_interrupt(OnInterrupt::remember);
-  options.reconstruction.progress = [](const Progress&) { return !interrupted(); };
-  EditSession session(base, options, device);
-  base = Cloud();
-  run_script(script, args, session);
-  throw_if_interrupted();
-  if (!args.cloud.empty()) write_cloud(args.cloud, session.cloud(), args.threads);
-  if (!args.save.empty()) write_file_atomically(args.save, json_text(script_of(session.operations(), args.save)));
-  if (!args.output.empty()) write_mesh(args.output, session.mesh(), args.threads);
+  scene::Scene scene(std::move(base), scene_options(args, reconstruction), device);
+  run_document(document, args, scene);
+  write_outputs(scene, document, args);
   const double total_ms = watch.ms();
   json["ms"]["total"] = total_ms;
   if (!args.report.empty()) {
-    describe(session, args, json);
+    describe(scene, args, json);
     json["memory"]["host_peak_bytes"] = host_peak_bytes();
     write_file_atomically(args.report, json_text(json));
   }
-  if (!args.quiet) print_note(summary(session, args, total_ms));
+  if (!args.quiet) print_note(summary(scene, args, total_ms));
   return 0;
 }
 

@@ -21,12 +21,12 @@
 #include "console.hpp"
 #include "file_plan.hpp"
 #include "fluid_args.hpp"
-#include "frame_files.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "run_memory.hpp"
+#include "scene/frame_files.hpp"
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"
@@ -39,7 +39,7 @@ using Json = nlohmann::ordered_json;
 
 /// One frame and what became of it.
 struct FluidFrameRecord {
-  FrameFile input;
+  scene::FrameFile input;
   std::string output;
   bool is_last = false;
   std::string shape;  ///< of the last mesh, in words
@@ -57,7 +57,7 @@ void check_names(const FluidArgs& args, const std::vector<FluidFrameRecord>& fra
 }
 
 void check_outputs(const FluidArgs& args, const std::vector<FluidFrameRecord>& frames) {
-  check_patterns(args.input, args.output, "-o");
+  scene::check_patterns(args.input, args.output, "-o");
   check_mesh_output(frames.front().output);
   check_names(args, frames);
   if (!args.report.empty()) check_replaceable(args.report);
@@ -265,9 +265,9 @@ int run(const FluidArgs& args) {
     throw_usage(fmt::format("--at-once: {} is not in [0, 4096]", args.at_once));
   const Device device = args.chosen();
   std::vector<FluidFrameRecord> frames;
-  for (FrameFile& file : find_frames(args.input, args.first, args.last)) {
+  for (scene::FrameFile& file : scene::find_frames(args.input, args.first, args.last)) {
     frames.emplace_back();
-    frames.back().output = with_number(args.output, file.number);
+    frames.back().output = scene::with_number(args.output, file.number);
     frames.back().input = std::move(file);
   }
   check_outputs(args, frames);

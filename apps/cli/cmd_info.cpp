@@ -17,8 +17,8 @@
 #include "fit_args.hpp"
 #include "input.hpp"
 #include "json_text.hpp"
-#include "spacing.hpp"
-#include "vector_json.hpp"
+#include "scene/spacing.hpp"
+#include "scene/vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -47,7 +47,7 @@ Json points_json(const std::vector<Vec3f>& positions, const Vec3d& origin, const
   json["bounds"] = {{"lower", world(box.lower, origin)}, {"upper", world(box.upper, origin)}};
   json["origin"] = origin;
   json["attributes"] = attributes_json(attributes);
-  json["spacing"] = median_spacing(positions);
+  json["spacing"] = scene::median_spacing(positions);
   return json;
 }
 

@@ -14,11 +14,11 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
-#include "frame_files.hpp"
 #include "input.hpp"
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "render_args.hpp"
+#include "scene/frame_files.hpp"
 #include "signals.hpp"
 
 namespace pointskin::cli {
@@ -27,18 +27,18 @@ namespace {
 using CloudOrMesh = std::variant<Cloud, Mesh>;
 
 struct PictureFile {
-  FrameFile input;
+  scene::FrameFile input;
   std::string output;
 };
 
 std::vector<PictureFile> pictures_of(const RenderArgs& args) {
-  check_patterns(args.input, args.picture, "-o");
+  scene::check_patterns(args.input, args.picture, "-o");
   if (extension_of(args.picture) != ".png") throw_usage(fmt::format("{}: pictures are written as .png", args.picture));
-  if (!is_pattern(args.input)) check_replaceable(args.picture);  // before the input is looked for
+  if (!scene::is_pattern(args.input)) check_replaceable(args.picture);  // before the input is looked for
   std::vector<PictureFile> pictures;
   FilePlan plan{{}, {}, args.overwrite};
-  for (const FrameFile& file : find_frames(args.input, args.first, args.last)) {
-    pictures.push_back({file, with_number(args.picture, file.number)});
+  for (const scene::FrameFile& file : scene::find_frames(args.input, args.first, args.last)) {
+    pictures.push_back({file, scene::with_number(args.picture, file.number)});
     plan.add_frame(file.path, pictures.back().output, OutputKind::file);
   }
   check_files(plan);

@@ -49,6 +49,7 @@ Command orient_command();
 Command problems_command();
 Command render_command();
 Command boolean_command();
+Command studio_command();
 Command bench_command();
 
 }  // namespace pointskin::cli

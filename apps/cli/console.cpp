@@ -34,22 +34,6 @@ std::vector<std::string>& warnings() {
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
 
-std::string one_line(const std::string& text) {
-  std::string line;
-  bool broken = false;
-  for (const char c : text) {
-    if (c == '\n' || c == '\r') {
-      broken = !line.empty();
-    } else if (!(broken && c == ' ')) {
-      if (broken) line += "; ";
-      broken = false;
-      const auto code = static_cast<unsigned char>(c);
-      line += code < 0x20 || code == 0x7f ? '?' : c;  // A file name must not steer the terminal.
-    }
-  }
-  return line;
-}
-
 void print_error(const std::string& story) {
   const std::string name = use_colour() ? "\x1b[1;31mpointskin:\x1b[0m" : "pointskin:";
   print_note(fmt::format("{} {}", name, one_line(story)));

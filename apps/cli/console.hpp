@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/text.hpp"
+
 namespace pointskin::cli {
 
 /// True if people read stderr: it is a terminal.
@@ -28,7 +30,6 @@ void write_stdout(const std::string& text);
 /// "640 bytes", "12.0 KiB", "3.4 GiB": powers of 1024.
 std::string format_bytes(double bytes);
 
-/// `text` with every run of line breaks (and spaces after them) replaced by "; ", other control characters by "?".
-std::string one_line(const std::string& text);
+using scene::one_line;
 
 }  // namespace pointskin::cli

@@ -1,7 +1,7 @@
 #include "fluid_args.hpp"
 
 #include "args.hpp"
-#include "frame_files.hpp"
+#include "scene/frame_files.hpp"
 #include "unused_options.hpp"
 
 namespace pointskin::cli {
@@ -83,7 +83,7 @@ void warn_about_unused(const FluidArgs& args, bool on_gpu) {
   if (args.simulation.scene.empty()) {
     warn_unused(given, {"--frames", "--particles", "--fps", "--iterations", "--viscosity", "--vorticity"},
                 "without --simulate");
-    if (!is_pattern(args.input))
+    if (!scene::is_pattern(args.input))
       warn_unused(given, {"--at-once", "--max-memory"}, "on a single frame");
     else if (on_gpu)
       warn_unused(given, {"--at-once", "--max-memory"}, "on a GPU, which takes one frame after another");

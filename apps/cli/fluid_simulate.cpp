@@ -14,12 +14,12 @@
 #include "args.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
-#include "frame_files.hpp"
 #include "json_text.hpp"
 #include "output_check.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "run_memory.hpp"
+#include "scene/frame_files.hpp"
 #include "signals.hpp"
 #include "statistics.hpp"
 #include "stopwatch.hpp"
@@ -48,7 +48,8 @@ void check_names(const SimulateArgs& args, const SimulateOutput& output) {
   const std::vector<OutputFile> patterns = {{"-o", output.output}, {"--particles-out", args.particles_out}};
   for (const OutputFile& pattern : patterns) {
     for (int frame = 0; frame < args.frames && !pattern.file.empty(); ++frame)
-      plan.outputs.push_back({pattern.option, frame_file(pattern.file, frame, args.frames), pattern.kind, frame});
+      plan.outputs.push_back(
+          {pattern.option, scene::frame_file(pattern.file, frame, args.frames), pattern.kind, frame});
   }
   check_files(plan);
 }
@@ -64,13 +65,13 @@ simulation::SceneKind check(const SimulateArgs& args, const SimulateOutput& outp
   check_ranges(args);
   if (output.output.empty() && args.particles_out.empty() && output.report.empty())
     throw_usage("no output; name meshes with -o, particles with --particles-out or a --report");
-  check_pattern(output.output, "-o", "--simulate");
-  check_pattern(args.particles_out, "--particles-out", "--simulate");
+  scene::check_pattern(output.output, "-o", "--simulate");
+  scene::check_pattern(args.particles_out, "--particles-out", "--simulate");
   check_names(args, output);
-  if (!output.output.empty()) check_mesh_output(frame_file(output.output, 0, args.frames));
+  if (!output.output.empty()) check_mesh_output(scene::frame_file(output.output, 0, args.frames));
   if (!args.particles_out.empty()) {
     check_cloud_name(args.particles_out, "--particles-out: {}: particles are written as {} only");
-    check_result(frame_file(args.particles_out, 0, args.frames));
+    check_result(scene::frame_file(args.particles_out, 0, args.frames));
   }
   if (!output.report.empty()) check_replaceable(output.report);
   return *kind;
@@ -135,9 +136,9 @@ class Frames {
     throw_if_interrupted();
     const Stopwatch writing;
     if (!output_.output.empty())
-      write_mesh(frame_file(output_.output, frame, args_.frames), mesh_, output_.device.threads);
+      write_mesh(scene::frame_file(output_.output, frame, args_.frames), mesh_, output_.device.threads);
     if (!args_.particles_out.empty())
-      write_cloud(frame_file(args_.particles_out, frame, args_.frames), cloud_of(fluid_.particles()),
+      write_cloud(scene::frame_file(args_.particles_out, frame, args_.frames), cloud_of(fluid_.particles()),
                   output_.device.threads);
     frame_was_written();
     if (!output_.report.empty()) add_line(describe(writing.ms()));

@@ -8,70 +8,16 @@
 #include <pointskin/error.hpp>
 #include <pointskin/formats.hpp>
 #include <pointskin/merge.hpp>
-#include <pointskin/vertex_normals.hpp>
 
 #include "console.hpp"
 #include "standard_files.hpp"
 
 namespace pointskin::cli {
-namespace {
-
-/// Reads the mesh file `path`, whose vertices have no normals, as a cloud of its vertices with the normals of the faces
-/// around them (add_vertex_normals), and says so in a warning. Vertices without faces get zero normals.
-/// @param cloud  receives the vertices, or stays as it was
-/// @returns false for files that hold no faces, and for stdin, which cannot be read a second time
-/// @throws Error as read_mesh
-bool read_vertices_of_mesh(const std::string& path, const ReadOptions& options, Cloud& cloud) {
-  if (path == "-" || !may_hold_faces(path)) return false;
-  Mesh mesh = read_mesh(path, options);
-  if (mesh.triangles.empty()) return false;
-  print_warning(
-      fmt::format("{}: its vertices have no normals and take those of the faces around them ({} vertices, {} "
-                  "triangles)",
-                  path, mesh.vertices.size(), mesh.triangles.size()));
-  add_vertex_normals(mesh);
-  cloud = cloud_of_vertices(std::move(mesh));
-  return true;
-}
-
-}  // namespace
-
-void check_not_empty(const Cloud& cloud, const std::string& name) {
-  if (cloud.size() > 0) return;
-  if (cloud.dropped == 0) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no points", name));
-  throw Error(ErrorCode::invalid_input,
-              fmt::format("{}: none of its {} points has finite coordinates", name, cloud.dropped));
-}
-
 Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options, MissingNormals missing) {
-  Cloud merged;
-  for (const std::string& path : paths) {
-    Cloud cloud = read_cloud(path, options);
-    const std::string name = path == "-" ? "stdin" : path;
-    check_not_empty(cloud, name);
-    if (missing == MissingNormals::refused && !cloud.has_normals() && !read_vertices_of_mesh(path, options, cloud)) {
-      throw Error(
-          ErrorCode::no_normals,
-          fmt::format("{}: has no normals; it needs outward normals nx, ny, nz; 'pointskin orient' and reconstruct's "
-                      "--estimate-normals make them",
-                      name));
-    }
-    merge_into(merged, std::move(cloud));
-  }
+  std::vector<std::string> notices;
+  Cloud merged = scene::read_clouds(paths, options, missing, notices);
+  for (const std::string& notice : notices) print_warning(notice);
   return merged;
-}
-
-std::int64_t drop_zero_normals(Cloud& cloud) {
-  const std::int64_t zero = std::count(cloud.normals.begin(), cloud.normals.end(), Vec3f{});
-  if (zero == cloud.size()) {
-    throw Error(ErrorCode::no_normals,
-                fmt::format("the normals of all {} points have zero length; outward normals are needed", zero));
-  }
-  if (zero == 0) return 0;
-  std::vector<bool> keep(cloud.normals.size());
-  std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(), [](const Vec3f& n) { return n != Vec3f{}; });
-  keep_where(cloud, keep);
-  return zero;
 }
 
 void warn_about_dropped(std::int64_t count, const std::string& prefix) {
@@ -80,7 +26,7 @@ void warn_about_dropped(std::int64_t count, const std::string& prefix) {
 
 void drop_unusable(Cloud& cloud, const std::string& prefix) {
   const std::int64_t not_finite = cloud.dropped;
-  const std::int64_t no_normal = drop_zero_normals(cloud);
+  const std::int64_t no_normal = scene::drop_zero_normals(cloud);
   warn_about_dropped(not_finite, prefix);
   if (no_normal > 0)
     print_warning(fmt::format("{}{} points were dropped: their normal has zero length", prefix, no_normal));

@@ -11,30 +11,21 @@
 #include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
 
+#include "scene/sources.hpp"
+
 namespace pointskin::cli {
 
-/// Whether clouds may come without normals. If some do, the merged cloud has none.
-enum class MissingNormals { refused, allowed };
+using scene::check_not_empty;
+using scene::MissingNormals;
 
-/// Reads `paths` and merges them (merge_into). O(points).
-/// @throws Error as read_cloud; no_normals if that is refused; empty_result if a merged cloud would have no points,
-/// invalid_input if all were dropped
+/// scene::read_clouds, whose notices are printed as warnings.
 Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options,
                   MissingNormals missing = MissingNormals::refused);
-
-/// @param name  of the file, for the story
-/// @throws Error empty_result if the cloud has no points, invalid_input if all were dropped on reading
-void check_not_empty(const Cloud& cloud, const std::string& name);
-
-/// Removes points whose normal has zero length and counts them in Cloud::dropped.
-/// @returns how many
-/// @throws Error no_normals if the cloud has no normals, or none that is not zero
-std::int64_t drop_zero_normals(Cloud& cloud);
 
 /// Warns of points that were left out on reading, if there are any. @param prefix  of the warning
 void warn_about_dropped(std::int64_t count, const std::string& prefix = "");
 
-/// drop_zero_normals, with a warning for what was left out on reading and one for what is now.
+/// scene::drop_zero_normals, with a warning for what was left out on reading and one for what is now.
 /// @param prefix  of the warnings
 void drop_unusable(Cloud& cloud, const std::string& prefix = "");
 

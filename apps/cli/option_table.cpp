@@ -1,5 +1,5 @@
 #include "option_table.hpp"
-#include "vector_json.hpp"
+#include "scene/vector_json.hpp"
 
 #include <algorithm>
 #include <stdexcept>

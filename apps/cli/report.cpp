@@ -6,7 +6,7 @@
 #include "normal_args.hpp"
 #include "statistics.hpp"
 #include "summary_words.hpp"
-#include "vector_json.hpp"
+#include "scene/vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {

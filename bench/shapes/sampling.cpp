@@ -71,7 +71,7 @@ bool draw(const Shape& shape, const Cells& cells, Random& random, Vec3d& q, Samp
   for (std::size_t a = 0; a < 3; ++a) q[a] += cells.side * random.uniform();
   sample = shape.at(q);
   const Vec3d& g = sample.gradient;
-  return sample.value * sample.value < kBand * kBand * squared_length(g);
+  return sample.value * sample.value < kBand * kBand * squared_length(g) && shape.is_seen(q);
 }
 
 void add_noise(SurfacePoint& point, const SamplingOptions& options, Random& random) {

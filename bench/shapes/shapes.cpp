@@ -1,6 +1,6 @@
 // The implicit functions. The gyroid shell is the accuracy benchmark of this project; the others probe topology:
 // genus 1 (torus), thin tubes passing close by (knot), two sheets a few cells apart (plate), sharp edges (slab),
-// surfaces inside of surfaces (nested).
+// surfaces inside of surfaces (nested), a handle to be parted by hand (hand.cpp).
 // Rounded boxes and tubes as distance functions: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996.
 #include "shapes.hpp"
 
@@ -11,26 +11,12 @@
 #include <limits>
 #include <numbers>
 
+#include "hand.hpp"
 #include "random.hpp"
+#include "smooth.hpp"
 
 namespace pointskin::bench {
 namespace {
-
-double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
-
-/// A direction even where `a` vanishes, so that gradients stay finite.
-Vec3d direction(const Vec3d& a) {
-  const double norm = length(a);
-  return norm > 0 ? a * (1 / norm) : Vec3d{0, 0, 1};
-}
-
-/// Smooth maximum: max(a, b) + k/4 (max(k - |a - b|, 0) / k)^2, once differentiable, exact where |a - b| >= k.
-Sample smooth_max(const Sample& a, const Sample& b, double k) {
-  const double gap = a.value - b.value;
-  const double h = std::max(k - std::abs(gap), 0.0) / k;
-  const double weight = gap >= 0 ? 1 - h / 2 : h / 2;  // d smooth_max / d a
-  return {std::max(a.value, b.value) + k / 4 * h * h, a.gradient * weight + b.gradient * (1 - weight)};
-}
 
 class Gyroid final : public Shape {
  public:
@@ -243,8 +229,9 @@ std::unique_ptr<Shape> make_shape(const std::string& name) {
   if (name == "plate") return std::make_unique<Plate>();
   if (name == "slab") return std::make_unique<Slab>();
   if (name == "nested") return std::make_unique<Nested>();
+  if (name == "hand") return make_hand();
   throw Error(ErrorCode::usage,
-              "no shape is called '" + name + "'; there are gyroid, sphere, torus, knot, plate, slab and nested");
+              "no shape is called '" + name + "'; there are gyroid, sphere, torus, knot, plate, slab, nested and hand");
 }
 
 double signed_distance(const Shape& shape, const Vec3d& q) {

@@ -60,6 +60,9 @@ class Shape {
   /// The point of the surface nearest to `q`. Only for shapes with is_distance(); see ClosestPoint for the others.
   [[nodiscard]] virtual SurfacePoint closest(const Vec3d& q) const;
 
+  /// False near parts of the surface where no samples are drawn, as where no scanner looks.
+  [[nodiscard]] virtual bool is_seen(const Vec3d& /*q*/) const { return true; }
+
   /// The area of shapes that draw their own samples, 0 for the others, whose samples come from a band around F = 0.
   [[nodiscard]] virtual double own_area() const { return 0; }
 
@@ -72,8 +75,8 @@ class Shape {
 inline constexpr double kHalfExtent = 1.05;
 
 /// Names that make_shape() knows.
-inline constexpr std::array<const char*, 7> kShapeNames = {"gyroid", "sphere", "torus", "knot",
-                                                           "plate",  "slab",   "nested"};
+inline constexpr std::array<const char*, 8> kShapeNames = {"gyroid", "sphere", "torus",  "knot",
+                                                           "plate",  "slab",   "nested", "hand"};
 
 /// The shape called `name`:
 ///   gyroid  shell of half-thickness 0.4 in g around sin9x cos9y + sin9y cos9z + sin9z cos9x = g, cut by the unit ball
@@ -83,6 +86,9 @@ inline constexpr std::array<const char*, 7> kShapeNames = {"gyroid", "sphere", "
 ///   plate   a rectangle 1.8 by 1.2, 0.04 thick, with round rims
 ///   slab    a box of 1.8 by 1.2 by 0.04 with sharp edges
 ///   nested  a ball of radius 0.3 in the cavity, of radius 0.6, of a ball of radius 0.95
+///   hand    palm and five fingers along y, of blended capsules. Index and middle finger are 0.035 apart near their
+///           tips and not seen where they face each other, |x - 0.235| < 0.07 above y = 0.5: reconstructed from its
+///           samples at depth 7 or 8, they grow together (genus 1) until strokes part them
 /// @throws Error usage for any other name
 std::unique_ptr<Shape> make_shape(const std::string& name);
 
@@ -101,7 +107,7 @@ struct SamplingOptions {
   int threads = 0;          ///< CPU threads, 0: all
 };
 
-/// Points drawn area-uniformly and independently from the surface of `shape`, with unit outward normals.
+/// Points drawn area-uniformly and independently from the surface of `shape`, where it is seen, with unit outward normals.
 ///
 /// Random points of the cube are kept when |F| / |grad F| < 0.001, then moved onto the surface by Newton steps. A
 /// band of constant width holds the same volume over equal areas up to K eps^2 / 3 (K: Gaussian curvature), here below
@@ -110,7 +116,7 @@ struct SamplingOptions {
 /// @throws Error usage if an option is out of range
 Cloud sample_surface(const Shape& shape, const SamplingOptions& options);
 
-/// Area of the surface, from `draws` draws of the same sampler. Standard error about area / sqrt(draws / 10).
+/// Area of the surface where it is seen, from `draws` draws of the same sampler. Standard error about area / sqrt(draws / 10).
 double estimate_area(const Shape& shape, std::int64_t draws, std::uint64_t seed, int threads = 0);
 
 }  // namespace pointskin::bench

@@ -120,7 +120,8 @@ std::vector<Vec3d> crossings_of_line(const Shape& shape, Random& random, int ste
   double before = shape.at(point(-half)).value;
   for (int i = 1; i <= steps; ++i) {
     const double after = shape.at(point(-half + i * step)).value;
-    if ((before < 0) != (after < 0)) found.push_back(point(-half + (i - after / (after - before)) * step));
+    const Vec3d q = point(-half + (i - after / (after - before)) * step);
+    if ((before < 0) != (after < 0) && shape.is_seen(q)) found.push_back(q);
     before = after;
   }
   return found;

@@ -134,7 +134,15 @@ class Simulation {
   /// @throws Error usage if `seconds` or an interaction is out of its range, or there are more than 7 interactions
   void step(double seconds, const std::vector<Interaction>& interactions = {});
 
-  /// Back to the scene's first frame. Every byte is as if it were new.
+  /// Takes the obstacle from its own way: with the next step it goes to `centre` in a straight line, or towards it at
+  /// 5 metres / second where that is too far for one frame, and stays there. The ball never leaves the tank.
+  /// @param centre  metres
+  /// @throws Error usage if it is not finite, or the scene has no obstacle
+  void move_obstacle(const Vec3f& centre);
+  /// Where the obstacle is now; of radius 0 in a scene without one.
+  [[nodiscard]] Obstacle obstacle() const;
+
+  /// Back to the scene's first frame, the obstacle on its own way. Every byte is as if it were new.
   void restart();
 
   /// Copies the particles to the host.

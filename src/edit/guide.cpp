@@ -190,17 +190,6 @@ GuidePoints in_area(Exec& ex, const ViewFrame& view, const GuideShape& shape, co
   return keep_points(ex, area, begin.back(), keep, false);
 }
 
-struct IsNotInArea {
-  ViewFrame view;
-  Polygons area;
-  ArrayView<const Vec3f> positions;
-  ArrayView<const std::uint8_t> candidates;
-  PSK_HD bool operator()(std::int64_t i) const {
-    PlanePoint place;
-    return candidates[i] == 0 || !view.project(positions[i], place) || !area.contains(place);
-  }
-};
-
 }  // namespace
 
 template <exec::Space Exec>
@@ -210,13 +199,6 @@ GuidePoints guide_points(Exec& ex, const ViewFrame& view, const GuideShape& shap
   return in_area(ex, view, shape, keep);
 }
 
-template <exec::Space Exec>
-exec::Buffer<std::int32_t> points_not_in(Exec& ex, const ViewFrame& view, const Polygons& area,
-                                         ArrayView<const Vec3f> positions, ArrayView<const std::uint8_t> candidates) {
-  return select(ex, "remove.keep", positions.size, IsNotInArea{view, area, positions, candidates});
-}
-
 PSK_INSTANTIATE(guide_points);
-PSK_INSTANTIATE(points_not_in);
 
 }  // namespace pointskin::edit

@@ -53,11 +53,4 @@ template <exec::Space Exec>
 GuidePoints guide_points(Exec& ex, const ViewFrame& view, const GuideShape& shape, const KeepInside& keep,
                          bool stroke_normals);
 
-/// Indices of the points that stay when those inside of the polygons are removed, ascending.
-/// @param candidates  shape (n); 0: the point stays wherever it is
-/// O(n edges). Deterministic.
-template <exec::Space Exec>
-exec::Buffer<std::int32_t> points_not_in(Exec& ex, const ViewFrame& view, const Polygons& area,
-                                         ArrayView<const Vec3f> positions, ArrayView<const std::uint8_t> candidates);
-
 }  // namespace pointskin::edit

@@ -1,45 +1,44 @@
-// What the operations of a session do to the points of a cloud, on one space.
+// The points of a session and how an operation changes them, on one space.
 #pragma once
 
-#include <pointskin/edit.hpp>
+#include <pointskin/vector.hpp>
 
-#include <string>
+#include <cstdint>
 
+#include "core/array_view.hpp"
+#include "edit/point_kind.hpp"
+#include "exec/memory.hpp"
 #include "exec/space.hpp"
-#include "reconstruct/fit_field.hpp"
 #include "reconstruct/points.hpp"
 
 namespace pointskin::edit {
 
-/// What an operation starts from.
-struct EditInput {
-  const detail::PointBuffers& points;  ///< relative to `origin`, all used, with PointBuffers::added
-  const detail::FieldData& field;      ///< of these points, with samples
-  Vec3d origin;
-  Bounds base_box;           ///< of the original points
-  double normal_length = 1;  ///< of normals that are made
-  const Options& options;
+/// What an operation does to the points: it adds some, removes some or turns the normals of some.
+struct Change {
+  detail::PointBuffers added{};          ///< relative to the session's origin; attributes may be of other names
+  std::uint8_t kind = kGuide;            ///< of the added ones
+  exec::Buffer<std::int32_t> removed{};  ///< indices, ascending
+  exec::Buffer<std::int32_t> flipped{};  ///< indices, ascending
+  bool snapped = false;                  ///< Insert::snap found points to snap to
+
+  [[nodiscard]] bool is_none() const { return added.positions.empty() && removed.empty() && flipped.empty(); }
 };
 
-/// The points after an operation, and what it did.
-struct EditedPoints {
-  detail::PointBuffers points;
-  std::int64_t added = 0, removed = 0;
-  bool snapped = false;
-
-  [[nodiscard]] bool changed() const { return added > 0 || removed > 0; }
-};
-
-/// @throws Error usage, empty_result (no points left), over_limit, no_normals, invalid_input
+/// The points after a change. O(points), copies all.
+/// @throws Error empty_result (no points left), over_limit
 template <exec::Space Exec>
-EditedPoints edit_points(Exec& ex, const EditInput& input, const Operation& operation);
+detail::PointBuffers changed_points(Exec& ex, const detail::PointBuffers& points, const Change& change);
+
+/// The points of these indices.
+template <exec::Space Exec>
+detail::PointBuffers choose(Exec& ex, const detail::PointBuffers& points, ArrayView<const std::int32_t> indices);
 
 /// A copy of the points that are used, without PointBuffers::used.
 template <exec::Space Exec>
 detail::PointBuffers copy_used(Exec& ex, const detail::PointBuffers& points);
 
-/// Throws before any work where an operation is not as described in edit.hpp.
-/// @throws Error usage
-void validate(const Operation& operation);
+/// n -> -n for the normals of these indices.
+template <exec::Space Exec>
+void turn_normals(Exec& ex, ArrayView<const std::int32_t> chosen, ArrayView<Vec3f> normals);
 
 }  // namespace pointskin::edit

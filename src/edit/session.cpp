@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/stopwatch.hpp"
-#include "edit/points.hpp"
+#include "edit/change.hpp"
 #include "edit/states.hpp"
 #include "exec/any_space.hpp"
 #include "reconstruct/engine.hpp"
@@ -38,6 +39,12 @@ Topology topology_of(const Mesh& mesh, int threads) {
 
 }  // namespace
 
+/// With numbers where the operation leaves them to the surface before it.
+Operation settled(Operation operation, const edit::State& before) {
+  if (auto* guide = std::get_if<Guide>(&operation)) guide->interval = edit::interval_of(*guide, before.field);
+  return operation;
+}
+
 /// The history of a session.
 class EditSession::Impl {
  public:
@@ -65,10 +72,15 @@ class EditSession::Impl {
     report.after = changed ? topology(report.before) : report.before;
     steps_.resize(done_);
     states_.resize(done_ + 1);
-    steps_.push_back({operation, std::move(report)});
+    steps_.push_back({settled(operation, *states_[done_]), std::move(report)});
     states_.push_back(std::move(next));
     go_to(done_ + 1);
     return steps_.back().report;
+  }
+
+  [[nodiscard]] EditPreview preview(const Operation& operation) const {
+    edit::validate(operation);
+    return exec::visit(space(), [&](auto& ex) { return edit::preview(ex, settings_, *states_[done_], operation); });
   }
 
   bool undo() {
@@ -154,6 +166,7 @@ EditSession::EditSession(EditSession&&) noexcept = default;
 EditSession& EditSession::operator=(EditSession&&) noexcept = default;
 
 const StepReport& EditSession::apply(const Operation& operation) { return impl_->apply(operation); }
+EditPreview EditSession::preview(const Operation& operation) const { return impl_->preview(operation); }
 bool EditSession::undo() { return impl_->undo(); }
 bool EditSession::redo() { return impl_->redo(); }
 std::vector<Operation> EditSession::operations() const { return impl_->operations(); }

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
-#include "edit/point_kind.hpp"
+#include "edit/base.hpp"
+#include "edit/change.hpp"
 #include "edit/points.hpp"
 #include "exec/this_space.hpp"
 #include "exec/typed_buffer.hpp"
 #include "octree/frame.hpp"
-#include "poisson/mean_length.hpp"
 #include "reconstruct/mesh_of_field.hpp"
 #include "reconstruct/within_envelope.hpp"
 
@@ -37,49 +37,15 @@ exec::Buffer<T> copy_of(Exec& ex, const exec::Buffer<T>& from) {
 }
 
 template <exec::Space Exec>
-exec::Buffer<std::uint8_t> all_original(Exec& ex, std::int64_t size) {
-  auto buffer = exec::make_buffer<std::uint8_t>(ex, size);
-  exec::fill(ex, buffer.view(), kOriginal);
-  return buffer;
-}
-
-template <exec::Space Exec>
 void extract(Exec& ex, const Settings& settings, State& state) {
   RunReport unused;
   state.surface = extract_some(ex, state.field, settings.options.reconstruction, unused);
 }
 
-template <exec::Space Exec>
-std::shared_ptr<State> make_base(Exec& ex, const Settings& settings, const Cloud& base) {
-  const Options& options = settings.options.reconstruction;
-  auto state = std::make_shared<State>();
-  PointBuffers points = detail::upload(ex, base);
-  if (options.attributes) points.attributes = detail::upload_attributes(ex, base);
-  RunReport unused;
-  state->field = fit_field(ex, points, {.keep_points = true, .envelope = settings.envelope, .keep_samples = true},
-                           options, unused);
-  state->points = copy_used(ex, points);  // strays are gone for good
-  state->points.added = all_original(ex, state->points.positions.size());
-  state->field.samples.added = all_original(ex, state->field.samples.positions.size());
-  return state;
-}
-
 const char* name_of(const Operation& operation) {
-  constexpr const char* kNames[] = {"guide", "remove", "insert"};
+  constexpr const char* kNames[] = {"guide", "remove", "insert", "flip"};
   static_assert(std::size(kNames) == std::variant_size_v<Operation>);
   return kNames[operation.index()];
-}
-
-/// The cube before if all points are well inside of it, else one around them.
-template <exec::Space Exec>
-octree::Frame cube_for(Exec& ex, const octree::Frame& before, const PointBuffers& points, double scale) {
-  const Bounds box = octree::box_around(ex, points.positions.cview());
-  const auto margin = static_cast<float>((1 - 1 / scale) / 4);  // half of what is left around a cube of its own
-  const Vec3f lower = before.to_unit(box.lower);
-  const Vec3f upper = before.to_unit(box.upper);
-  const bool inside = lower.x >= margin && lower.y >= margin && lower.z >= margin && upper.x <= 1 - margin &&
-                      upper.y <= 1 - margin && upper.z <= 1 - margin;
-  return inside ? before : octree::frame_around(box, scale);
 }
 
 /// Fits the field of a state whose points are there. @returns whether it started from the field before
@@ -103,6 +69,30 @@ double lap(Exec& ex, Stopwatch& watch) {
   return watch.lap();
 }
 
+void describe(const Operation& operation, const Change& change, StepReport& report) {
+  report.operation = name_of(operation);
+  report.added = change.added.positions.size();
+  report.removed = change.removed.size();
+  report.flipped = change.flipped.size();
+  report.snapped = change.snapped;
+}
+
+EditInput input_of(const Settings& settings, const State& state) {
+  return {state.points,           state.field,
+          settings.origin,        settings.base_box,
+          settings.normal_length, settings.options.reconstruction};
+}
+
+/// Positions and normals on the host.
+template <exec::Space Exec>
+Cloud cloud_of(Exec& ex, const PointBuffers& points, const Vec3d& origin) {
+  Cloud cloud;
+  cloud.origin = origin;
+  copy_out(ex, points.positions, cloud.positions);
+  copy_out(ex, points.normals, cloud.normals);
+  return cloud;
+}
+
 }  // namespace
 
 template <exec::Space Exec>
@@ -111,9 +101,12 @@ Beginning begin_session(Exec& ex, const Cloud& base, const EditOptions& options)
   Options& reconstruction = settings.options.reconstruction;
   reconstruction.residuals = false;  // nobody sees them, and they cost more than the solve
   settings.envelope = detail::make_envelope(ex, reconstruction, base.origin);
-  std::shared_ptr<State> state = make_base(ex, settings, base);
-  settings.base_box = octree::box_around(ex, state->points.positions.cview());
-  if (reconstruction.confidence) settings.normal_length = poisson::mean_length(ex, state->points.normals.cview());
+  auto state = std::make_shared<State>();
+  BaseFit fitted = fit_base(ex, base, settings.options, settings.envelope);
+  state->points = std::move(fitted.points);
+  state->field = std::move(fitted.field);
+  settings.base_box = fitted.box;
+  settings.normal_length = fitted.normal_length;
   extract(ex, settings, *state);
   return {std::move(settings), std::move(state)};
 }
@@ -122,26 +115,34 @@ template <exec::Space Exec>
 SharedState make_next(Exec& ex, const Settings& settings, const SharedState& before, const Operation& operation,
                       StepReport& report) {
   Stopwatch watch;
-  EditedPoints edited = edit_points(ex,
-                                    {before->points, before->field, settings.origin, settings.base_box,
-                                     settings.normal_length, settings.options.reconstruction},
-                                    operation);
+  Change change = find_change(ex, input_of(settings, *before), operation);
+  describe(operation, change, report);
+  std::shared_ptr<State> state;
+  if (!change.is_none()) state = std::make_shared<State>(State{changed_points(ex, before->points, change), {}, {}});
+  change = {};  // the fit needs the memory
   report.edit_ms = lap(ex, watch);
-  SharedState next = before;
-  if (edited.changed()) {
-    auto state = std::make_shared<State>();
-    state->points = std::move(edited.points);
+  if (state != nullptr) {
     report.warm = fit(ex, settings, *before, std::holds_alternative<Insert>(operation), *state);
     extract(ex, settings, *state);
-    next = std::move(state);
   }
+  const SharedState next = state != nullptr ? std::move(state) : before;
   report.reconstruct_ms = lap(ex, watch);
-  report.operation = name_of(operation);
-  report.added = edited.added;
-  report.removed = edited.removed;
-  report.snapped = edited.snapped;
   report.points = next->points.positions.size();
   return next;
+}
+
+template <exec::Space Exec>
+EditPreview preview(Exec& ex, const Settings& settings, const State& state, const Operation& operation) {
+  const Change change = find_change(ex, input_of(settings, state), operation);
+  if (change.flipped.empty())
+    return {cloud_of(ex, change.added, settings.origin),
+            cloud_of(ex, choose(ex, state.points, change.removed.cview()), settings.origin)};
+  PointBuffers turned = choose(ex, state.points, change.flipped.cview());
+  EditPreview preview;
+  preview.removed = cloud_of(ex, turned, settings.origin);
+  turn_normals(ex, exec::iota(ex, turned.normals.size()).cview(), turned.normals.view());
+  preview.added = cloud_of(ex, turned, settings.origin);
+  return preview;
 }
 
 template <exec::Space Exec>
@@ -155,20 +156,19 @@ void show(Exec& ex, const Settings& settings, const State& state, Mesh& mesh) {
 template <exec::Space Exec>
 Cloud copy_cloud(Exec& ex, const Settings& settings, const State& state) {
   const PointBuffers& points = state.points;
-  Cloud cloud;
-  cloud.origin = settings.origin;
-  copy_out(ex, points.positions, cloud.positions);
-  copy_out(ex, points.normals, cloud.normals);
+  Cloud cloud = cloud_of(ex, points, settings.origin);
   for (const detail::AttributeBuffer& attribute : points.attributes)
-    cloud.attributes.push_back({attribute.name, exec::download_typed(ex, exec::copy_typed(ex, attribute.values))});
+    if (attribute.name != kKinds)
+      cloud.attributes.push_back({attribute.name, exec::download_typed(ex, exec::copy_typed(ex, attribute.values))});
   std::vector<std::uint8_t> kinds;
   copy_out(ex, points.added, kinds);
-  cloud.attributes.push_back({"added", std::move(kinds)});
+  cloud.attributes.push_back({kKinds, std::move(kinds)});
   return cloud;
 }
 
 PSK_INSTANTIATE(begin_session);
 PSK_INSTANTIATE(make_next);
+PSK_INSTANTIATE(preview);
 PSK_INSTANTIATE(show);
 PSK_INSTANTIATE(copy_cloud);
 

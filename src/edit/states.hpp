@@ -44,10 +44,15 @@ Beginning begin_session(Exec& ex, const Cloud& base, const EditOptions& options)
 /// The state after an operation: that before, if it changes nothing.
 /// @param operation  valid
 /// @param report     receives all but triangles, topology and total_ms
-/// @throws Error as edit_points; as Reconstructor::solve
+/// @throws Error as find_change and changed_points; as Reconstructor::solve
 template <exec::Space Exec>
 SharedState make_next(Exec& ex, const Settings& settings, const SharedState& before, const Operation& operation,
                       StepReport& report);
+
+/// What an operation would do to the points of a state, as EditSession::preview. Waits.
+/// @param operation  valid
+template <exec::Space Exec>
+EditPreview preview(Exec& ex, const Settings& settings, const State& state, const Operation& operation);
 
 /// Copies the surface of a state to the host. Waits.
 template <exec::Space Exec>

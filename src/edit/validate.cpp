@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "edit/points.hpp"
+#include "edit/change.hpp"
 
 namespace pointskin::edit {
 namespace {
@@ -49,10 +49,19 @@ void check(const Remove& remove) {
   check(remove.area);
 }
 
+void check(const Flip& flip) {
+  pointskin::validate(flip.camera);
+  check(flip.area);
+}
+
 void check(const Insert& insert) {
   require(insert.part != nullptr, "an inserted part needs a cloud");
   for (std::size_t a = 0; a < 3; ++a)
     require(insert.lower[a] <= insert.upper[a], "the box of a part must have its lower corner below its upper one");
+  if (!insert.area.empty()) {
+    pointskin::validate(insert.camera);
+    check(insert.area);
+  }
   const Similarity& s = insert.placement;
   require(s.scale > 0 && std::isfinite(s.scale), "the scale of a part's placement must be above 0");
   for (const double t : {s.translation.x, s.translation.y, s.translation.z})

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,7 @@ constexpr float kGapShare = 0.5F;
 constexpr double kStandingSeconds = 0.25;
 /// What the free surface is averaged over.
 constexpr double kSurfaceSeconds = 0.1;
+constexpr double kObstacleSpeed = 5;  // metres / second, where somebody moves it: as the hand does
 /// Of the surface, in particle radii. At the height where the lattice ends (half a spacing above its highest layer) the
 /// distance to the mean is 1.09, where water without any order ends 0.98; water at rest lies between.
 constexpr double kSurfaceThreshold = 1.04;
@@ -86,6 +88,7 @@ class Simulation::Impl {
 
   void start() {
     report_ = {};
+    moved_.reset();
     settings_.seconds = 0;
     report_.particles = static_cast<std::int64_t>(scene_.positions.size());
     state_ = {};  // its memory is used again
@@ -97,7 +100,9 @@ class Simulation::Impl {
     const Stopwatch watch;
     if (!(seconds > 0 && seconds <= 1)) refuse("a frame's seconds must be in (0, 1]");
     set_forces(interactions);
-    const int substeps = substeps_for(seconds);
+    const Obstacle here = obstacle();
+    const Obstacle next = obstacle_after(seconds);
+    const int substeps = substeps_for(seconds, length_of(next.centre - here.centre) / seconds);
     const double part = seconds / substeps;
     // Multipliers are a pressure times seconds^2.
     const double ratio = settings_.seconds > 0 ? part / double{settings_.seconds} : 1;
@@ -106,15 +111,32 @@ class Simulation::Impl {
     settings_.missing_share = static_cast<float>(std::min(1.0, part / kSurfaceSeconds));
     settings_.seconds = static_cast<float>(part);
     for (int i = 1; i <= substeps; ++i) {
-      place_obstacle(report_.seconds + part * i);
+      place_obstacle(moved_ ? between(here, next, static_cast<float>(i) / static_cast<float>(substeps))
+                            : scene_.obstacle_at(report_.seconds + part * i));
       exec::visit(space(), [&](auto& ex) { substep(ex, state_.particles, settings_, state_.grid); });
       settings_.rescale = 1;
     }
+    if (moved_) moved_->centre = next.centre;
     report_.substeps = substeps;
     report_.seconds += seconds;
     ++report_.frame;
     describe();
     report_.ms = watch.milliseconds();
+  }
+
+  void move_obstacle(const Vec3f& goal) {
+    const float radius = scene_.obstacle_radius;
+    if (!(radius > 0)) refuse("this scene has no obstacle");
+    if (!is_finite(goal)) refuse("the place of an obstacle must be finite");
+    const auto within = [radius](float x, float side) {
+      return std::clamp(x, radius, std::max(radius, side - radius));
+    };
+    const Vec3f& tank = scene_.tank;
+    moved_ = {obstacle().centre, {within(goal.x, tank.x), within(goal.y, tank.y), within(goal.z, tank.z)}};
+  }
+
+  [[nodiscard]] Obstacle obstacle() const {
+    return moved_ ? Obstacle{moved_->centre, scene_.obstacle_radius} : scene_.obstacle_at(report_.seconds);
   }
 
   void surface(const FluidOptions& given, Mesh& mesh) {
@@ -175,20 +197,29 @@ class Simulation::Impl {
     }
   }
 
+  /// Where the obstacle is at the end of a frame.
+  [[nodiscard]] Obstacle obstacle_after(double seconds) const {
+    if (!moved_) return scene_.obstacle_at(report_.seconds + seconds);
+    const double way = length_of(moved_->goal - moved_->centre);
+    const double share = way > 0 ? std::min(1.0, kObstacleSpeed * seconds / way) : 1;
+    return between(obstacle(), {moved_->goal, scene_.obstacle_radius}, static_cast<float>(share));
+  }
+
+  static Obstacle between(const Obstacle& from, const Obstacle& to, float share) {
+    return {from.centre + share * (to.centre - from.centre), from.radius};
+  }
+
   /// In equal parts, none of which moves anything farther than `courant` kernel radii.
-  [[nodiscard]] int substeps_for(double seconds) const {
-    double speed = report_.max_speed;
-    const Vec3f here = scene_.obstacle_at(report_.seconds).centre;
-    const Vec3f next = scene_.obstacle_at(report_.seconds + seconds).centre;
-    speed = std::max(speed, length_of(next - here) / seconds);
+  /// @param obstacle_speed  metres / second
+  [[nodiscard]] int substeps_for(double seconds, double obstacle_speed) const {
+    const double speed = std::max(double{report_.max_speed}, obstacle_speed);
     const double way = seconds * (speed + options_.gravity * seconds) / radius_;
     const double needed = std::ceil(way / options_.courant);
     return static_cast<int>(
         std::clamp(needed, double{1} * options_.fewest_substeps, double{1} * options_.most_substeps));
   }
 
-  void place_obstacle(double seconds) {
-    const Obstacle obstacle = scene_.obstacle_at(seconds);
+  void place_obstacle(const Obstacle& obstacle) {
     settings_.solids.centre = 1 / radius_ * obstacle.centre;
     settings_.solids.radius = obstacle.radius / radius_;
   }
@@ -209,7 +240,13 @@ class Simulation::Impl {
     report_.max_speed = radius * std::sqrt(double{totals.fastest_squared});
   }
 
+  /// An obstacle that somebody has taken from its own way; metres.
+  struct Moved {
+    Vec3f centre{}, goal{};
+  };
+
   float radius_ = 1;  ///< of the kernel, metres
+  std::optional<Moved> moved_;
   StepSettings settings_;
   Bounds box_;
 };
@@ -223,6 +260,8 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 void Simulation::step(double seconds, const std::vector<Interaction>& interactions) {
   impl_->step(seconds, interactions);
 }
+void Simulation::move_obstacle(const Vec3f& centre) { impl_->move_obstacle(centre); }
+Obstacle Simulation::obstacle() const { return impl_->obstacle(); }
 void Simulation::restart() { impl_->start(); }
 void Simulation::surface(const FluidOptions& options, Mesh& mesh) { impl_->surface(options, mesh); }
 DeviceMesh Simulation::surface_on_device(const FluidOptions& options) { return impl_->surface_on_device(options); }

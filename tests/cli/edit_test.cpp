@@ -159,6 +159,38 @@ TEST_F(EditCommand, SavesPartsByTheFolderOfTheScript) {
   EXPECT_EQ(read_file(output_), edited);
 }
 
+TEST_F(EditCommand, FlipsAndRemovesTheFrontAndInsertsWhatAViewShows) {
+  write_file(folder_ / "part.ply", ply_bytes(sphere(2000)));
+  const std::string front = std::string(R"("camera": )") + kCamera + R"(, "rectangle": [150, 150, 250, 250], )";
+  const std::string script = script_with(R"({"op": "flip", )" + front + R"("layers": "front"}, {"op": "flip", )" +
+                                         front + R"("layers": "through"},
+         {"op": "remove", )" + front + R"("originals": true, "layers": "front"}, {"op": "insert", )" +
+                                         front + R"("file": "part.ply"})");
+  const std::string saved = folder_ / "saved.json";
+  const std::string report = folder_ / "report.json";
+  const Result result = edit(script, {"--save", saved, "--report", report});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string edited = read_file(output_);
+  const Json steps = Json::parse(read_file(report))["steps"];
+  const Json schema = Json::parse(read_file(std::string(POINTSKIN_SOURCE_DIR) + "/docs/edit.schema.json"));
+  EXPECT_TRUE(schema_violations(schema, Json::parse(read_file(report))).empty());
+  const auto flipped = steps[0]["flipped"].get<std::int64_t>();
+  EXPECT_GT(flipped, 100);
+  EXPECT_GT(steps[1]["flipped"], flipped) << "both sides";
+  EXPECT_NE(result.err.find(std::to_string(flipped) + " turned"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("changes no point"), std::string::npos) << result.err;
+  EXPECT_GT(steps[2]["removed"], 100);
+  EXPECT_LT(steps[2]["removed"], steps[1]["flipped"]);
+  EXPECT_GT(steps[3]["added"], 50);
+  EXPECT_LT(steps[3]["added"], 1000) << "the part has 2000 points";
+  const Json operations = Json::parse(read_file(saved))["operations"];
+  EXPECT_EQ(operations[0]["layers"], "front");
+  EXPECT_EQ(operations[1]["layers"], "through");
+  EXPECT_EQ(operations[3]["area"][0].size(), 4U);
+  ASSERT_EQ(edit(read_file(saved)).exit_code, 0);
+  EXPECT_EQ(read_file(output_), edited);
+}
+
 TEST_F(EditCommand, RefusesScriptsThatAreWrong) {
   expect_failure("{", 3, "is not JSON");
   expect_failure(R"({"operations": []})", 3, "needs the key 'version'");
@@ -171,6 +203,14 @@ TEST_F(EditCommand, RefusesScriptsThatAreWrong) {
   expect_failure(script_with(R"({"op": "guide", "camera": {}})"), 2, "stroke or an area");
   expect_failure(script_with(R"({"op": "undo"})"), 2, "nothing to undo");
   expect_failure(script_with(R"({"op": "insert", "file": "missing.ply"})"), 3, "missing.ply");
+  expect_failure(script_with(R"({"op": "remove", "camera": {}, "layers": "back"})"), 3, "operations[0].layers");
+  expect_failure(script_with(R"({"op": "flip", "camera": {}, "originals": true})"), 3, "originals");
+  expect_failure(script_with(R"({"op": "flip", "camera": {}})"), 2, "no area");
+  expect_failure(script_with(R"({"op": "insert", "file": "p.ply", "camera": {}, "rectangle": [0, 0, 9, 9]})"), 3,
+                 "operations[0].camera");
+  expect_failure(script_with(R"({"op": "insert", "file": "p.ply", "rectangle": [0, 0, 9, 9]})"), 3, "camera");
+  expect_failure(script_with(std::string(R"({"op": "insert", "file": "p.ply", "camera": )") + kCamera + "}"), 3,
+                 "no area");
   expect_failure(script_with(R"({"op": "remove", "camera": {}, "rectangle": [0, 0, 1200, 900], "originals": true})"), 5,
                  "remove all points");
 }

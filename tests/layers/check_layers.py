@@ -33,6 +33,16 @@ LAYERS = {
     "render": {"core", "exec", "octree", "mesh", "render"},
     "problems": {"core", "exec", "mesh", "render", "problems"},
 }
+# The rooms of the program: what the files of apps/<room> may include with quotes, by its path from apps/. A file may
+# include those of its own room by their names alone.
+APP_ROOMS = {
+    "scene": {"scene"},
+    "studio/wire": {"studio/wire"},
+    "studio/session": {"scene", "studio/session", "studio/wire"},
+    "studio/server": {"studio/server", "studio/session/application.hpp"},  # serves an Application, and knows no scene
+}
+# Headers of libraries that a room alone names.
+OWNED = {"boost/": "studio/server", "meshoptimizer": "studio/wire", "CLI/": "cli"}
 SOURCES = {".hpp", ".cpp", ".cuh", ".cu", ".h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 COMPILER = re.compile(r"__CUDACC__|__CUDA_ARCH__")
@@ -67,8 +77,45 @@ def violations_in(path, where, allowed, may_name_backend, may_ask_compiler):
             yield f"{place}: includes {target}; it may include only {', '.join(sorted(allowed))}"
 
 
+def violations_in_room(path, where, room):
+    """Yields one line per violation in a file of apps/<room>. Rooms that are in no list may include any other."""
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        quote, target = match.groups()
+        for library, owner in OWNED.items():
+            if target.startswith(library) and room != owner:
+                yield f"{where}:{number}: includes {target}; only apps/{owner} names this library"
+        if BACKEND.match(target):
+            yield f"{where}:{number}: includes {target}; only src/exec names a backend"
+        allowed = APP_ROOMS.get(room)
+        if quote == '"' and allowed is not None and "/" in target:
+            if target not in allowed and str(pathlib.PurePosixPath(target).parent) not in allowed:
+                yield f"{where}:{number}: includes {target}; it may include only {', '.join(sorted(allowed))}"
+
+
+def room_of(parts):
+    """apps/studio/wire/a.cpp -> studio/wire, apps/cli/bench/a.cpp -> cli."""
+    folders = parts[:-1]
+    return "/".join(folders[:2]) if folders[:1] == ("studio",) else folders[0] if folders else ""
+
+
+def violations_in_apps(root):
+    with_boost = []
+    for path in sorted((root / "apps").rglob("*")):
+        if path.suffix not in SOURCES or "node_modules" in path.parts:
+            continue
+        where = path.relative_to(root)
+        yield from violations_in_room(path, where, room_of(path.relative_to(root / "apps").parts))
+        if "#include <boost/" in path.read_text(encoding="utf-8"):
+            with_boost.append(str(where))
+    if len(with_boost) > 1:  # it costs half a minute to compile
+        yield f"{with_boost[1]}: names Boost, as {with_boost[0]} does; one file may"
+
+
 def find_violations(root):
-    found = []
+    found = list(violations_in_apps(root))
     for path in sorted((root / "src").rglob("*")):
         if path.suffix not in SOURCES:
             continue
@@ -92,6 +139,10 @@ CLEAN = {
     "src/surface/mesh.cu": '#include <cub/cub.cuh>\n#include "field/field.hpp"\n',
     "src/reconstruct.cpp": '#include "surface/mesh.hpp"\n#include "io/ply.hpp"\n',
     "include/pointskin/a.hpp": "#include <vector>\n#include <pointskin/b.hpp>\n",
+    "apps/scene/a.cpp": '#include "json.hpp"\n#include "scene/b.hpp"\n#include <pointskin/a.hpp>\n',
+    "apps/studio/server/a.cpp": '#include <boost/asio.hpp>\n#include "studio/session/application.hpp"\n',
+    "apps/studio/web/node_modules/a.hpp": "#include <boost/asio.hpp>\n",
+    "apps/cli/a.cpp": '#include <CLI/CLI.hpp>\n#include "scene/b.hpp"\n',
 }
 PLANTED = {
     "src/core/a.hpp": '#include "exec/cpu.hpp"\n',
@@ -109,6 +160,12 @@ PLANTED = {
     "src/unheard_of/a.cpp": "\n",
     "include/pointskin/a.hpp": "#include <cuda_runtime.h>\n",
     "include/pointskin/b.hpp": '#include "core/view.hpp"\n',
+    "apps/scene/a.hpp": '#include "cli/args.hpp"\n',
+    "apps/studio/session/a.hpp": '#include "studio/server/server.hpp"\n',
+    "apps/studio/session/b.cpp": "#include <boost/asio.hpp>\n",
+    "apps/studio/server/a.hpp": '#include "studio/session/engine.hpp"\n',
+    "apps/studio/wire/a.cpp": "#include <oneapi/tbb/parallel_for.h>\n",
+    "apps/scene/b.cpp": "#include <CLI/CLI.hpp>\n",
 }
 
 
@@ -123,6 +180,9 @@ def found_in_tree(files):
 
 def self_test():
     failures = [f"clean tree: {line}" for line in found_in_tree(CLEAN)]
+    twice = {f"apps/studio/server/{name}.cpp": "#include <boost/asio.hpp>\n" for name in ("a", "b")}
+    if len(found_in_tree(twice)) != 1:
+        failures.append(f"two files with Boost: found {found_in_tree(twice)}")
     for name, text in PLANTED.items():
         found = found_in_tree({name: text})
         if len(found) != 1 or not found[0].startswith(name):

@@ -31,6 +31,7 @@ class GpuEdits : public test::GpuTest {
       const StepReport step = on_gpu.apply(operation);
       EXPECT_EQ(step.added, expected.added);
       EXPECT_EQ(step.removed, expected.removed);
+      EXPECT_EQ(step.flipped, expected.flipped);
       EXPECT_EQ(step.snapped, expected.snapped);
       EXPECT_EQ(step.warm, expected.warm);
       EXPECT_EQ(step.after.genus, expected.after.genus);
@@ -97,6 +98,28 @@ TEST_F(GpuEdits, InsertAndSnapAlike) {
   EditOptions options = options_at(6);
   options.reconstruction.attributes = true;
   expect_parity(base, options, {insert, far});
+}
+
+TEST_F(GpuEdits, ChooseTheFrontAlike) {
+  Flip flip;
+  flip.camera = slanted_camera();
+  flip.area = {{{250, 180}, {400, 170}, {420, 300}, {240, 310}}};
+  flip.front_layer = true;
+  const Remove remove{slanted_camera(), {{{200, 100}, {330, 100}, {330, 400}, {200, 400}}}, true, true};
+  Insert lasso;
+  lasso.part = std::make_shared<const Cloud>(test::torus_cloud(20'000, 8));
+  lasso.camera = slanted_camera();
+  lasso.area = flip.area;
+  expect_parity(test::torus_cloud(30'000, 9), options_at(6), {flip, flip, remove, lasso});
+}
+
+TEST_F(GpuEdits, ContinueAlike) {
+  EditOptions options = options_at(6);
+  EditSession first(test::two_fingers_cloud(20'000, 10), options, Device::cpu());
+  first.apply(test::parting_strokes()[0]);
+  options.continued = true;
+  options.reconstruction.keep_strays = true;
+  expect_parity(first.cloud(), options, {test::parting_strokes()[1]});
 }
 
 TEST_F(GpuEdits, WarmAndColdAlikeUnderEveryOption) {

@@ -332,5 +332,52 @@ TEST(Simulation, RefusesWhatIsOutOfRange) {
   for (const SceneKind kind : all_scenes()) EXPECT_EQ(parse_scene(name_of(kind)), kind);
 }
 
+/// Drags the obstacle through a pool for some frames. @returns the particles at the end
+ParticleStates dragged(Simulation& simulation) {
+  simulation.move_obstacle({1.5F, 0.4F, 0.3F});
+  for (int frame = 0; frame < 12; ++frame) simulation.step(kFrame);
+  simulation.move_obstacle({9, -9, 0.3F});
+  for (int frame = 0; frame < 12; ++frame) simulation.step(kFrame);
+  return simulation.particles();
+}
+
+TEST(Obstacle, GoesWhereItIsMovedAndStaysInTheTank) {
+  Simulation simulation(make_scene(SceneKind::obstacle, 3000));
+  const Scene& scene = simulation.scene();
+  simulation.step(kFrame);
+  const Vec3f before = simulation.obstacle().centre;
+  simulation.move_obstacle({before.x + 0.05F, before.y, before.z});
+  simulation.step(kFrame);
+  EXPECT_NEAR(double{simulation.obstacle().centre.x}, double{before.x} + 0.05, 1e-6);  // 3 metres / second
+  simulation.move_obstacle({9, 9, 9});
+  simulation.step(kFrame);
+  const double way = std::sqrt(squared_distance(simulation.obstacle().centre, {before.x + 0.05F, before.y, before.z}));
+  EXPECT_NEAR(way, 5 * kFrame, 1e-6);
+  for (int frame = 0; frame < 60; ++frame) simulation.step(kFrame);
+  const float radius = scene.obstacle_radius;
+  const Vec3f corner{scene.tank.x - radius, scene.tank.y - radius, scene.tank.z - radius};
+  EXPECT_LT(squared_distance(simulation.obstacle().centre, corner), 1e-10);
+}
+
+TEST(Obstacle, PushesTheWaterThatIsInItsWay) {
+  Simulation simulation(make_scene(SceneKind::obstacle, 3000));
+  const ParticleStates first = dragged(simulation);
+  const Obstacle obstacle = simulation.obstacle();
+  for (const Vec3f& p : first.positions)
+    ASSERT_GE(squared_distance(p, obstacle.centre), 0.998 * obstacle.radius * obstacle.radius);
+  simulation.restart();
+  EXPECT_TRUE(same_bytes(dragged(simulation), first));
+  Simulation alone(make_scene(SceneKind::obstacle, 3000));
+  for (int frame = 0; frame < 24; ++frame) alone.step(kFrame);
+  EXPECT_FALSE(same_bytes(alone.particles(), first));
+}
+
+TEST(Obstacle, IsRefusedWhereThereIsNone) {
+  Simulation simulation(make_scene(SceneKind::dam_break, 1000));
+  EXPECT_THROW(simulation.move_obstacle({0, 0, 0}), Error);
+  Simulation with(make_scene(SceneKind::obstacle, 1000));
+  EXPECT_THROW(with.move_obstacle({NAN, 0, 0}), Error);
+}
+
 }  // namespace
 }  // namespace pointskin::simulation

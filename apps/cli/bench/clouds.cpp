@@ -78,7 +78,7 @@ Cloud load(const CloudSource& source, int threads) {
     return bench::sample_surface(*bench::make_shape(source.shape), {.points = source.shape_points, .threads = threads});
   }
   Cloud cloud = read_clouds({source.path}, {.shift = std::nullopt, .threads = threads});
-  drop_zero_normals(cloud);
+  scene::drop_zero_normals(cloud);
   return cloud;
 }
 

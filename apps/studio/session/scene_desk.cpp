@@ -1,0 +1,235 @@
+#include "scene_desk.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include <pointskin/camera.hpp>
+#include <pointskin/error.hpp>
+#include <pointskin/reconstruct.hpp>
+
+#include "scene/options.hpp"
+
+namespace pointskin::studio {
+namespace {
+
+/// Larger meshes are not measured: it would take longer than to make them.
+constexpr std::size_t kMostMeasured = 12'000'000;
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Restores what a pointer was when it is left.
+class Holding {
+ public:
+  Holding(ProgressTeller*& place, ProgressTeller& now) : place_(place), before_(std::exchange(place, &now)) {}
+  ~Holding() { place_ = before_; }
+  Holding(const Holding&) = delete;
+  Holding& operator=(const Holding&) = delete;
+
+ private:
+  ProgressTeller*& place_;
+  ProgressTeller* before_;
+};
+
+}  // namespace
+
+SceneDesk::Points SceneDesk::facts_of(const Cloud& cloud) {
+  return {cloud.size(), bounds_of(cloud.positions), cloud.origin, cloud.has_normals()};
+}
+
+const scene::Scene& SceneDesk::present() const {
+  if (scene_ == nullptr) throw Error(ErrorCode::usage, "there is no scene yet; open a cloud first");
+  return *scene_;
+}
+
+SceneDesk::Opened SceneDesk::open(const scene::Document& document) {
+  Opened opened;
+  scene::ReadFacts facts;
+  Cloud base = load_base(document.base.clouds, {.shift = scene::shift_of(document.base.shift)},
+                         scene::MissingNormals::allowed, facts);
+  opened.notices = std::move(facts.notices);
+  opened.points = facts_of(base);
+  teller_.show_points(base, kMostPoints);  // what was read is seen at once
+  opened.dropped = facts.not_finite + facts.no_normal;
+  scene::SceneOptions options;
+  options.reconstruction = document.options;
+  options.warm_start = document.warm_start;
+  options.topology = false;  // measured here, once the page has the mesh
+  options.progress = [this](const Progress& progress) { return progress_ == nullptr || (*progress_)(progress); };
+  opened.scene = std::make_unique<scene::Scene>(std::move(base), options, services_.workspace);
+  replay(document, *opened.scene);
+  return opened;
+}
+
+/// Does what a document says, undo and redo included.
+void SceneDesk::replay(const scene::Document& document, scene::Scene& scene) {
+  const auto camera = [&scene](const RenderOptions& picture) { return camera_of(scene.mesh(), picture); };
+  for (std::size_t i = 0; i < document.operations.size(); ++i) {
+    const nlohmann::json operation = document.operations[i];
+    const std::string op = operation.at("op");
+    if (op == "undo")
+      scene.undo();
+    else if (op == "redo")
+      scene.redo();
+    else
+      scene.apply(scene::operation_of(operation, "operations[" + std::to_string(i) + "]", {}, camera, &sources_));
+  }
+  const bool linear = scene.size() == document.operations.size();
+  if (linear && document.done < scene.done()) scene.go_to(document.done);
+}
+
+void SceneDesk::take(Opened opened, const scene::Document& document) {
+  scene_ = std::move(opened.scene);
+  base_ = document.base;
+  first_options_ = document.options;
+  points_ = opened.points;
+  dropped_ = opened.dropped;
+  surfaces_.clear();
+  for (const std::string& notice : opened.notices)
+    services_.audience.tell({{"event", "notice"}, {"level", "warning"}, {"text", notice}});
+}
+
+void SceneDesk::begin(const scene::Document& document, const std::filesystem::path& journal) {
+  ProgressTeller progress(services_, "open");
+  const Holding held(progress_, progress);
+  const Clock::time_point start = Clock::now();
+  scene::Document first = document;
+  stamp_clouds(first.base);
+  Opened opened = open(first);
+  scene::Document beginning = first;
+  beginning.operations.clear();
+  beginning.done = 0;
+  scene::Journal begun = scene::Journal::create(journal.string(), beginning);
+  for (std::size_t i = 0; i < opened.scene->size(); ++i) begun.apply(opened.scene->operation(i));
+  if (opened.scene->done() < opened.scene->size()) begun.go(opened.scene->done());
+  take(std::move(opened), first);
+  journal_ = std::move(begun);
+  last_ms_ = ms_since(start);
+  changed(progress.phase_ms());
+  points_are_old_ = scene_->size() > 0;
+}
+
+void SceneDesk::resume(const std::filesystem::path& journal) {
+  ProgressTeller progress(services_, "resume");
+  const Holding held(progress_, progress);
+  const scene::Document document = scene::read_journal(journal.string());
+  for (const std::string& notice : check_clouds(document.base))
+    services_.audience.tell({{"event", "notice"}, {"level", "warning"}, {"text", notice}});
+  Opened opened = open(document);
+  scene::Journal going_on = scene::Journal::open(journal.string());
+  take(std::move(opened), document);
+  journal_ = std::move(going_on);
+  changed(progress.phase_ms());
+}
+
+scene::SceneOperation SceneDesk::operation_of(const nlohmann::json& operation) {
+  const scene::Scene& scene = present();
+  const auto camera = [&scene](const RenderOptions& picture) { return camera_of(scene.mesh(), picture); };
+  return scene::operation_of(operation, "operation", {}, camera, &sources_);
+}
+
+Json SceneDesk::apply(const nlohmann::json& operation) {
+  const scene::SceneOperation next = operation_of(operation);
+  ProgressTeller progress(services_, name_of(next));
+  const Holding held(progress_, progress);
+  const scene::StepRecord& record = scene_->apply(next);
+  const std::size_t index = scene_->done() - 1;
+  try {
+    journal_->apply(scene_->operation(index));
+  } catch (const Error&) {
+    scene_->undo();
+    throw;
+  }
+  surfaces_.resize(index + 1);  // those of operations that were undone are forgotten
+  last_ms_ = record.reconstruct_ms;
+  points_.count = record.points;
+  Json ms = progress.phase_ms();
+  ms["edit"] = record.edit_ms;
+  changed(std::move(ms));
+  return {{"record", record_json(index)}, {"index", index}, {"done", scene_->done()}};
+}
+
+Json SceneDesk::go(std::size_t done) {
+  (void)present();
+  ProgressTeller progress(services_, done < scene_->done() ? "undo" : "redo");
+  const Holding held(progress_, progress);
+  const std::size_t before = scene_->done();
+  if (done != before) {
+    scene_->go_to(done);
+    try {
+      journal_->go(done);
+    } catch (const Error&) {
+      scene_->go_to(before);
+      throw;
+    }
+    changed(progress.phase_ms());
+  }
+  return {{"done", scene_->done()}};
+}
+
+/// What follows every change: the mesh at once, then what was measured of it.
+void SceneDesk::changed(Json ms) {
+  ++state_number_;
+  points_are_old_ = true;
+  show_mesh(std::move(ms));
+  measure_surface();
+  tell_state();
+}
+
+void SceneDesk::show_mesh(Json ms) {
+  const Mesh& mesh = present().mesh();
+  MeshFacts facts;
+  facts.depth = scene_->options().depth;
+  facts.full_triangles = static_cast<std::int64_t>(mesh.triangles.size());
+  facts.ms = std::move(ms);
+  if (facts.full_triangles <= kMostTriangles) {
+    teller_.show(mesh, facts);
+    return;
+  }
+  const Cloud cloud = scene_->cloud();
+  Options options = scene_->options();
+  options.point_normals = PointNormals::given;
+  options.keep_strays = true;
+  Reconstructor reconstructor(services_.workspace);
+  Mesh coarse;
+  do {
+    --options.depth;
+    reconstructor.reconstruct(cloud, options, coarse);
+  } while (static_cast<std::int64_t>(coarse.triangles.size()) > kMostTriangles && options.depth > 1);
+  facts.depth = options.depth;
+  teller_.show(coarse, facts);
+}
+
+void SceneDesk::measure_surface() {
+  const std::size_t done = scene_->done();
+  if (surfaces_.size() <= done) surfaces_.resize(done + 1);
+  const Mesh& mesh = scene_->mesh();
+  if (surfaces_[done] || mesh.triangles.empty() || mesh.triangles.size() > kMostMeasured) return;
+  surfaces_[done] = measure(mesh, services_.device.threads);
+}
+
+bool SceneDesk::work_ahead() {
+  if (!points_are_old_ || scene_ == nullptr) return false;
+  points_are_old_ = false;
+  const Cloud cloud = scene_->cloud();
+  points_ = facts_of(cloud);
+  teller_.show_points(cloud, kMostPoints);
+  tell_state();
+  return true;
+}
+
+scene::Document SceneDesk::document() const {
+  const scene::Scene& scene = present();
+  scene::Document document;
+  document.base = base_;
+  document.options = first_options_;
+  document.options_given = scene::option_keys();
+  document.done = scene.done();
+  for (std::size_t i = 0; i < scene.size(); ++i) document.operations.push_back(scene::to_json(scene.operation(i), {}));
+  return document;
+}
+
+}  // namespace pointskin::studio

@@ -1,0 +1,26 @@
+// What all parts of the engine work with.
+#pragma once
+
+#include <filesystem>
+
+#include <pointskin/device.hpp>
+#include <pointskin/workspace.hpp>
+
+#include "audience.hpp"
+#include "blobs.hpp"
+#include "job_queue.hpp"
+#include "roots.hpp"
+
+namespace pointskin::studio {
+
+struct Services {
+  Device device;
+  Workspace workspace;  ///< of the engine's thread: every object that computes shares its memory
+  Audience& audience;
+  BlobStore& blobs;
+  JobQueue& queue;
+  const Roots& roots;            ///< where files may be read and written
+  std::filesystem::path folder;  ///< of the program's own files: journals, uploads
+};
+
+}  // namespace pointskin::studio

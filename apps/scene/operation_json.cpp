@@ -149,8 +149,7 @@ Orient orient_at(const JsonReader& json) {
   json.object({"op", "method", "sensors", "random_start", "seed", "max_rounds", "keep_within_degrees", "confidence",
                "curvature"});
   Orient orient;
-  const std::string word =
-      json.at("method").one_of({"estimate", "sensor", "propagate", "iterate", "repair", "turn"});
+  const std::string word = json.at("method").one_of({"estimate", "sensor", "propagate", "iterate", "repair", "turn"});
   if (word == "turn") {
     json.object({"op", "method"});
     orient.what = Orient::What::turn;

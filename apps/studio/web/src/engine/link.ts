@@ -7,8 +7,12 @@ import type { FrameEvent, GhostsEvent, Hello, MeshEvent, PointsEvent, ProgressEv
 import type { ColourMode, Store } from "./store";
 import type { Viewport } from "../view/viewport";
 
+/// Changes whenever the committed surface does.
+export function surfaceKey({ journal, done, history, points, triangles }: SceneState): string {
+  return [journal, done, history.length, points, triangles].join(" ");
+}
+
 export class Link {
-  private meshWanted = 0;
   private meshShown = 0;
   private pointsGeneration = 0;
   private pointsQueue: Promise<void> = Promise.resolve();
@@ -44,7 +48,7 @@ export class Link {
   }
 
   private hello(hello: Hello): void {
-    this.meshWanted = this.meshShown = 0;
+    this.meshShown = 0;
     this.store.update({ hello, progress: null });
     this.setScene(hello.scene);
   }
@@ -57,6 +61,7 @@ export class Link {
       this.store.update({ histogram: null, problems: null, problem: -1, estimate: null, comparison: null, chip: null });
     } else if (before && scene) {
       this.chip(before.done, scene);
+      if (surfaceKey(before) !== surfaceKey(scene)) this.store.update({ problems: null, problem: -1 });
     }
     if (!scene || scene.clouds.length === 0) this.clear();
     this.store.update({ scene });
@@ -97,18 +102,15 @@ export class Link {
   }
 
   private async mesh(event: MeshEvent): Promise<void> {
-    this.meshWanted = Math.max(this.meshWanted, event.version);
     const ghosts = this.ghostsWanted; // those asked for from now on belong to the new mesh
     const decoded = await this.load(event.blob);
+    if (decoded) await this.viewport.stageMesh(decoded);
     if (!decoded || event.version < this.meshShown) return this.ack(event.version);
     this.meshShown = event.version;
     const begun = performance.now();
     this.viewport.setMesh(decoded);
     this.frameOnce();
-    if (!event.preview) {
-      if (ghosts === this.ghostsWanted) this.endGhosts();
-      this.store.update({ problems: null, problem: -1 });
-    }
+    if (!event.preview && ghosts === this.ghostsWanted) this.endGhosts();
     this.viewport.afterNextFrame(() => this.meshDrawn(event, decoded, performance.now() - begun));
     void this.lines();
   }
@@ -116,7 +118,8 @@ export class Link {
   private meshDrawn(event: MeshEvent, decoded: Decoded, draw: number): void {
     this.ack(event.version);
     performance.mark(event.preview ? "psk:preview-drawn" : "psk:mesh-drawn", { detail: { version: event.version } });
-    const ms: StageTimes = { ...event.ms, transfer: decoded.transferMs, decode: decoded.decodeMs, draw };
+    const known = event.values?.length ? this.store.mesh?.ms : undefined; // the same surface again, with values
+    const ms: StageTimes = { ...known, ...event.ms, transfer: decoded.transferMs, decode: decoded.decodeMs, draw };
     const meshAttributes = [...Object.keys(decoded.values), ...(decoded.colors ? ["colour"] : [])];
     this.store.update({ mesh: { ...event, ms }, meshAttributes });
     this.legend();
@@ -173,7 +176,7 @@ export class Link {
     const added = event.blob !== null ? await this.load(event.blob) : null;
     const removed = event.removed_blob != null ? await this.load(event.removed_blob) : null;
     if (wanted !== this.ghostsWanted) return;
-    this.viewport.setGhosts(added, removed, event.tinted);
+    this.viewport.setGhosts(added, removed);
     this.store.update({ ghosts: added || removed ? event : null });
     this.viewport.afterNextFrame(() => performance.mark("psk:preview-drawn"));
   }

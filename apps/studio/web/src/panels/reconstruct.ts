@@ -3,6 +3,7 @@ import { css, html, nothing, svg } from "lit";
 import type { StudioContext } from "../app/context";
 import { tell } from "../app/context";
 import { EngineError } from "../engine/connection";
+import { surfaceKey } from "../engine/link";
 import type { Options } from "../engine/protocol";
 import { segmentsRow, slider, sliderRow, numberField, switchRow } from "../ui/controls";
 import { bytes, duration, percent } from "../ui/format";
@@ -174,7 +175,7 @@ export function reconstructPanel(context: StudioContext) {
     ${pendingOptions ? html`<p class="hint pending" data-testid="options-pending">Not applied yet. Esc goes back.</p>` : nothing}`;
 }
 
-const asked = new WeakMap<StudioContext, { estimate: string; histogram: unknown }>();
+const asked = new WeakMap<StudioContext, { estimate: string; histogram: string }>();
 
 /// Asks for what the panel shows besides the options, once for every cloud and mesh.
 export function refreshReconstruct(context: StudioContext): void {
@@ -182,15 +183,15 @@ export function refreshReconstruct(context: StudioContext): void {
   const { scene, mesh } = store;
   showTrim(context);
   if (store.panel !== "reconstruct" || !scene || store.connection !== "open") return;
-  const before = asked.get(context) ?? { estimate: "", histogram: null };
+  const before = asked.get(context) ?? { estimate: "", histogram: "" };
   const depth = Number(store.options.depth ?? 8);
   const key = `${scene.journal} ${scene.points} ${depth} ${JSON.stringify(scene.options)}`;
-  const version = mesh && !mesh.preview ? mesh.version : before.histogram;
-  asked.set(context, { estimate: key, histogram: version });
+  const surface = mesh && !mesh.preview ? surfaceKey(scene) : before.histogram;
+  asked.set(context, { estimate: key, histogram: surface });
   if (key !== before.estimate) {
     connection.request("estimate", { options: { depth } }).then((estimate) => store.update({ estimate })).catch((error) => tell(context, error));
   }
-  if (version !== before.histogram) {
+  if (surface !== before.histogram) {
     connection.request("histogram").then((histogram) => store.update({ histogram })).catch((error) => {
       // Something more urgent came between: asked again with the next change.
       if (error instanceof EngineError && error.quiet) asked.delete(context);

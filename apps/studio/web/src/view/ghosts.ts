@@ -1,11 +1,13 @@
-// Points that an operation would add, orange with their normals, and those it would take away, blue and larger.
+// Points that an operation would add, orange with their normals, and those it would take away, blue and larger. Where
+// every point has a class, that of a set operation: kept ones are light, those turned round orange, dropped ones blue.
 import * as THREE from "three";
 import type { Decoded } from "../engine/blob";
-import { geometryOf, place, pointsMaterial, rgb } from "./layers";
+import { geometryOf, kUnitSphere, place, pointsMaterial, rgb } from "./layers";
 import { spikesFragment, spikesVertex } from "./shaders";
 
 const kAdded = "#f0954e";
 const kRemoved = "#4aa3ea";
+const kKept = "#d3d8df";
 const kMostSpikes = 20000;
 
 /// Every point twice, so that a line goes from it along its normal; a subsample where there are many.
@@ -29,6 +31,7 @@ function spikesOf(decoded: Decoded, material: THREE.ShaderMaterial): THREE.LineS
   geometry.setAttribute("position", new THREE.BufferAttribute(positions, 4, true));
   geometry.setAttribute("oct", new THREE.BufferAttribute(oct, 2, true));
   geometry.setAttribute("end", new THREE.BufferAttribute(end, 1));
+  geometry.boundingSphere = kUnitSphere;
   return new THREE.LineSegments(geometry, material);
 }
 
@@ -36,7 +39,7 @@ export class GhostLayer {
   readonly group = new THREE.Group();
   private readonly added = pointsMaterial(kAdded);
   private readonly removed = pointsMaterial(kRemoved);
-  private readonly classes = pointsMaterial("#aab2bd");
+  private readonly kept = pointsMaterial(kKept);
   private readonly spikes = new THREE.ShaderMaterial({
     vertexShader: spikesVertex,
     fragmentShader: spikesFragment,
@@ -45,33 +48,26 @@ export class GhostLayer {
     uniforms: { plain: { value: rgb(kAdded) }, spike: { value: 0 } },
   });
 
-  private get materials(): THREE.ShaderMaterial[] {
-    return [this.added, this.removed, this.classes];
-  }
-
   constructor() {
-    for (const material of this.materials) {
+    for (const material of [this.added, this.removed, this.kept]) {
       material.polygonOffset = true;
       material.polygonOffsetUnits = -4;
     }
-    // What goes is orange, as for a trim; what is turned is blue.
-    const tints = this.classes.uniforms["tints"]!.value as THREE.Vector3[];
-    tints[1] = rgb(kRemoved);
-    tints[2] = rgb(kAdded);
   }
 
-  set(added: Decoded | null, removed: Decoded | null, tinted = false): void {
+  set(added: Decoded | null, removed: Decoded | null): void {
     for (const child of this.group.children) (child as THREE.Points).geometry.dispose();
     this.group.clear();
-    if (added) this.show(added, tinted ? this.classes : this.added);
+    if (added?.tint) this.showClasses(added, added.tint);
+    else if (added) this.show(added, this.added);
     if (removed) this.show(removed, this.removed);
   }
 
   /// Sizes: points in pixels at the centre, normals as a share of the scene.
   setReference(distance: number, pixelRatio: number, radius: number): void {
-    for (const material of this.materials) {
+    for (const material of [this.added, this.removed, this.kept]) {
       material.uniforms["reference"]!.value = distance;
-      material.uniforms["size"]!.value = (material === this.classes ? 2.5 : 4.5) * pixelRatio;
+      material.uniforms["size"]!.value = (material === this.kept ? 2.5 : 4.5) * pixelRatio;
     }
     this.spikes.uniforms["spike"]!.value = Math.min(0.02 * radius, 0.02 * distance);
   }
@@ -88,5 +84,24 @@ export class GhostLayer {
       place(object, decoded);
       this.group.add(object);
     }
+  }
+
+  /// Classes as the engine counts them: 0 kept, 1 turned round, 2 dropped.
+  private showClasses(decoded: Decoded, classes: Uint8Array): void {
+    const whole = geometryOf(decoded);
+    [this.kept, this.added, this.removed].forEach((material, wanted) => {
+      const indices: number[] = [];
+      for (let i = 0; i < decoded.vertices; ++i) if (classes[decoded.tintStride * i] === wanted) indices.push(i);
+      if (indices.length === 0) return;
+      material.uniforms["hasNormals"]!.value = false;
+      const geometry = new THREE.BufferGeometry();
+      for (const [name, values] of Object.entries(whole.attributes)) geometry.setAttribute(name, values);
+      geometry.setIndex(indices);
+      const points = new THREE.Points(geometry, material);
+      points.frustumCulled = false;
+      points.renderOrder = 3;
+      place(points, decoded);
+      this.group.add(points);
+    });
   }
 }

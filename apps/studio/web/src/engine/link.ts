@@ -104,6 +104,7 @@ export class Link {
   private async mesh(event: MeshEvent): Promise<void> {
     const ghosts = this.ghostsWanted; // those asked for from now on belong to the new mesh
     const decoded = await this.load(event.blob);
+    if (decoded) await this.viewport.stageMesh(decoded);
     if (!decoded || event.version < this.meshShown) return this.ack(event.version);
     this.meshShown = event.version;
     const begun = performance.now();
@@ -201,7 +202,8 @@ export class Link {
   }
 
   private frameOnce(): void {
-    if (this.framed) return;
+    const { surface, points } = this.viewport;
+    if (this.framed || (!surface.decoded?.triangles && points.shown === 0)) return;
     this.framed = true;
     this.viewport.view.fit(this.viewport.box);
     this.viewport.requestRender();

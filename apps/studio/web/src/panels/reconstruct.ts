@@ -82,7 +82,7 @@ function depthCost({ store }: StudioContext) {
 function bars({ store }: StudioContext, trim: number) {
   const histogram = store.histogram;
   if (!histogram) return nothing;
-  const counts = histogram.shares;
+  const { counts } = histogram.densities;
   const most = Math.max(...counts, 1e-9);
   const edge = trim > 0 ? placeOf(histogram, densityOf(histogram, trim)) : 0;
   const label = trim > 0 ? `Densities; what is sparser than ${densityOf(histogram, trim).toPrecision(3)} goes` : "Densities of the surface";

@@ -2,7 +2,7 @@
 // every point has a class, that of a set operation: kept ones are light, those turned round orange, dropped ones blue.
 import * as THREE from "three";
 import type { Decoded } from "../engine/blob";
-import { geometryOf, place, pointsMaterial, rgb } from "./layers";
+import { geometryOf, kUnitSphere, place, pointsMaterial, rgb } from "./layers";
 import { spikesFragment, spikesVertex } from "./shaders";
 
 const kAdded = "#f0954e";
@@ -31,6 +31,7 @@ function spikesOf(decoded: Decoded, material: THREE.ShaderMaterial): THREE.LineS
   geometry.setAttribute("position", new THREE.BufferAttribute(positions, 4, true));
   geometry.setAttribute("oct", new THREE.BufferAttribute(oct, 2, true));
   geometry.setAttribute("end", new THREE.BufferAttribute(end, 1));
+  geometry.boundingSphere = kUnitSphere;
   return new THREE.LineSegments(geometry, material);
 }
 

@@ -19,6 +19,9 @@ function attribute(array: THREE.TypedArray, items: number, normalised: boolean):
   return new THREE.BufferAttribute(array, items, normalised);
 }
 
+/// Around the unit cube in which positions are.
+export const kUnitSphere = new THREE.Sphere(new THREE.Vector3(0.5, 0.5, 0.5), Math.sqrt(0.75));
+
 /// Geometry of a decoded blob. Its bounding sphere is the box's, in the box's own unit cube.
 export function geometryOf(decoded: Decoded): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
@@ -29,7 +32,7 @@ export function geometryOf(decoded: Decoded): THREE.BufferGeometry {
   const density = decoded.values["density"];
   if (density) geometry.setAttribute("density", attribute(density, 1, false));
   if (decoded.index) geometry.setIndex(attribute(decoded.index, 1, false));
-  geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(0.5, 0.5, 0.5), Math.sqrt(0.75));
+  geometry.boundingSphere = kUnitSphere;
   geometry.boundingBox = new THREE.Box3(new THREE.Vector3(0, 0, 0), new THREE.Vector3(1, 1, 1));
   return geometry;
 }

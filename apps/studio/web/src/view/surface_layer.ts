@@ -9,9 +9,17 @@ export class SurfaceLayer {
   decoded: Decoded | null = null;
   private readonly material = surfaceMaterial();
   private readonly lineMaterial = new THREE.LineBasicMaterial({ color: 0x1b2430, transparent: true, opacity: 0.35 });
+  private readonly prepared = new WeakMap<Decoded, THREE.BufferGeometry>();
   private mesh: THREE.Mesh | null = null;
   private lines: THREE.LineSegments | null = null;
   private settings: ViewSettings | null = null;
+
+  /// The geometry that set() will show for this blob.
+  prepare(decoded: Decoded): THREE.BufferGeometry {
+    const known = this.prepared.get(decoded) ?? geometryOf(decoded);
+    this.prepared.set(decoded, known);
+    return known;
+  }
 
   set(decoded: Decoded | null): void {
     const old = this.mesh;
@@ -20,7 +28,7 @@ export class SurfaceLayer {
     this.mesh = null;
     this.group.clear();
     if (decoded && decoded.triangles > 0) {
-      this.mesh = new THREE.Mesh(geometryOf(decoded), this.material);
+      this.mesh = new THREE.Mesh(this.prepare(decoded), this.material);
       this.mesh.frustumCulled = false;
       place(this.mesh, decoded);
       this.group.add(this.mesh);
@@ -67,6 +75,7 @@ export class SurfaceLayer {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", this.mesh.geometry.getAttribute("position"));
     geometry.setIndex(new THREE.BufferAttribute(index, 1));
+    geometry.boundingSphere = this.mesh.geometry.boundingSphere;
     this.lines = new THREE.LineSegments(geometry, this.lineMaterial);
     this.lines.frustumCulled = false;
     this.lines.visible = !!this.settings?.wireframe;

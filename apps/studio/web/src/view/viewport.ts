@@ -10,6 +10,7 @@ import { GridLayer } from "./grid";
 import { Picker } from "./picker";
 import { PointLayer } from "./point_layer";
 import { Section } from "./section";
+import { Stager } from "./stager";
 import { SurfaceLayer } from "./surface_layer";
 
 // Colours are sRGB from the style sheet to the canvas; nothing is converted on the way.
@@ -27,6 +28,7 @@ export class Viewport {
   readonly still: boolean; // no animations
   private readonly renderer: THREE.WebGLRenderer;
   private readonly picker: Picker;
+  private readonly stager = new Stager(() => new Promise((done) => this.afterNextFrame(done)));
   private readonly grid = new GridLayer();
   private readonly perspective = new THREE.PerspectiveCamera();
   private readonly orthographic = new THREE.OrthographicCamera();
@@ -43,7 +45,7 @@ export class Viewport {
     this.renderer.localClippingEnabled = true;
     this.picker = new Picker(this.renderer);
     this.still = new URLSearchParams(location.search).has("test") || matchMedia("(prefers-reduced-motion: reduce)").matches;
-    for (const layer of [this.grid, this.surface, this.points, this.ghosts, this.section]) this.scene.add(layer.group);
+    for (const layer of [this.grid, this.surface, this.points, this.ghosts, this.section, this.stager]) this.scene.add(layer.group);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x667080, 2.4)); // for what tools draw with lit materials
     for (const camera of [this.perspective, this.orthographic]) camera.matrixAutoUpdate = false;
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -58,10 +60,16 @@ export class Viewport {
 
   /// Box of what is shown, world coordinates.
   get box(): Box {
-    return this.surface.decoded?.box ?? this.points.box ?? kEmptyBox;
+    const { decoded } = this.surface;
+    return (decoded && decoded.triangles > 0 ? decoded.box : this.points.box) ?? kEmptyBox;
   }
 
   // ---- content ----
+
+  /// Brings a mesh to the GPU over some frames, if it is large, so that setMesh() shows it at once.
+  async stageMesh(decoded: Decoded): Promise<void> {
+    await this.stager.upload(this.surface.prepare(decoded));
+  }
 
   setMesh(decoded: Decoded | null): void {
     this.surface.set(decoded);

@@ -111,7 +111,8 @@ Document parse_document(const std::string& text, const std::string& name, const 
       reader.at("shift").refuse("must be auto, none or x,y,z");
   }
   if (reader.has("options")) read_document_options(reader.at("options"), document);
-  read_operations(reader.at("operations"), Json::parse(text).at("operations"), document);
+  const JsonReader operations = reader.at("operations");
+  read_operations(operations, Json::parse(text).at("operations"), document);
   for (Json& entry : document.operations)
     rename_file(entry,
                 [&folder](const std::string& file) { return fs::absolute(folder / file).lexically_normal().string(); });

@@ -202,8 +202,8 @@ SolidSource read_source(const JsonReader& json, const fs::path& folder) {
   return source;
 }
 
-bool is_undo(const nlohmann::json& json) { return json.is_object() && json.value("op", "") == "undo"; }
-bool is_redo(const nlohmann::json& json) { return json.is_object() && json.value("op", "") == "redo"; }
+bool is_undo(const nlohmann::json& json) { return json.contains("op") && json["op"] == "undo"; }
+bool is_redo(const nlohmann::json& json) { return json.contains("op") && json["op"] == "redo"; }
 
 void check_operation(const nlohmann::json& json, const std::string& name) {
   const JsonReader reader(json, name);

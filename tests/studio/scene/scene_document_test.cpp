@@ -108,6 +108,8 @@ TEST(SceneDocument, SaysWhatIsWrongAndWhere) {
       {R"({"version": 1, "operations": [], "done": 1})", "doc.done: must be a whole number in 0..0"},
       {R"({"version": 1, "operations": [{"op": "undo"}], "done": 0})", "doc.done: must not be there"},
       {with(R"({"op": "bend"})"), "doc.operations[0].op: must be one of guide"},
+      {with(R"({"op": 3})"), "doc.operations[0].op: must be one of guide"},
+      {with(R"(["op"])"), "doc.operations[0]: must be an object"},
       {with("3"), "doc.operations[0]: must be an object"},
       {with(R"({"op": "undo", "n": 3})"), "doc.operations[0]: does not know the key 'n'"},
       {with(R"({"op": "flip", "camera": {}, "layers": "back"})"), "operations[0].layers: must be one of"},

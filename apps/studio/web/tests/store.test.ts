@@ -56,7 +56,7 @@ test("attempts to connect come at 250 ms first and every 8 s at last", () => {
 
 test("the chip says what changed and no more", () => {
   const topology = (components: number, genus: number) => ({ components, genus, euler: 2 * (components - genus) });
-  const record = { operation: "guide", added: 1204, removed: 0, points: 1, triangles: 1, ms: { edit: 1, reconstruct: 1, total: 2 } };
+  const record = { operation: "guide", added: 1204, removed: 0, points: 1, triangles: 1, edit_ms: 1, reconstruct_ms: 1, total_ms: 2 };
   const of = (patch: object) => chipText({ ...record, before: topology(2, 3), after: topology(1, 1), ...patch } as StepRecord);
   assert.equal(of({}), "+1,204 points, genus 3 → 1, components 2 → 1");
   assert.equal(of({ added: 0, removed: 7, after: topology(2, 3) }), "−7 points");
@@ -66,7 +66,7 @@ test("the chip says what changed and no more", () => {
 });
 
 test("a quantile of the densities is found between the engine's", () => {
-  const histogram: Histogram = { edges: [1, 10, 100], shares: [0.25, 0.75], trim: [[0, 0], [0.1, 2], [0.5, 20]] };
+  const histogram: Histogram = { densities: { edges: [1, 10, 100], counts: [0.25, 0.75], log: true }, quantiles: [[0, 0], [0.1, 2], [0.5, 20]] };
   assert.equal(densityOf(histogram, 0), 0);
   assert.equal(densityOf(histogram, 0.05), 1);
   assert.ok(Math.abs(densityOf(histogram, 0.3) - 11) < 1e-12);

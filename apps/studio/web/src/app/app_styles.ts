@@ -48,7 +48,8 @@ export const frameStyles = css`
     outline: none;
   }
   canvas:focus-visible {
-    box-shadow: inset 0 0 0 2px var(--focus);
+    outline: 1px solid var(--blue);
+    outline-offset: -1px;
   }
   canvas:not([data-tool="navigate"]) {
     cursor: crosshair;

@@ -227,7 +227,7 @@ export class OpenDialog extends Part {
 
   private async compare(reference: FilePlace): Promise<void> {
     try {
-      const { table: comparison } = await this.context.connection.request("compare", { reference });
+      const comparison = await this.context.connection.request("compare", { reference });
       this.store.update({ comparison, panel: "surface", view: { ...this.store.view, colour: "distance" } });
     } catch (error) {
       tell(this.context, error);

@@ -144,7 +144,7 @@ export class SaveDialog extends Part {
       await this.write();
       this.asked = false;
     } catch (error) {
-      const there = error instanceof EngineError && /exists|overwrite/i.test(error.message);
+      const there = error instanceof EngineError && /already|overwrite/i.test(error.message);
       this.asked = there && !this.asked;
       this.said = (error as Error).message;
     }

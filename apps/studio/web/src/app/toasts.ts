@@ -74,7 +74,7 @@ export class Toasts extends Part {
     return html`<div class="unseen" role="status" aria-live="polite">${chip ? chipText(chip.record) : ""}</div>
       ${repeat(notices, (n) => n.id, (n) => this.toast(n))}
       ${chip
-        ? html`<div class="chip" data-testid="chip">${chipText(chip.record)}<small>${duration(chip.record.ms.total)}</small></div>`
+        ? html`<div class="chip" data-testid="chip">${chipText(chip.record)}<small>${duration(chip.record.total_ms)}</small></div>`
         : nothing}`;
   }
 

@@ -202,7 +202,8 @@ export class Link {
   }
 
   private frameOnce(): void {
-    if (this.framed) return;
+    const { surface, points } = this.viewport;
+    if (this.framed || (!surface.decoded?.triangles && points.shown === 0)) return;
     this.framed = true;
     this.viewport.view.fit(this.viewport.box);
     this.viewport.requestRender();

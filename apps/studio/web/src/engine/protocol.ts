@@ -138,7 +138,10 @@ export interface StepRecord {
   after: Topology | null;
   flipped?: number;
   snapped?: boolean;
-  ms: { edit: number; reconstruct: number; total: number };
+  warm?: boolean;
+  edit_ms: number;
+  reconstruct_ms: number;
+  total_ms: number;
   notes?: string[];
 }
 export interface CloudInfo {
@@ -176,6 +179,7 @@ export interface SceneState {
   topology: Topology | null;
   surface: SurfaceMeasures | null;
   journal: string;
+  base_label: string;
 }
 export interface FormatInfo {
   name: string;
@@ -221,7 +225,7 @@ export interface ProblemRegion {
   centroid: Vec3;
   lower: Vec3;
   upper: Vec3;
-  normal: Vec3;
+  mean_normal: Vec3;
   views: ProblemView[];
 }
 export interface Distances {
@@ -236,6 +240,7 @@ export interface Distances {
 }
 export interface Comparison {
   reference: string;
+  tau: number;
   to_reference: Distances;
   from_reference: Distances;
   two_sided: Distances;
@@ -250,9 +255,8 @@ export interface Estimate {
 }
 /// Densities of the surface: shares of its area between edges that are even in their logarithm.
 export interface Histogram {
-  edges: number[];
-  shares: number[];
-  trim: [number, number][]; // quantile of a trim and the density below which it cuts, rising
+  densities: { edges: number[]; counts: number[]; log: boolean };
+  quantiles: [number, number][]; // quantile of a trim and the density below which it cuts, rising
 }
 export interface FilePlace {
   path?: string;
@@ -279,14 +283,14 @@ export interface Replies {
   files: { folder: string; entries: FileEntry[] };
   save: { path?: string; download?: number; bytes: number };
   problems: { regions: ProblemRegion[] };
-  compare: { table: Comparison };
+  compare: Comparison;
   values: Record<string, never>;
   values_end: Record<string, never>;
   operation: { operation: Operation };
   reference_end: Record<string, never>;
   estimate: Estimate;
   histogram: Histogram;
-  pick: { hit: { point: Vec3; normal: Vec3; distance: number } | null };
+  pick: { point: Vec3; normal: Vec3; distance: number } | { point: null };
   fluid: Record<string, unknown>;
   sequence: { frames: number; name: string };
   frame: { index: number; kept: boolean; shown: boolean };

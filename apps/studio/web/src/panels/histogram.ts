@@ -2,9 +2,9 @@
 import type { Histogram } from "../engine/protocol";
 
 /// Density below which a trim cuts, between the engine's pairs of quantile and density.
-export function densityOf({ trim }: Histogram, quantile: number): number {
-  let [q0, d0] = trim[0] ?? [0, 0];
-  for (const [q, d] of trim) {
+export function densityOf({ quantiles }: Histogram, quantile: number): number {
+  let [q0, d0] = quantiles[0] ?? [0, 0];
+  for (const [q, d] of quantiles) {
     if (quantile <= q) return q > q0 ? d0 + ((quantile - q0) / (q - q0)) * (d - d0) : d;
     [q0, d0] = [q, d];
   }
@@ -12,7 +12,7 @@ export function densityOf({ trim }: Histogram, quantile: number): number {
 }
 
 /// Where a density is along the bars, in [0, 1].
-export function placeOf({ edges }: Histogram, density: number): number {
+export function placeOf({ densities: { edges } }: Histogram, density: number): number {
   const bars = edges.length - 1;
   if (bars < 1) return 0;
   for (let i = 0; i < bars; ++i) {

@@ -78,7 +78,7 @@ export function operationTitle(operation: Operation): string {
 function step(context: StudioContext, entry: HistoryStep | null, index: number, done: number) {
   const { connection, store } = context;
   const go = () => void connection.request("go", { done: index }).catch((error) => tell(context, error));
-  const title = entry ? operationTitle(entry.operation) : `Opened ${store.scene?.clouds.map((cloud) => cloud.name).join(", ") ?? ""}`;
+  const title = entry ? operationTitle(entry.operation) : `Opened ${store.scene?.base_label ?? ""}`;
   const record = entry?.record;
   return html`<li>
     <button
@@ -88,7 +88,7 @@ function step(context: StudioContext, entry: HistoryStep | null, index: number, 
       title=${index === done ? "The scene is here" : index < done ? "Go back to here" : "Do again up to here"}
       @click=${go}
     >
-      <span class="rank">${index}</span><span>${title}</span><span class="ms">${record ? duration(record.ms.total) : ""}</span>
+      <span class="rank">${index}</span><span>${title}</span><span class="ms">${record ? duration(record.total_ms) : ""}</span>
       ${record ? html`<span class="hint">${chipText(record)}</span>` : nothing} ${(record?.notes ?? []).map((note) => html`<span class="hint">${note}</span>`)}
     </button>
   </li>`;

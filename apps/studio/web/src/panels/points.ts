@@ -35,7 +35,7 @@ export function pointsPanel(context: StudioContext) {
     ${segmentsRow({
       label: "Show",
       testid: "points-show",
-      value: view.show === "mesh" ? "no" : "yes",
+      value: view.show === "mesh" && viewport.surface.decoded?.triangles ? "no" : "yes",
       choices: [
         { value: "yes", label: "Shown" },
         { value: "no", label: "Hidden" },

@@ -136,7 +136,7 @@ class CopyPartTool extends PlacedTool {
   }
 
   private placing(part: PlacedPart): TemplateResult {
-    const added = this.context.store.ghosts?.added ?? 0;
+    const { added } = this.previews;
     const state = this.previews.error || `${countOf(added, "point")} of ${this.picker.title} would be added`;
     return html`
       ${segmentsRow<Mode>({

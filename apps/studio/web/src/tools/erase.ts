@@ -58,7 +58,7 @@ class EraseTool extends AreaTool {
   private state(): TemplateResult | typeof nothing {
     if (!this.pending) return nothing;
     if (this.previews.error) return note(this.previews.error, "tool-state", true);
-    const removed = this.context.store.ghosts?.removed ?? 0;
+    const { removed } = this.previews;
     if (removed > 0) return note(`${countOf(removed, "point")} would be removed`, "tool-state");
     return note(this.all ? "No points there" : "No added points there; Shift takes those of the scan too", "tool-state");
   }

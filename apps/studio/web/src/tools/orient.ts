@@ -164,7 +164,7 @@ class OrientTool extends AreaTool {
   }
 
   private flipRows(): TemplateResult {
-    const turned = this.context.store.ghosts?.added ?? 0;
+    const turned = this.previews.added;
     const state = this.previews.error || (turned > 0 ? `${countOf(turned, "normal")} would be turned` : "No normal would be turned");
     return html`
       ${this.shapeRow()}

@@ -60,7 +60,8 @@ export class Viewport {
 
   /// Box of what is shown, world coordinates.
   get box(): Box {
-    return this.surface.decoded?.box ?? this.points.box ?? kEmptyBox;
+    const { decoded } = this.surface;
+    return (decoded && decoded.triangles > 0 ? decoded.box : this.points.box) ?? kEmptyBox;
   }
 
   // ---- content ----

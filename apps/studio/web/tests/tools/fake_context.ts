@@ -20,7 +20,7 @@ export function fakeContext() {
   const connection = {
     request: (verb: string, body: Sent["body"] = {}) => {
       sent.push({ verb, body });
-      const reply = view.replies[verb] ?? { record: { operation: "x", notes: [] } };
+      const reply = view.replies[verb] ?? { added: 5, removed: 5, record: { operation: "x", notes: [] } };
       return reply instanceof Error ? Promise.reject(reply) : Promise.resolve(reply);
     },
   };

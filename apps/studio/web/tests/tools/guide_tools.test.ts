@@ -58,6 +58,31 @@ test("a shape that failed stays, so that it can be mended", async () => {
   assert.equal(sent.filter((s) => s.verb === "apply").length, 2);
 });
 
+test("what would change nothing is not applied", async () => {
+  const { context, sent, notices, view } = fakeContext();
+  view.replies["preview"] = { added: 0, removed: 0 };
+  const tool = erase(context);
+  drag(tool, [[100, 100], [200, 180]]);
+  await settled();
+  tool.keyDown!(key("Enter"));
+  await settled();
+  assert.deepEqual([sent.map((s) => s.verb), notices.length], [["preview"], 1]);
+});
+
+test("the next shape is drawn while the last one is being applied", async () => {
+  const { context, sent } = fakeContext();
+  const tool = rectangle(context);
+  drag(tool, [[100, 100], [200, 180]]);
+  await settled();
+  tool.keyDown!(key("Enter"));
+  drag(tool, [[300, 100], [400, 180]]);
+  await settled();
+  assert.ok(tool.keyDown!(key("Enter")));
+  await settled();
+  const applied = sent.filter((s) => s.verb === "apply").map((s) => (s.body.operation as GuideOperation).rectangle);
+  assert.deepEqual(applied, [[100, 100, 200, 180], [300, 100, 400, 180]]);
+});
+
 test("brackets change the interval of all guide tools and preview anew", async () => {
   const { context, sent } = fakeContext();
   const tool = stroke(context);

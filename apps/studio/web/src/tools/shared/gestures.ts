@@ -109,6 +109,7 @@ export class RectangleGesture implements Gesture {
     if (shape.kind !== "rectangle") return;
     const [x0, y0, x1, y1] = shape.corners;
     [this.from, this.to] = [[x0, y0], [x1, y1]];
+    this.done = true;
   }
   clear(): void {
     this.drawing = this.done = false;

@@ -110,7 +110,7 @@ export class GuideTool extends ShapeTool {
   private state(): TemplateResult | typeof nothing {
     if (!this.pending) return nothing;
     if (this.previews.error) return note(this.previews.error, "tool-state", true);
-    const added = this.context.store.ghosts?.added ?? 0;
+    const { added } = this.previews;
     return note(added > 0 ? `${countOf(added, "point")} would be added` : "No point would be added", "tool-state");
   }
 }

@@ -24,6 +24,18 @@ export class Previews {
     private readonly changed: () => void,
   ) {}
 
+  /// The newest preview has come and says that nothing would be added, removed or turned.
+  get empty(): boolean {
+    return !this.running && this.shown && this.error === "" && this.added === 0 && this.removed === 0;
+  }
+  /// Points that would be added, or turned round, and removed.
+  get added(): number {
+    return Number(this.told["added"] ?? 0);
+  }
+  get removed(): number {
+    return Number(this.told["removed"] ?? 0);
+  }
+
   show(operation: Operation): void {
     this.shown = true;
     this.waiting = operation;
@@ -61,15 +73,16 @@ export class Previews {
     if (this.committing) return null;
     this.committing = true;
     this.waiting = null;
+    this.shown = false;
     performance.mark("psk:commit");
     this.changed();
     try {
       const reply = (await this.connection.request("apply", { operation })) as { record: StepRecord };
       this.error = "";
-      this.shown = false;
       return reply.record;
     } catch (error) {
       if (!isQuiet(error)) this.error = (error as Error).message;
+      this.shown = true; // the preview is still there
       return null;
     } finally {
       this.committing = false;

@@ -57,7 +57,7 @@ export abstract class ShapeTool implements Tool {
   }
 
   pointerDown(e: ToolPointer): boolean {
-    if (e.button !== 0 || !this.context.store.scene || this.previews.committing) return false;
+    if (e.button !== 0 || !this.context.store.scene) return false;
     const p = pixelOf(e);
     const shape = this.gesture.shape();
     this.held = shape && this.inSight ? handlesOf(shape).findIndex((handle) => isNear(p, handle)) : -1;
@@ -126,20 +126,32 @@ export abstract class ShapeTool implements Tool {
     return shape && this.camera ? this.operation(this.camera, shape) : null;
   }
 
+  /// The shape is gone at once, so that the next can be drawn while the engine works; it is back if that failed.
   protected async commit(): Promise<void> {
     const operation = this.present();
-    if (!operation) return;
+    if (!operation || this.previews.committing) return;
+    if (this.previews.empty) return this.context.notice("info", "There is no point that this would change");
+    const [shape, camera] = [this.gesture.shape()!, this.camera];
+    this.forget();
     const record = await this.previews.commit(operation);
-    if (record) this.drop();
-    else if (this.previews.error) this.context.notice("error", this.previews.error);
+    if (record) return;
+    if (this.previews.error) this.context.notice("error", this.previews.error);
+    if (this.gesture.drawing || this.pending) return;
+    this.gesture.replace(shape);
+    this.camera = camera;
+    this.context.redraw();
   }
 
-  protected drop(): void {
+  private forget(): void {
     this.gesture.clear();
     this.camera = null;
     this.held = -1;
-    this.previews.end();
     this.context.redraw();
+  }
+
+  protected drop(): void {
+    this.forget();
+    this.previews.end();
   }
 
   overlay(): SVGTemplateResult {

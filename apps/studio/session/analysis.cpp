@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scene/vector_json.hpp"
+#include "trim_thresholds.hpp"
 
 namespace pointskin::studio {
 namespace {
@@ -61,28 +62,14 @@ std::vector<double> areas_of_vertices(const Mesh& mesh) {
   return areas;
 }
 
-/// As surface/trim takes them: samples 1.75 times farther apart have this part of the density.
-constexpr double kSparser = 1.75 * 1.75;
-
 /// [[q, density], ...] for trims from 0 to 0.5, closer together where they are small.
-Json trim_thresholds(const std::vector<float>& density, const std::vector<double>& area) {
-  std::vector<std::size_t> order(density.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return density[a] < density[b]; });
-  double samples = 0;
-  for (const std::size_t i : order) samples += area[i] * double{density[i]};
+Json trim_thresholds(const std::vector<float>& at_samples) {
   constexpr int kSteps = 64;
   constexpr double kMostTrim = 0.5;
   Json table = Json::array();
-  double below = 0;
-  std::size_t next = 0;
-  for (int step = 0; step <= kSteps && !order.empty(); ++step) {
+  for (int step = 0; step <= kSteps && !at_samples.empty(); ++step) {
     const double q = kMostTrim * std::pow(double{1} * step / kSteps, 2);
-    while (next + 1 < order.size() && below + area[order[next]] * double{density[order[next]]} < q * samples) {
-      below += area[order[next]] * double{density[order[next]]};
-      ++next;
-    }
-    table.push_back({q, step == 0 ? 0 : double{density[order[next]]} / kSparser});
+    table.push_back({q, step == 0 ? 0 : trim_threshold(at_samples, q)});
   }
   return table;
 }
@@ -119,7 +106,7 @@ Json comparison_json(const MeshComparison& c) {
   return json;
 }
 
-Json density_histogram(const Mesh& mesh, int bins) {
+Json density_histogram(const Mesh& mesh, const Cloud& cloud, int bins) {
   const std::vector<float>& density = floats_of(mesh, "density");
   const std::vector<double> area = areas_of_vertices(mesh);
   double low = INFINITY;
@@ -141,7 +128,7 @@ Json density_histogram(const Mesh& mesh, int bins) {
   Json edges = Json::array();
   for (int i = 0; i <= bins; ++i) edges.push_back(std::exp(from + i * step));
   return {{"densities", {{"edges", edges}, {"counts", shares}, {"log", true}}},
-          {"quantiles", trim_thresholds(density, area)}};
+          {"quantiles", trim_thresholds(densities_at_samples(mesh, density, cloud))}};
 }
 
 std::optional<Place> first_hit(const Mesh& mesh, const Vec3d& origin, const Vec3d& direction) {

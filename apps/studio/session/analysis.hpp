@@ -22,13 +22,14 @@ nlohmann::ordered_json comparison_json(const MeshComparison& comparison);
 
 /// Shares of the surface's area by the density of the samples there, and what a trim would cut.
 ///
-/// {"densities": {"edges": [bins + 1], "counts": [bins], "log": true}, "quantiles": [[q, density], ...]}: edges are equally far apart in the logarithm;
-/// below the density of an entry the surface is cut with that trim. The q-th part of the samples lies at densities up to
-/// the threshold times 1.75^2, and a piece of surface holds its area times its density of them.
+/// {"densities": {"edges": [bins + 1], "counts": [bins], "log": true}, "quantiles": [[q, density], ...]}: edges are
+/// equally far apart in the logarithm; below the density of an entry the surface is cut with that trim (to within 20 %:
+/// the trim itself measures distances between samples in the octree).
 /// @param mesh  not trimmed, with the attribute "density"
+/// @param cloud  that it was made of
 /// @throws Error usage if it has none
 /// O(v log v + t).
-nlohmann::ordered_json density_histogram(const Mesh& mesh, int bins = 64);
+nlohmann::ordered_json density_histogram(const Mesh& mesh, const Cloud& cloud, int bins = 64);
 
 /// A place of a mesh.
 struct Place {

@@ -106,7 +106,7 @@ Json Measures::values(const std::string& name) {
   return Json::object();
 }
 
-Json Measures::histogram() { return density_histogram(annotated()); }
+Json Measures::histogram() { return density_histogram(annotated(), desk_.present().cloud()); }
 
 Json Measures::estimate(const nlohmann::json& patch) {
   const Cloud cloud = desk_.present().cloud();

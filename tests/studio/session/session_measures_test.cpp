@@ -1,5 +1,6 @@
 // What panels ask: problems, comparison, numbers to colour by, densities, costs, and the place under the pointer.
 #include <pointskin/io.hpp>
+#include <pointskin/merge.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -102,8 +103,13 @@ TEST_F(SessionMeasures, NumbersOfThePointsAreSpreadOverTheSurface) {
 }
 
 TEST_F(SessionMeasures, TheHistogramSaysWhatATrimCutsOff) {
-  open_shape("sphere");
-  cut_in_half();
+  Cloud half = test::sphere_cloud(6'000, 3);
+  std::vector<bool> keep;
+  for (const Vec3f& p : half.positions) keep.push_back(p.x < 0);
+  keep_where(half, keep);
+  write_cloud(file("half.ply"), half);
+  start();
+  (void)page().ask("open", {{"files", {{{"path", "half.ply"}}}}, {"options", {{"depth", 5}}}});
   const Json histogram = page().ask("histogram");
   const auto edges = histogram.at("densities").at("edges").get<std::vector<double>>();
   const auto shares = histogram.at("densities").at("counts").get<std::vector<double>>();
@@ -123,8 +129,8 @@ TEST_F(SessionMeasures, TheHistogramSaysWhatATrimCutsOff) {
   const double before = fresh_scene().at("surface").at("area");
   (void)page().ask("options", {{"patch", {{"trim", kTrim}}}, {"final", true}});
   const double after = fresh_scene().at("surface").at("area");
-  EXPECT_GT(below, 0.05);
-  EXPECT_NEAR(1 - after / before, below, 0.05);
+  EXPECT_GT(below, 0.3);
+  EXPECT_NEAR(1 - after / before, below, 0.12);
 }
 
 TEST_F(SessionMeasures, CostsGrowWithDepthAndAreNearWhatWasMeasured) {

@@ -34,7 +34,7 @@ export class Dialogs extends Part {
       dialog::backdrop {
         background: rgb(0 0 0 / 42%);
       }
-      header {
+      .head {
         display: flex;
         align-items: center;
         justify-content: space-between;
@@ -62,10 +62,10 @@ export class Dialogs extends Part {
   override render() {
     const id = this.which === "reference" ? "open-dialog" : `${this.which}-dialog`;
     return html`<dialog aria-label=${kTitles[this.which]} data-testid=${id} @close=${() => this.dispatchEvent(new Event("close"))}>
-      <header>
+      <div class="head">
         <h2>${kTitles[this.which]}</h2>
         <button class="icon" data-testid="dialog-close" aria-label="Close" title="Close (Esc)" @click=${() => this.close()}>${glyph(icons.close)}</button>
-      </header>
+      </div>
       ${this.content()}
     </dialog>`;
   }

@@ -88,7 +88,7 @@ export class Side extends Part {
         margin: 16px 0 4px;
         line-height: 20px;
       }
-      h3:first-child {
+      .unseen + h3 {
         margin-top: 4px;
       }
     `,
@@ -97,11 +97,12 @@ export class Side extends Part {
 
   override render() {
     const { panel } = this.store;
+    const name = kPanels.find(([id]) => id === panel)?.[1] ?? "";
     return html`${this.tool()}
       <div role="tablist" aria-label="Panels" @keydown=${(event: KeyboardEvent) => this.key(event)}>
         ${kPanels.map(([id, name], i) => this.tab(id, name, i, panel))}
       </div>
-      <div role="tabpanel" tabindex="0" aria-label=${kPanels.find(([id]) => id === panel)?.[1] ?? ""} data-testid="panel-${panel}">${this.panel(panel)}</div>`;
+      <div role="tabpanel" tabindex="0" aria-label=${name} data-testid="panel-${panel}"><h2 class="unseen">${name}</h2>${this.panel(panel)}</div>`;
   }
 
   override updated(): void {

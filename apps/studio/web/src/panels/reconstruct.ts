@@ -133,25 +133,28 @@ function trimControl(context: StudioContext) {
     <p class="hint">${trim > 0 ? `The sparsest ${percent(trim)} of the surface goes` : "Nothing is cut away"}</p>`;
 }
 
+function fieldRow(context: StudioContext) {
+  return segmentsRow({
+    label: "Field",
+    testid: "opt-field",
+    title: "Poisson closes holes smoothly; distance follows the points closely",
+    value: context.store.options.field ?? "poisson",
+    choices: [
+      { value: "poisson", label: "Poisson" },
+      { value: "distance", label: "Distance" },
+    ],
+    change: live(context, "field").change,
+  });
+}
+
 export function reconstructPanel(context: StudioContext) {
   const { options, pendingOptions, scene } = context.store;
   if (!scene) return html`<p class="hint">Open a cloud to reconstruct its surface.</p>`;
-  const field = options.field ?? "poisson";
   return html`${normalsCard(context)}
     <h3>Octree</h3>
     ${numeric(context, "depth")} ${depthCost(context)} ${numeric(context, "samples_per_node")}
     <h3>Solve</h3>
-    ${segmentsRow({
-      label: "Field",
-      testid: "opt-field",
-      title: "Poisson closes holes smoothly; distance follows the points closely",
-      value: field,
-      choices: [
-        { value: "poisson", label: "Poisson" },
-        { value: "distance", label: "Distance" },
-      ],
-      change: live(context, "field").change,
-    })}
+    ${fieldRow(context)}
     ${numeric(context, "screening")} ${numeric(context, "iterations")}
     ${segmentsRow({
       label: "Boundary",

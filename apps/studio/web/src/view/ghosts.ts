@@ -35,6 +35,16 @@ function spikesOf(decoded: Decoded, material: THREE.ShaderMaterial): THREE.LineS
   return new THREE.LineSegments(geometry, material);
 }
 
+/// The same points seen through the surface, faintly: most of what guides a surface lies inside of it.
+function throughSurface(material: THREE.ShaderMaterial): THREE.ShaderMaterial {
+  const veiled = material.clone();
+  veiled.uniforms = { ...material.uniforms, opacity: { value: 0.4 } };
+  veiled.transparent = true;
+  veiled.depthTest = false;
+  veiled.depthWrite = false;
+  return veiled;
+}
+
 export class GhostLayer {
   readonly group = new THREE.Group();
   private readonly added = pointsMaterial(kAdded);
@@ -47,6 +57,8 @@ export class GhostLayer {
     depthWrite: false,
     uniforms: { plain: { value: rgb(kAdded) }, spike: { value: 0 } },
   });
+
+  private readonly veiled = new Map([this.added, this.removed].map((material) => [material, throughSurface(material)]));
 
   constructor() {
     for (const material of [this.added, this.removed, this.kept]) {
@@ -77,6 +89,8 @@ export class GhostLayer {
     material.uniforms["hasNormals"]!.value = false; // plain colours are told apart more easily than shaded ones
     const points = new THREE.Points(geometryOf(decoded), material);
     const objects: THREE.Object3D[] = [points];
+    const veiled = this.veiled.get(material);
+    if (veiled) objects.push(new THREE.Points(points.geometry, veiled));
     if (decoded.normals && material === this.added) objects.push(spikesOf(decoded, this.spikes));
     for (const object of objects) {
       object.frustumCulled = false;

@@ -1,7 +1,9 @@
 import "./page";
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Box, Pixel, Vec3 } from "../../src/engine/protocol";
+import type { BooleanOperation, Box, InsertOperation, Pixel, Vec3 } from "../../src/engine/protocol";
+import { combine } from "../../src/tools/combine";
+import { copyPart } from "../../src/tools/copy_part";
 import { section, turnTo } from "../../src/tools/section";
 import { boxOfLayer } from "../../src/tools/shared/ghost_box";
 import { dragFace, faceAt, placed } from "../../src/tools/shared/part_box";
@@ -9,7 +11,9 @@ import { poseAt, turned } from "../../src/tools/shared/pose";
 import { distance, turn } from "../../src/tools/shared/vec";
 import { View } from "../../src/tools/shared/view";
 import { forceOf, insideTank, placeInWater, readFacts } from "../../src/tools/shared/water";
-import { fakeContext, key } from "./fake_context";
+import type { Source } from "../../src/tools/shared/documents";
+import type { Tool } from "../../src/tools/tool";
+import { fakeContext, key, settled } from "./fake_context";
 import { lookAt } from "./support";
 
 const view = new View(lookAt([5, -4, 3], [1, 1, 1]));
@@ -81,4 +85,60 @@ test("a push follows the hand and rests with it, a swirl needs no way", () => {
 test("frames of files say nothing of a tank", () => {
   assert.equal(readFacts({ index: 3 }), null);
   assert.deepEqual(readFacts({ tank: [1, 2, 3], obstacle: null }), { tank: [1, 2, 3], obstacle: null });
+});
+
+// ---- parts and solids ----
+
+/// The chooser of a tool, as a click on a name uses it.
+function pickerOf(tool: Tool): { choose(source: Source): void } {
+  return (tool as unknown as { picker: { choose(source: Source): void } }).picker;
+}
+
+/// A layer of ghosts as large as `size`, that comes a moment after the reply.
+function ghostsArrive(fake: ReturnType<typeof fakeContext>, size: number): void {
+  const object = { position: { toArray: () => [0, 0, 0] }, scale: { toArray: () => [size, size, size] } };
+  (fake.context.viewport.ghosts.group as unknown as { children: unknown[] }).children = [object];
+  fake.store.update({ ghosts: { blob: 1, added: 9, removed: 0 } });
+}
+
+test("a part is measured first, then shown beside the scene, and Enter adds it where it is", async () => {
+  const fake = fakeContext();
+  const tool = copyPart(fake.context);
+  pickerOf(tool).choose({ shape: "torus" });
+  await settled();
+  assert.deepEqual(fake.sent.map((s) => s.body.operation), [{ op: "insert", shape: "torus" }]);
+  ghostsArrive(fake, 1);
+  await settled();
+  const shown = fake.sent[1]!.body.operation as InsertOperation;
+  const camera = new View(fake.view.camera);
+  const middle = [0, 1, 2].map((a) => shown.translation![a]! + 0.5) as Vec3;
+  assert.ok(camera.project(middle)!.x > camera.project([2, 2, 0])!.x, "on the right of the scene");
+  assert.ok(tool.keyDown!(key("Enter")));
+  await settled();
+  assert.deepEqual([fake.sent[2]!.verb, fake.sent[2]!.body.operation], ["apply", shown]);
+});
+
+test("a part that is far too large is made to fit", async () => {
+  const fake = fakeContext();
+  const tool = copyPart(fake.context);
+  pickerOf(tool).choose({ file: "scan.ply" });
+  await settled();
+  ghostsArrive(fake, 2000);
+  await settled();
+  const { scale } = fake.sent[1]!.body.operation as InsertOperation;
+  assert.ok(Math.abs(scale! - 0.5 / 1000) < 1e-12);
+});
+
+test("a solid whose points cannot be shown is combined where it lies", async () => {
+  const fake = fakeContext();
+  const tool = combine(fake.context);
+  fake.view.replies["preview"] = new Error("the part has no normals");
+  pickerOf(tool).choose({ file: "cube.stl" });
+  await settled();
+  fake.view.replies["preview"] = {};
+  assert.deepEqual(fake.notices, []);
+  tool.keyDown!(key("Enter"));
+  await settled();
+  const { scale, translation, ...rest } = fake.sent[fake.sent.length - 1]!.body.operation as BooleanOperation;
+  assert.deepEqual([scale, translation, rest.with, rest.operation], [1, [0, 0, 0], { file: "cube.stl" }, "union"]);
 });

@@ -14,7 +14,7 @@ import { SourcePicker } from "./source_picker";
 import { View } from "./view";
 
 /// Milliseconds that the points of the first preview may take to be on the screen.
-const kPatience = 4000;
+const kPatience = 15_000;
 
 export interface PlacedPart {
   source: Source;
@@ -102,24 +102,37 @@ export abstract class PlacedTool implements Tool {
   private async measure(source: Source): Promise<Box | null> {
     const { connection, store, viewport } = this.context;
     const operation: InsertOperation = { op: "insert", ...source };
-    const drawn = new Promise<void>((resolve) => {
-      const before = store.ghosts;
-      const look = () => {
-        if (store.ghosts === before || !store.ghosts) return;
-        store.removeEventListener("change", look);
-        resolve();
-      };
-      store.addEventListener("change", look);
-      setTimeout(resolve, kPatience);
-    });
+    const before = store.ghosts;
     try {
       await connection.request("preview", { operation });
+      this.previews.shown = true;
+      await this.ghostsAfter(before);
+      return boxOfLayer(viewport.ghosts.group);
     } catch (error) {
       return this.unseen(error as Error);
     }
-    await drawn;
-    this.previews.shown = true;
-    return boxOfLayer(viewport.ghosts.group);
+  }
+
+  /// Waits for other ghosts than those. @throws Error where none come
+  private ghostsAfter(before: unknown): Promise<void> {
+    const { store } = this.context;
+    return new Promise((resolve, reject) => {
+      const end = () => {
+        store.removeEventListener("change", look);
+        clearTimeout(timer);
+      };
+      const look = () => {
+        if (store.ghosts === before || !store.ghosts) return;
+        end();
+        resolve();
+      };
+      const timer = setTimeout(() => {
+        end();
+        reject(new Error("The points of the part did not arrive"));
+      }, kPatience);
+      store.addEventListener("change", look);
+      look();
+    });
   }
 
   // ---- previews and commits ----

@@ -1,11 +1,15 @@
 // Several pages on one scene: all see the same, a slow one does not hold up the others.
+#include <pointskin/io.hpp>
+
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "studio/session/studio_fixture.hpp"
+#include "support/shapes.hpp"
 
 namespace pointskin {
 namespace {
@@ -94,7 +98,18 @@ TEST_F(SessionPages, ABlobIsTheSameCompressed) {
 }
 
 TEST_F(SessionPages, PointsComeInPartsOfWhichTheFirstIsEven) {
-  open_shape("sphere", 350'000, 5);
+  Cloud sphere = test::sphere_cloud(350'000, 3);
+  std::vector<std::size_t> order(sphere.positions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return sphere.positions[a].x < sphere.positions[b].x; });
+  Cloud sorted = sphere;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    sorted.positions[i] = sphere.positions[order[i]];
+    sorted.normals[i] = sphere.normals[order[i]];
+  }
+  write_cloud(file("sorted.ply"), sorted);
+  start();
+  (void)page().ask("open", {{"files", {{{"path", "sorted.ply"}}}}, {"options", {{"depth", 5}}}});
   const Json last = page().wait("points", 0, is_final);
   const std::vector<Json> parts = page().events("points");
   ASSERT_EQ(parts.size(), 2U);

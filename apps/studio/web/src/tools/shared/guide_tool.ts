@@ -11,7 +11,8 @@ import { cellWidth, centreOf, describeInterval, sceneBox, stepInterval } from ".
 import { ShapeTool } from "./shape_tool";
 import { View } from "./view";
 
-const kStart: GuideSettings = { interval: 0, normals: "cloud", insideOnly: true };
+/// Normals that stand across the stroke part a surface; those of the cloud repair one.
+const kStart: GuideSettings = { interval: 0, normals: "stroke", insideOnly: true };
 
 export interface GuideLook {
   id: string;

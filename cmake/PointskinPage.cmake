@@ -103,13 +103,19 @@ endfunction()
 function(pointskin_add_page target folder)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/src/*)
   set(bundle ${CMAKE_CURRENT_BINARY_DIR}/bundle)
+  set(bundling COMMAND ${CMAKE_COMMAND} -E rm -rf ${bundle} COMMAND ${POINTSKIN_NODE} ${folder}/build.mjs ${bundle})
+  set(made_of ${sources} ${folder}/build.mjs ${folder}/package.json ${folder}/node_modules/.pointskin-lock)
+  if(POINTSKIN_PAGE)
+    set(bundle ${POINTSKIN_PAGE})
+    set(bundling)
+    file(GLOB made_of CONFIGURE_DEPENDS ${POINTSKIN_PAGE}/*)
+  endif()
   set(output ${CMAKE_CURRENT_BINARY_DIR}/page.cpp)
   set(script ${PROJECT_SOURCE_DIR}/cmake/PointskinPage.cmake)
   add_custom_command(OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} -E rm -rf ${bundle}
-    COMMAND ${POINTSKIN_NODE} ${folder}/build.mjs ${bundle}
+    ${bundling}
     COMMAND ${CMAKE_COMMAND} -DFOLDER=${bundle} -DOUTPUT=${output} -P ${script}
-    DEPENDS ${sources} ${folder}/build.mjs ${folder}/package.json ${folder}/node_modules/.pointskin-lock ${script}
+    DEPENDS ${made_of} ${script}
     COMMENT "Bundling the page of the studio" VERBATIM)
   add_library(${target} STATIC ${output})
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/apps)

@@ -40,12 +40,13 @@ OptionGroup file_options(EditArgs& args) {
   const OptionRules named = {.check = needs_a_name};
   return {"Files",
           {clouds_row(args.inputs, {}),
-           option("--script FILE", "operations, as JSON, or all of a scene: clouds and options, too", &args.script, {"script", 61, kNeverNull},
-                  {.required = true, .check = needs_a_name}),
+           option("--script FILE", "operations, as JSON, or all of a scene: clouds and options, too", &args.script,
+                  {"script", 61, kNeverNull}, {.required = true, .check = needs_a_name}),
            output_row(args.output, named),
            option("--cloud FILE", "write the edited points, with the property added, as PLY", &args.cloud,
                   {"cloud", 63}, named),
-           option("--save FILE", "write clouds, options and the operations that are done, as such a script", &args.save, {"save", 64}, named),
+           option("--save FILE", "write clouds, options and the operations that are done, as such a script", &args.save,
+                  {"save", 64}, named),
            report_row(args.report, "write what every step did as JSON"), overwrite_row(args.overwrite),
            shift_row(args.shift)}};
 }
@@ -132,8 +133,7 @@ void run_entry(const Json& entry, std::size_t i, const EditArgs& args, scene::Sc
   const bool goes_back = scene::is_undo(entry) || scene::is_redo(entry);
   scene::SceneOperation operation;
   if (!goes_back)
-    operation =
-        scene::operation_of(entry, fmt::format("{}.operations[{}]", args.script, i), "/", camera_of_picture);
+    operation = scene::operation_of(entry, fmt::format("{}.operations[{}]", args.script, i), "/", camera_of_picture);
   try {
     if (!goes_back) scene.apply(operation);
     if (scene::is_undo(entry) && !scene.undo()) throw_usage("there is nothing to undo");
@@ -213,7 +213,8 @@ void save(const scene::Scene& scene, scene::Document document, const EditArgs& a
   document.base.shift = args.shift;
   if (document.base.clouds.size() < args.inputs.size()) document.base.clouds.clear();  // one was stdin
   scene::stamp_clouds(document.base);
-  if (!args.envelope.empty()) print_warning("--save: the file does not hold the envelope; name it again with --envelope");
+  if (!args.envelope.empty())
+    print_warning("--save: the file does not hold the envelope; name it again with --envelope");
   scene::write_document(args.save, document);
 }
 

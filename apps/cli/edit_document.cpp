@@ -33,7 +33,7 @@ std::vector<std::string> files_of(const scene::Document& document) {
 }
 
 bool begins_with_normals(const scene::Document& document) {
-  return !document.operations.empty() && document.operations.front().value("op", "") == "orient";
+  return !document.operations.empty() && document.operations.front().at("op") == "orient";
 }
 
 }  // namespace pointskin::cli

@@ -4,9 +4,9 @@
 
 #include "console.hpp"
 #include "normal_args.hpp"
+#include "scene/vector_json.hpp"
 #include "statistics.hpp"
 #include "summary_words.hpp"
-#include "scene/vector_json.hpp"
 
 namespace pointskin::cli {
 namespace {

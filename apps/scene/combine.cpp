@@ -26,15 +26,13 @@ std::vector<std::int64_t> origins_of(const Cloud& a, const Cloud& kept, std::siz
 
 void settle_kinds(std::vector<std::uint8_t>& kinds) {
   constexpr std::uint8_t kOriginal = 0;
-  if (std::find(kinds.begin(), kinds.end(), kOriginal) == kinds.end())
-    std::fill(kinds.begin(), kinds.end(), kOriginal);
+  if (std::find(kinds.begin(), kinds.end(), kOriginal) == kinds.end()) std::fill(kinds.begin(), kinds.end(), kOriginal);
 }
 
 }  // namespace
 
 void carry_attributes(const Cloud& a, BooleanResult& result) {
-  const std::vector<std::int64_t> origins =
-      origins_of(a, result.cloud, static_cast<std::size_t>(result.report.a.kept));
+  const std::vector<std::int64_t> origins = origins_of(a, result.cloud, static_cast<std::size_t>(result.report.a.kept));
   for (const Attribute& attribute : a.attributes) {
     AttributeValues values = attribute.values.gather(origins);
     if (attribute.name == kAdded) {

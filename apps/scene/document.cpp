@@ -50,12 +50,13 @@ void read_document_options(const JsonReader& json, Document& document) {
   document.options = read_options(JsonReader(rest, json.place()), {});
 }
 
-void read_operations(const JsonReader& json, Document& document) {
+/// @param as_written  the same, with the keys in their order
+void read_operations(const JsonReader& json, const Json& as_written, Document& document) {
   json.array();
   for (std::size_t i = 0; i < json.size(); ++i) {
     const JsonReader entry = json.at(i);
     check_operation(entry.value(), entry.place());
-    document.operations.emplace_back(entry.value());
+    document.operations.push_back(as_written.at(i));
   }
   document.done = document.operations.size();
 }
@@ -110,11 +111,11 @@ Document parse_document(const std::string& text, const std::string& name, const 
       reader.at("shift").refuse("must be auto, none or x,y,z");
   }
   if (reader.has("options")) read_document_options(reader.at("options"), document);
-  read_operations(reader.at("operations"), document);
+  const JsonReader operations = reader.at("operations");
+  read_operations(operations, Json::parse(text).at("operations"), document);
   for (Json& entry : document.operations)
-    rename_file(entry, [&folder](const std::string& file) {
-      return fs::absolute(folder / file).lexically_normal().string();
-    });
+    rename_file(entry,
+                [&folder](const std::string& file) { return fs::absolute(folder / file).lexically_normal().string(); });
   if (reader.has("done")) read_done(reader.at("done"), document);
   return document;
 }

@@ -30,13 +30,12 @@ struct Base {
 /// which have absolute paths, because a camera may be that of a picture of the surface that there is when its turn comes.
 struct Document {
   Base base;
-  Options options;                         ///< what the document does not say has its default
-  bool warm_start = true;                  ///< SceneOptions::warm_start; the key stands among the options
-  std::vector<std::string> options_given;  ///< keys that the document says
+  Options options;                                 ///< what the document does not say has its default
+  bool warm_start = true;                          ///< SceneOptions::warm_start; the key stands among the options
+  std::vector<std::string> options_given;          ///< keys that the document says
   std::vector<nlohmann::ordered_json> operations;  ///< with entries undo and redo, if it is a script with such
   std::size_t done = 0;  ///< so many of them are done, the rest were undone; operations.size() with undo entries
 };
-
 
 /// Base::shift as readers want it: unset for auto. @throws Error invalid_input for anything else than described there
 std::optional<Vec3d> shift_of(const std::string& text);

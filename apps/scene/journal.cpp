@@ -62,7 +62,8 @@ std::string_view whole_lines(const std::string& text) {
   return std::string_view(text).substr(0, end == std::string::npos ? 0 : end + 1);
 }
 
-void take_line(const JsonReader& line, Document& document) {
+/// @param as_written  the same, with the keys in their order
+void take_line(const JsonReader& line, const Json& as_written, Document& document) {
   line.object({"apply", "go"});
   if (line.value().size() != 1) line.refuse("must have one of the keys apply and go");
   if (line.has("go")) {
@@ -74,7 +75,7 @@ void take_line(const JsonReader& line, Document& document) {
   check_operation(operation.value(), operation.place());
   if (is_undo(operation.value()) || is_redo(operation.value())) operation.refuse("is no operation of a journal");
   document.operations.resize(document.done);
-  document.operations.emplace_back(operation.value());
+  document.operations.push_back(as_written.at("apply"));
   document.done = document.operations.size();
 }
 
@@ -101,8 +102,8 @@ Journal::~Journal() {
 Journal Journal::create(const std::string& path, const Document& beginning) {
   const std::string unfinished = path + ".new";
   std::filesystem::remove(unfinished);
-  const int file = ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC | O_NOFOLLOW,
-                          S_IRUSR | S_IWUSR);
+  const int file =
+      ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR);
   if (file < 0) fail(unfinished, "cannot be created");
   Journal journal(path, file);
   write_all(file, lines_of(beginning), unfinished);
@@ -151,7 +152,7 @@ Document read_journal(const std::string& path) {
       continue;
     }
     const nlohmann::json json = parse_json(line, place);
-    take_line(JsonReader(json, place), document);
+    take_line(JsonReader(json, place), Json::parse(line), document);
   }
   return document;
 }

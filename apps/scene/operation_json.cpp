@@ -149,8 +149,7 @@ Orient orient_at(const JsonReader& json) {
   json.object({"op", "method", "sensors", "random_start", "seed", "max_rounds", "keep_within_degrees", "confidence",
                "curvature"});
   Orient orient;
-  const std::string word =
-      json.at("method").one_of({"estimate", "sensor", "propagate", "iterate", "repair", "turn"});
+  const std::string word = json.at("method").one_of({"estimate", "sensor", "propagate", "iterate", "repair", "turn"});
   if (word == "turn") {
     json.object({"op", "method"});
     orient.what = Orient::What::turn;
@@ -203,8 +202,8 @@ SolidSource read_source(const JsonReader& json, const fs::path& folder) {
   return source;
 }
 
-bool is_undo(const nlohmann::json& json) { return json.is_object() && json.value("op", "") == "undo"; }
-bool is_redo(const nlohmann::json& json) { return json.is_object() && json.value("op", "") == "redo"; }
+bool is_undo(const nlohmann::json& json) { return json.contains("op") && json["op"] == "undo"; }
+bool is_redo(const nlohmann::json& json) { return json.contains("op") && json["op"] == "redo"; }
 
 void check_operation(const nlohmann::json& json, const std::string& name) {
   const JsonReader reader(json, name);

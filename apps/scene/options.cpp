@@ -52,7 +52,9 @@ template <class Struct, class E>
 Row word(const char* key, E Struct::*member, const char* first, E one, std::pair<const char*, E> second) {
   return row(
       key, member, [=](E value) { return value == second.second ? second.first : first; },
-      [=](const JsonReader& json) { return json.one_of({first, second.first}) == first ? one : second.second; });
+      [=](const JsonReader& json) {
+        return json.one_of({first, second.first}) == first ? one : second.second;
+      });
 }
 
 Row open_faces() {

@@ -32,7 +32,8 @@ void check(const Similarity& placement) {
   const Vec3d& t = placement.translation;
   const bool moves = std::isfinite(t.x) && std::isfinite(t.y) && std::isfinite(t.z);
   if (!proper || !moves || !(placement.scale > 0) || !std::isfinite(placement.scale))
-    throw Error(ErrorCode::usage, "the place of a solid needs a scale above 0, a proper rotation and a finite translation");
+    throw Error(ErrorCode::usage,
+                "the place of a solid needs a scale above 0, a proper rotation and a finite translation");
 }
 
 /// Where the solid's origin comes to lie becomes the new origin, so that places near it keep their digits.

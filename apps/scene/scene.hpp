@@ -28,7 +28,7 @@ struct StepRecord {
   Topology before, after;                                ///< zero without SceneOptions::topology
   bool warm = false, snapped = false;                    ///< StepReport
   double edit_ms = 0, reconstruct_ms = 0, total_ms = 0;  ///< without measuring the topology
-  std::vector<std::string> notes;                        ///< what people should know: assumptions, warnings; a line each
+  std::vector<std::string> notes;  ///< what people should know: assumptions, warnings; a line each
 };
 
 struct SceneOptions {
@@ -79,9 +79,9 @@ class Scene {
   void go_to(std::size_t done);
 
   [[nodiscard]] std::size_t done() const;
-  [[nodiscard]] std::size_t size() const;                                   ///< done and undone
-  [[nodiscard]] const StepRecord& record(std::size_t i) const;              ///< i < size()
-  [[nodiscard]] const SceneOperation& operation(std::size_t i) const;       ///< i < size()
+  [[nodiscard]] std::size_t size() const;                              ///< done and undone
+  [[nodiscard]] const StepRecord& record(std::size_t i) const;         ///< i < size()
+  [[nodiscard]] const SceneOperation& operation(std::size_t i) const;  ///< i < size()
 
   /// The present surface; without triangles as long as there are no normals.
   [[nodiscard]] const Mesh& mesh() const;

@@ -18,9 +18,9 @@ namespace pointskin::scene {
 
 /// A part of the base of a scene: a file or a generated shape. One of `file` and `shape` is empty.
 struct CloudSource {
-  std::string file;    ///< absolute path
-  std::string sha256;  ///< of the file when the document was written, 64 lower-case digits; empty: not known
-  std::string shape;   ///< a name that bench::make_shape() knows
+  std::string file;              ///< absolute path
+  std::string sha256;            ///< of the file when the document was written, 64 lower-case digits; empty: not known
+  std::string shape;             ///< a name that bench::make_shape() knows
   std::int64_t points = 60'000;  ///< drawn from the shape
 };
 
@@ -32,8 +32,8 @@ enum class MissingNormals { refused, allowed };
 
 /// What became of a base cloud on the way in, for people: the caller says it, nothing is printed.
 struct ReadFacts {
-  std::int64_t not_finite = 0;  ///< points left out: a coordinate is not finite
-  std::int64_t no_normal = 0;   ///< points left out: their normal has zero length
+  std::int64_t not_finite = 0;       ///< points left out: a coordinate is not finite
+  std::int64_t no_normal = 0;        ///< points left out: their normal has zero length
   std::vector<std::string> notices;  ///< one line each: vertices of a mesh that took the normals of its faces
 };
 

@@ -152,8 +152,6 @@ SolidSource source_of_text(const std::string& text) {
   return source;
 }
 
-Json to_json(const SceneOperation& operation, const fs::path& folder) {
-  return std::visit(Writer{folder}, operation);
-}
+Json to_json(const SceneOperation& operation, const fs::path& folder) { return std::visit(Writer{folder}, operation); }
 
 }  // namespace pointskin::scene

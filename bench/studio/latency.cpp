@@ -7,9 +7,9 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <deque>
 #include <exception>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -26,6 +26,9 @@ using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
+
+/// Between strokes, as of a person who is quick.
+constexpr std::chrono::milliseconds kPause{300};
 
 struct Box {
   double lower[3], upper[3];
@@ -57,25 +60,59 @@ Json stroke(const Box& box, int turn) {
 
 bool is_mesh(const Json& message) { return message.value("event", "") == "mesh"; }
 
-DrawnMesh fetch(Connection& connection, const Json& event) {
-  const Json& id = event["blob"];
-  return decode_mesh(connection.get("/blob/" + (id.is_string() ? id.get<std::string>() : id.dump())));
+/// What one mesh took on its way: until it was announced, until its bytes were here, until it was decoded.
+struct Way {
+  double announced = 0, fetched = 0, decoded = 0;
+};
+
+Way fetch(Connection& connection, const Json& event, Clock::time_point start) {
+  Way way;
+  way.announced = ms_since(start);
+  const std::vector<std::byte> blob = connection.get("/blob/" + event["blob"].dump());
+  way.fetched = ms_since(start);
+  decode_mesh(blob);
+  way.decoded = ms_since(start);
+  return way;
 }
 
+/// Medians and more of many ways.
+class Ways {
+ public:
+  void add(const Way& way, const Json& event) {
+    announced_.push_back(way.announced);
+    fetched_.push_back(way.fetched - way.announced);
+    decoded_.push_back(way.decoded - way.fetched);
+    all_.push_back(way.decoded);
+    encoded_.push_back(event["ms"].value("encode", 0.0));
+  }
+
+  void print(const char* what) const {
+    print_times(what, all_);
+    print_times("  until announced", announced_);
+    print_times("    of it encoding", encoded_);
+    print_times("  transfer", fetched_);
+    print_times("  decoding", decoded_);
+  }
+
+ private:
+  std::vector<double> announced_, fetched_, decoded_, all_, encoded_;
+};
+
 void measure_strokes(Connection& connection, const Box& box, int strokes) {
-  std::vector<double> waited, engine;
+  Ways ways;
+  std::vector<double> engine;
   for (int i = 0; i < strokes; ++i) {
+    std::this_thread::sleep_for(kPause);
     const auto start = Clock::now();
     const int id = connection.send("apply", {{"operation", stroke(box, i)}});
     const Json mesh = connection.receive([](const Json& message) { return is_mesh(message) && !message["preview"]; });
-    fetch(connection, mesh);
-    waited.push_back(ms_since(start));
+    ways.add(fetch(connection, mesh, start), mesh);
     const Json reply = connection.receive([id](const Json& message) { return message.value("id", 0) == id; });
     engine.push_back(reply["record"]["total_ms"]);
     connection.ask("undo");
   }
-  print_times("stroke to decoded mesh", waited);
-  print_times("  of it the engine", engine);
+  ways.print("stroke to decoded mesh");
+  print_times("  the engine", engine);
 }
 
 Json bend(const Box& box, double degrees) {
@@ -91,29 +128,31 @@ Json bend(const Box& box, double degrees) {
 
 /// As a page that is dragged: a request as soon as the mesh before is there.
 void measure_bend(Connection& connection, const Box& box, int moves) {
-  std::vector<double> waited;
+  Ways ways;
   for (int i = 0; i < moves; ++i) {
     const auto start = Clock::now();
     connection.send("preview", {{"operation", bend(box, 60.0 * i / moves)}});
-    fetch(connection, connection.receive([](const Json& message) { return is_mesh(message) && message["preview"]; }));
-    if (i > 2) waited.push_back(ms_since(start));  // the first make the deformer
+    const Json mesh = connection.receive([](const Json& message) { return is_mesh(message) && message["preview"]; });
+    const Way way = fetch(connection, mesh, start);
+    if (i > 2) ways.add(way, mesh);  // the first make the deformer
   }
   connection.ask("preview_end");
-  print_times("bend, mesh to mesh", waited);
+  ways.print("bend, mesh to mesh");
 }
 
 void measure_water(Connection& connection, int frames, int particles) {
-  connection.ask("fluid", {{"start", {{"scene", "dam-break"}, {"particles", particles}}}});
+  connection.ask("fluid", {{"start", {{"scene", "dam-break"}, {"particles", particles}, {"free", true}}}});
   const auto is_frame = [](const Json& message) { return message.value("event", "") == "frame"; };
-  std::vector<double> waited;
+  Ways ways;
   auto before = Clock::now();
   for (int i = 0; i < frames; ++i) {
-    fetch(connection, connection.receive(is_frame));
-    if (i > 10) waited.push_back(ms_since(before));
+    const Json frame = connection.receive(is_frame);
+    const Way way = fetch(connection, frame, before);
+    if (i > 10) ways.add(way, frame);
     before = Clock::now();
   }
   connection.ask("fluid", {{"stop", true}});
-  print_times("live water, frame to frame", waited);
+  ways.print("live water, frame to frame");
 }
 
 int number(int argc, char** argv, const std::string& name, int otherwise) {

@@ -37,7 +37,8 @@ const std::vector<std::uint8_t>& kinds_of(const Cloud& cloud) {
 template <exec::Space Exec>
 PointBuffers upload_base(Exec& ex, const Cloud& base, const EditOptions& options) {
   PointBuffers points = detail::upload(ex, base);
-  if (options.reconstruction.attributes || options.keep_attributes) points.attributes = detail::upload_attributes(ex, base);
+  if (options.reconstruction.attributes || options.keep_attributes)
+    points.attributes = detail::upload_attributes(ex, base);
   points.added = exec::make_buffer<std::uint8_t>(ex, points.positions.size());
   if (!options.continued) {
     exec::fill(ex, points.added.view(), kOriginal);

@@ -62,6 +62,7 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
     BoostError error;
     co_await socket_.async_accept(request, into(error));
     if (error) co_return hang_up();
+    accepted_ = true;
     const auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) net::post(self->socket_.get_executor(), [self] { self->look_at_outbox(); });
     };
@@ -98,7 +99,8 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
       co_await socket_.async_read(buffer, into(error));
       if (error) break;  // gone, silent, or what came is no WebSocket: Beast has told it so
       if (!socket_.got_text()) {
-        co_await socket_.async_close(websocket::close_code::unknown_data, into(error));
+        if (!std::exchange(closing_, true))
+          co_await socket_.async_close(websocket::close_code::unknown_data, into(error));
         break;
       }
       const auto bytes = buffer.cdata();
@@ -129,6 +131,7 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
   }
 
   void close(websocket::close_code code) {
+    if (!accepted_) return hang_up();  // what is said now would get between the bytes of the handshake
     if (std::exchange(closing_, true)) return;
     socket_.async_close(code, [self = shared_from_this()](BoostError) {});
   }
@@ -146,7 +149,7 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
   net::steady_timer wake_;
   const Seat seat_;
   const bool loopback_;
-  bool ended_ = false, closing_ = false;
+  bool accepted_ = false, ended_ = false, closing_ = false;
   std::shared_ptr<Outbox> outbox_;
 };
 

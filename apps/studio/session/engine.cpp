@@ -85,9 +85,9 @@ void Engine::run(const JobQueue::Job& job) {
   }
 }
 
-bool Engine::work_ahead() {
+bool Engine::work_ahead(bool quiet) {
   try {
-    return desk_.work_ahead() || live_.work_ahead();
+    return (quiet && desk_.work_ahead()) || live_.work_ahead();
   } catch (const std::exception& error) {
     notice("error", error.what());
     live_.stop();

@@ -26,8 +26,9 @@ class Engine {
   void start();
   /// Does a job and answers it.
   void run(const JobQueue::Job& job);
-  /// Something that nobody waits for. @returns whether there was something
-  bool work_ahead();
+  /// Something that nobody waits for. @param quiet  no request came lately: longer work may begin
+  /// @returns whether there was something
+  bool work_ahead(bool quiet);
   /// Something moves by itself.
   [[nodiscard]] bool is_busy() const { return live_.is_running(); }
 

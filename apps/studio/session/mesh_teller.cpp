@@ -43,7 +43,8 @@ std::uint64_t MeshTeller::announce(Json event, bool may_drop) {
 std::uint64_t MeshTeller::show(const Mesh& mesh, const MeshFacts& facts) {
   if (facts.preview && !services_.audience.somebody_waits()) return 0;
   const auto start = std::chrono::steady_clock::now();
-  std::vector<std::byte> data = wire::encode_mesh(mesh, {.values = facts.values, .tint = facts.tint});
+  std::vector<std::byte> data =
+      wire::encode_mesh(mesh, {.values = facts.values, .tint = facts.tint, .threads = services_.device.threads});
   const std::size_t bytes = data.size();
   const std::uint64_t blob = services_.blobs.add(facts.preview ? "preview" : "mesh", std::move(data), kMeshesKept);
   const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
@@ -67,7 +68,8 @@ std::uint64_t MeshTeller::show(const Mesh& mesh, const MeshFacts& facts) {
 bool MeshTeller::show_frame(const Mesh& mesh, Json facts) {
   if (!services_.audience.somebody_waits()) return false;
   const auto start = std::chrono::steady_clock::now();
-  const std::uint64_t blob = services_.blobs.add("frame", wire::encode_mesh(mesh, {}), kFramesKept);
+  const std::uint64_t blob =
+      services_.blobs.add("frame", wire::encode_mesh(mesh, {.threads = services_.device.threads}), kFramesKept);
   Json event = {{"event", "frame"}, {"version", ++version_}, {"blob", blob}, {"triangles", mesh.triangles.size()}};
   event.update(facts);
   event["ms"]["encode"] = ms_since(start);

@@ -15,6 +15,24 @@ constexpr std::array<std::string_view, 2> kEnvelope = {"id", "do"};
 /// Texts may hold bytes of file names that are no UTF-8.
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+/// Whether arrays and objects lie in each other deeper than any message needs. JSON is copied and freed by recursion, so
+/// that a deep one would overflow the stack.
+bool is_too_deep(std::string_view text) {
+  constexpr int kDeepest = 64;
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string && c == '\\') ++i;
+    if (c == '"') in_string = !in_string;
+    if (in_string) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kDeepest) return true;
+  }
+  return false;
+}
+
 void send_error(Client& client, const Json& id, const std::string& code, const std::string& text) {
   client.send(dumped({{"id", id}, {"error", {{"code", code}, {"text", text}}}}));
 }
@@ -32,9 +50,10 @@ scene::JsonReader Request::reader(std::initializer_list<std::string_view> keys) 
 }
 
 std::optional<Request> parse_request(const std::shared_ptr<Client>& client, std::string_view text) {
-  nlohmann::json body = nlohmann::json::parse(text, nullptr, false);
+  nlohmann::json body;
+  if (!is_too_deep(text)) body = nlohmann::json::parse(text, nullptr, false);
   if (!body.is_object()) {
-    send_error(*client, nullptr, "usage", "a message must be a JSON object");
+    send_error(*client, nullptr, "usage", "a message must be a JSON object, not too deep");
     return std::nullopt;
   }
   const auto id = body.find("id");

@@ -86,6 +86,7 @@ void SceneDesk::take(Opened opened, const scene::Document& document) {
   base_ = document.base;
   first_options_ = document.options;
   points_ = opened.points;
+  base_points_ = opened.points.count;
   dropped_ = opened.dropped;
   surfaces_.clear();
   for (const std::string& notice : opened.notices)
@@ -145,7 +146,6 @@ Json SceneDesk::apply(const nlohmann::json& operation) {
   }
   surfaces_.resize(index + 1);  // those of operations that were undone are forgotten
   last_ms_ = record.reconstruct_ms;
-  points_.count = record.points;
   Json ms = progress.phase_ms();
   ms["edit"] = record.edit_ms;
   changed(std::move(ms));
@@ -174,6 +174,8 @@ Json SceneDesk::go(std::size_t done) {
 void SceneDesk::changed(Json ms) {
   ++state_number_;
   points_are_old_ = true;
+  points_.count = scene_->done() == 0 ? base_points_ : scene_->record(scene_->done() - 1).points;
+  points_.has_normals = !scene_->mesh().triangles.empty();
   show_mesh(std::move(ms));
   measure_surface();
   tell_state();

@@ -97,7 +97,8 @@ class SceneDesk {
   Options first_options_;
   std::int64_t dropped_ = 0;
   std::vector<std::optional<MeshReport>> surfaces_;  ///< of every state that was seen, by the operations done
-  Points points_;
+  Points points_;                                    ///< where points_are_old_, the box is that of the state before
+  std::int64_t base_points_ = 0;
   bool points_are_old_ = false;
   double last_ms_ = 0;
   std::uint64_t state_number_ = 0;

@@ -163,16 +163,19 @@ class Studio::Impl {
   }
 
   void loop(Engine& engine) {
+    using Clock = std::chrono::steady_clock;
     using std::chrono::milliseconds;
+    constexpr milliseconds kQuiet{150};
     bool more = true;
-    while (!queue_.closed()) {
-      const milliseconds wait{more ? 0 : engine.is_busy() ? 1 : 200};
+    for (Clock::time_point last = Clock::now(); !queue_.closed();) {
+      const milliseconds wait{more ? 0 : engine.is_busy() ? 1 : 40};
       if (auto job = queue_.next(wait)) {
         engine.run(*job);
         queue_.finished();
-        more = true;
+        last = Clock::now();
+        more = false;
       } else {
-        more = engine.work_ahead();
+        more = engine.work_ahead(Clock::now() - last >= kQuiet);
       }
     }
   }

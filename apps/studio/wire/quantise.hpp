@@ -46,7 +46,7 @@ inline std::array<std::uint8_t, 2> octahedral(const Vec3f& n) {
     v = (1 - std::abs(u)) * (v < 0 ? -1.0F : 1.0F);
     u = folded;
   }
-  const auto step = [](float x) { return static_cast<std::uint8_t>(127 + static_cast<int>(std::lround(127 * x))); };
+  const auto step = [](float x) { return static_cast<std::uint8_t>(127.5F + 127 * x); };  // never below 0
   return {step(u), step(v)};
 }
 

@@ -21,11 +21,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <class T>
-std::span<const std::byte> bytes_of(const std::vector<T>& data) {
-  return std::as_bytes(std::span(data));
-}
-
 Json box_json(const Bounds& box, const Vec3d& origin) {
   const auto world = [&origin](const Vec3f& v) {
     return Json{origin.x + double{v.x}, origin.y + double{v.y}, origin.z + double{v.z}};
@@ -33,32 +28,42 @@ Json box_json(const Bounds& box, const Vec3d& origin) {
   return {{"lower", world(box.lower)}, {"upper", world(box.upper)}};
 }
 
+/// A section whose elements are made one by one: element(i) of `values`.
+template <class Element, class Make, class T>
+Fill each(const std::vector<T>& values, Make make) {
+  return [&values, make](std::byte* out, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i, out += sizeof(Element)) {
+      const Element element = make(values[i]);
+      std::memcpy(out, &element, sizeof element);
+    }
+  };
+}
+
 void add_positions(const std::vector<Vec3f>& positions, const Bounds& box, Sections& sections) {
-  const Grid grid(box);
-  std::vector<std::array<std::uint16_t, 4>> steps(positions.size());
-  std::transform(positions.begin(), positions.end(), steps.begin(), grid);
-  sections.add("positions", "u16x4", sizeof steps[0], bytes_of(steps));
+  using Steps = std::array<std::uint16_t, 4>;
+  sections.add("positions", "u16x4", sizeof(Steps), positions.size(), each<Steps>(positions, Grid(box)));
 }
 
 /// Four bytes a normal, of which two are used: graphics libraries want attributes that begin at multiples of 4.
 void add_normals(const std::vector<Vec3f>& normals, Sections& sections) {
   if (normals.empty()) return;
-  std::vector<std::array<std::uint8_t, 4>> codes;
-  codes.reserve(normals.size());
-  for (const Vec3f& n : normals) {
+  using Code = std::array<std::uint8_t, 4>;
+  const auto code = [](const Vec3f& n) {
     const auto [u, v] = octahedral(n);
-    codes.push_back({u, v, 0, 0});
-  }
-  sections.add("normals", "u8x4", sizeof codes[0], bytes_of(codes));
+    return Code{u, v, 0, 0};
+  };
+  sections.add("normals", "u8x4", sizeof(Code), normals.size(), each<Code>(normals, code));
 }
 
 void add_bytes(const char* name, const std::vector<std::uint8_t>& values, Sections& sections) {
-  if (!values.empty()) sections.add(name, "u8", 1, bytes_of(values));
+  if (!values.empty()) sections.add(name, "u8", 1, values.size(), copy_of(std::span(values)));
 }
 
-void add_colours(const Mesh& mesh, Sections& sections) {
-  const std::vector<std::uint8_t> colours = colours_of(mesh.attributes, mesh.vertices.size());
-  if (!colours.empty()) sections.add("colors", "u8x4", 4, bytes_of(colours));
+/// @param colours  shape (4 n), kept as they are until the blob is finished
+void add_colours(const std::vector<std::uint8_t>& colours, Sections& sections) {
+  using Colour = std::array<std::uint8_t, 4>;
+  const std::span all(reinterpret_cast<const Colour*>(colours.data()), colours.size() / 4);
+  if (!all.empty()) sections.add("colors", "u8x4", sizeof(Colour), all.size(), copy_of(all));
 }
 
 void check_shape(std::size_t size, std::size_t expected) {
@@ -72,16 +77,18 @@ Bounds box_of(const std::vector<Vec3f>& positions) { return positions.empty() ? 
 
 std::vector<std::byte> encode_mesh(const Mesh& mesh, const MeshCoding& coding) {
   const Bounds box = box_of(mesh.vertices);
-  Sections sections(coding.compressed);
+  const std::vector<std::uint8_t> colours = colours_of(mesh.attributes, mesh.vertices.size());
+  Sections sections(coding.compressed, coding.threads);
   add_positions(mesh.vertices, box, sections);
   add_normals(mesh.normals, sections);
   static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
   sections.add_triangles({reinterpret_cast<const std::uint32_t*>(mesh.triangles.data()), 3 * mesh.triangles.size()},
                          mesh.vertices.size());
-  add_colours(mesh, sections);
+  add_colours(colours, sections);
   for (const Values& values : coding.values) {
     check_shape(values.values.size(), mesh.vertices.size());
-    sections.add("values:" + values.name, "f32", sizeof(float), bytes_of(values.values));
+    sections.add("values:" + values.name, "f32", sizeof(float), values.values.size(),
+                 copy_of(std::span(values.values)));
   }
   if (!coding.tint.empty()) check_shape(coding.tint.size(), mesh.vertices.size());
   add_bytes("tint", coding.tint, sections);
@@ -95,7 +102,7 @@ std::vector<std::byte> encode_points(const PointSet& points, const Bounds& box, 
   Sections sections(compressed);
   add_positions(points.positions, box, sections);
   add_normals(points.normals, sections);
-  if (!points.colours.empty()) sections.add("colors", "u8x4", 4, bytes_of(points.colours));
+  add_colours(points.colours, sections);
   add_bytes("tint", points.tint, sections);
   return std::move(sections).finish(
       {{"kind", "points"}, {"vertices", points.positions.size()}, {"box", box_json(box, points.origin)}});
@@ -111,11 +118,15 @@ std::vector<std::byte> compressed(const std::vector<std::byte>& raw) {
   Sections sections(true);
   for (const Json& section : header["sections"]) {
     const auto bytes = data.subspan(section["offset"], section["bytes"]);
+    const std::size_t stride = section["stride"];
     if (section["name"] == "triangles")
       sections.add_triangles({reinterpret_cast<const std::uint32_t*>(bytes.data()), bytes.size() / 4},
                              header["vertices"]);
     else
-      sections.add(section["name"], section["type"], section["stride"], bytes);
+      sections.add(section["name"], section["type"], section["stride"], section["count"],
+                   [bytes, stride](std::byte* out, std::size_t begin, std::size_t end) {
+                     if (end > begin) std::memcpy(out, bytes.data() + begin * stride, (end - begin) * stride);
+                   });
   }
   header.erase("sections");
   return std::move(sections).finish(std::move(header));

@@ -24,6 +24,7 @@ struct MeshCoding {
   bool compressed = false;           ///< by meshoptimizer's codecs; the order of vertices and triangles stays
   std::vector<Values> values{};      ///< each of shape (v)
   std::vector<std::uint8_t> tint{};  ///< shape (v) or (0): a class per vertex, which the page colours
+  int threads = 1;                   ///< that encode; 0: as many as copying can use
 };
 
 /// The mesh with positions of 16 bits an axis in its box and normals of 2 bytes. Red, green and blue of the mesh, if it

@@ -108,6 +108,8 @@ TEST(SceneDocument, SaysWhatIsWrongAndWhere) {
       {R"({"version": 1, "operations": [], "done": 1})", "doc.done: must be a whole number in 0..0"},
       {R"({"version": 1, "operations": [{"op": "undo"}], "done": 0})", "doc.done: must not be there"},
       {with(R"({"op": "bend"})"), "doc.operations[0].op: must be one of guide"},
+      {with(R"({"op": 3})"), "doc.operations[0].op: must be one of guide"},
+      {with(R"(["op"])"), "doc.operations[0]: must be an object"},
       {with("3"), "doc.operations[0]: must be an object"},
       {with(R"({"op": "undo", "n": 3})"), "doc.operations[0]: does not know the key 'n'"},
       {with(R"({"op": "flip", "camera": {}, "layers": "back"})"), "operations[0].layers: must be one of"},
@@ -144,14 +146,17 @@ TEST(SceneDocument, OptionsHaveTheKeysOfTheReportAndAllOfThemAreTaken) {
   const std::vector<std::string>& keys = scene::option_keys();
   EXPECT_EQ(std::set<std::string>(keys.begin(), keys.end()), expected);
 
-  const nlohmann::json others = {{"depth", 9},           {"field", "distance"},     {"screening", 1.5},
-                                 {"iterations", 3},      {"scale", 1.7},            {"samples_per_node", 2.5},
-                                 {"confidence", true},   {"fixed_screening", true}, {"linear_fit", true},
-                                 {"density", true},      {"weakness", false},       {"attributes", true},
-                                 {"normals", false},     {"open", true},            {"boundary", "free"},
-                                 {"offset", 0},          {"trim", 0.05},            {"island_ratio", 0.2},
-                                 {"largest", true},      {"min_component", 0.1},    {"keep_strays", true},
-                                 {"max_memory_bytes", 1e9}};
+  const nlohmann::json others = {{"depth", 9},          {"field", "distance"},
+                                 {"screening", 1.5},    {"iterations", 3},
+                                 {"scale", 1.7},        {"samples_per_node", 2.5},
+                                 {"confidence", true},  {"fixed_screening", true},
+                                 {"linear_fit", true},  {"density", true},
+                                 {"weakness", false},   {"attributes", true},
+                                 {"normals", false},    {"open", true},
+                                 {"boundary", "free"},  {"offset", 0},
+                                 {"trim", 0.05},        {"island_ratio", 0.2},
+                                 {"largest", true},     {"min_component", 0.1},
+                                 {"keep_strays", true}, {"max_memory_bytes", 1e9}};
   nlohmann::json whole = others;
   whole["max_memory_bytes"] = 1'000'000'000;
   const Options read = scene::read_options({whole, "options"}, {});
@@ -215,7 +220,8 @@ TEST(Placement, MovesPointsNormalsAndOriginAsASimilarity) {
   const Cloud moved = std::get<Cloud>(scene::placed(cloud, placement));
   EXPECT_EQ(moved.origin, (Vec3d{0, 2000, 5}));
   for (std::size_t i = 0; i < 50; ++i) {
-    EXPECT_EQ(moved.positions[i], (Vec3f{-2 * cloud.positions[i].y, 2 * cloud.positions[i].x, 2 * cloud.positions[i].z}));
+    EXPECT_EQ(moved.positions[i],
+              (Vec3f{-2 * cloud.positions[i].y, 2 * cloud.positions[i].x, 2 * cloud.positions[i].z}));
     EXPECT_EQ(moved.normals[i], (Vec3f{-cloud.normals[i].y, cloud.normals[i].x, cloud.normals[i].z}));
   }
   placement.rotation[0] = 1;

@@ -33,9 +33,7 @@ Document beginning(const SceneFolder& folder) {
   return document;
 }
 
-scene::SceneOperation options(int depth) {
-  return scene::Configure{nlohmann::json{{"depth", depth}}};
-}
+scene::SceneOperation options(int depth) { return scene::Configure{nlohmann::json{{"depth", depth}}}; }
 
 /// Runs `child` in a process that ends by `end`. @returns how it ended
 template <class Child>

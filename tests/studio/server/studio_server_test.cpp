@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <pointskin/error.hpp>
 
@@ -212,6 +213,23 @@ TEST(StudioServer, ClosesAlthoughAPageDoesNotAnswer) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, 6s);
   EXPECT_EQ(server.application.open_pages(), 0U);
   held->send("to nobody");
+}
+
+TEST(StudioServer, ClosesWhilePagesAreConnecting) {
+  for (int i = 0; i < 30; ++i) {
+    RunningServer server;
+    const std::string request = server.request("GET /socket", RunningServer::upgrade());
+    std::vector<std::unique_ptr<RawClient>> pages;
+    for (int k = 0; k < 8; ++k) {
+      pages.push_back(std::make_unique<RawClient>(server.port()));
+      pages.back()->send(request);
+    }
+    if (i % 2 == 1) pages.back()->receive();
+    pages.clear();
+    server.stop();
+    server.wait();
+    EXPECT_EQ(server.application.open_pages(), 0U);
+  }
 }
 
 TEST(StudioServer, ListensAtTheSamePortOfBothAddresses) {

@@ -37,7 +37,9 @@ Page::Page(studio::Application& application) : application_(application), record
   application_.opened(recorder_);
 }
 
-Page::~Page() { application_.closed(recorder_->id()); }
+Page::~Page() {
+  if (count("closing") == 0) application_.closed(recorder_->id());  // else the studio is no more
+}
 
 std::uint64_t Page::id() const { return recorder_->id(); }
 

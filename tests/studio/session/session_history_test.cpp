@@ -75,13 +75,15 @@ TEST_F(SessionHistory, EveryKindOfOperationGivesTheBytesOfAReplay) {
 TEST_F(SessionHistory, UndoRedoAndGoBringBackTheSameBytes) {
   open_shape("torus", kPoints, kDepth);
   std::vector<std::string> digests = {digest()};
+  std::vector<Json> points = {kPoints};
   for (const Json& operation : all_kinds()) {
-    (void)apply(operation);
+    points.push_back(apply(operation).at("points"));
     digests.push_back(digest());
   }
   for (std::size_t i = digests.size() - 1; i-- > 0;) {
     EXPECT_EQ(page().ask("undo").at("done"), i);
     EXPECT_EQ(digest(), digests[i]) << "undone until " << i;
+    EXPECT_EQ(fresh_scene().at("points"), points[i]) << "undone until " << i;
   }
   EXPECT_EQ(page().ask("undo").at("done"), 0) << "there is nothing more to undo";
   EXPECT_EQ(page().ask("redo").at("done"), 1);

@@ -82,6 +82,7 @@ function showCommands({ store, link }: StudioContext): Command[] {
   const has = (colour: ColourMode) => !!store.mesh && (colour !== "colour" || store.meshAttributes.includes(colour));
   return [
     ...shows.map(([show, key]) => ({ id: `show-${show}`, title: `Show ${show}`, key, group: "View", run: () => store.setView({ show }) })),
+    { id: "hide", title: "Hide or show points and surface", key: "H", group: "View", run: () => store.setView({ hidden: !store.view.hidden }) },
     { id: "wireframe", title: "Wireframe", key: "Shift+W", group: "View", run: () => store.setView({ wireframe: !store.view.wireframe }) },
     { id: "grid", title: "Ground grid", key: "Shift+G", group: "View", run: () => store.setView({ grid: !store.view.grid }) },
     ...colours.map((colour) => ({

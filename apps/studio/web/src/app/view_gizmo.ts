@@ -39,6 +39,19 @@ export class ViewGizmo extends Part {
       line {
         stroke-width: 2;
       }
+      .projection {
+        pointer-events: auto;
+        border: 0;
+        padding: 2px 4px;
+        border-radius: 3px;
+        background: none;
+        color: inherit;
+        font: inherit;
+      }
+      .projection:hover {
+        background: var(--control-hover, rgb(128 128 128 / 20%));
+        color: var(--text);
+      }
       g[role="button"] {
         pointer-events: auto;
         outline-offset: -4px;
@@ -91,6 +104,7 @@ export class ViewGizmo extends Part {
     const dot = (a: Vec3, b: Vec3) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     const ends = kEnds.map((end) => ({ ...end, x: kLength * dot(right, end.axis), y: -kLength * dot(up, end.axis), depth: dot(back, end.axis) }));
     ends.sort((a, b) => a.depth - b.depth);
+    const projection = this.context.viewport.view.orthographic ? "orthographic" : "perspective";
     return html`<svg viewBox="-44 -44 88 88" aria-label="Axes" role="group">
         ${ends.map(
           (end) => svg`<g role="button" tabindex="-1" class=${end.name} aria-label=${`View along ${end.positive ? "" : "minus "}${end.name}`}
@@ -100,7 +114,16 @@ export class ViewGizmo extends Part {
             ${end.positive ? svg`<text x=${end.x} y=${end.y}>${end.name.toUpperCase()}</text>` : null}</g>`,
         )}
       </svg>
-      ${this.context.viewport.view.orthographic ? "orthographic" : "perspective"}`;
+      <button
+        class="projection"
+        data-testid="projection"
+        data-value=${projection}
+        title="Perspective or orthographic (5)"
+        aria-label=${`Projection: ${projection}`}
+        @click=${() => this.context.run("projection")}
+      >
+        ${projection}
+      </button>`;
   }
 
   private look(axis: Vec3): void {

@@ -37,6 +37,7 @@ export interface Chip {
 
 export interface ViewSettings {
   show: ShowMode;
+  hidden: boolean; // points and surface both, to see what a tool draws
   colour: ColourMode;
   pointColour: PointColour;
   pointSize: number; // CSS pixels at the centre's distance
@@ -80,6 +81,7 @@ export class Store extends EventTarget {
   legend: { title: string; low: number; high: number } | null = null;
   view: ViewSettings = {
     show: "mesh", // points until there is one
+    hidden: false,
     colour: "plain",
     pointColour: "plain",
     pointSize: 2,

@@ -38,7 +38,7 @@ export class PointLayer {
 
   apply(settings: ViewSettings): void {
     this.settings = settings;
-    this.group.visible = settings.show !== "mesh" || this.alone;
+    this.group.visible = !settings.hidden && (settings.show !== "mesh" || this.alone);
     this.material.uniforms["mode"]!.value = this.modeOf(settings);
     for (const { points, decoded } of this.parts) {
       if (settings.pointColour === "added") showValues(points.geometry, decoded, "added");

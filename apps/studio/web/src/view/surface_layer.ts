@@ -53,7 +53,7 @@ export class SurfaceLayer {
 
   apply(settings: ViewSettings): void {
     this.settings = settings;
-    this.group.visible = settings.show !== "points";
+    this.group.visible = !settings.hidden && settings.show !== "points";
     if (this.lines) this.lines.visible = settings.wireframe;
     if (!this.mesh || !this.decoded) return;
     const range = this.decoded.ranges[settings.colour];

@@ -4,6 +4,7 @@ import { type SVGTemplateResult, type TemplateResult, html, nothing, svg } from 
 import type { Vec3 } from "../engine/protocol";
 import { button, numberRow, segmentsRow, selectRow, sliderRow } from "../ui/controls";
 import type { ShowMode } from "../engine/store";
+import type { ViewCamera } from "../view/camera";
 import { drawRing, kOrange } from "./shared/draw";
 import { actions, note } from "./shared/fields";
 import { View, pixelOf } from "./shared/view";
@@ -35,7 +36,7 @@ class FluidTool implements Tool {
   private strength = 40;
   private starting = false;
   private tank: WaterFacts | null = null; // as the scene began
-  private showBefore: ShowMode | null = null;
+  private before: { show: ShowMode; view: ViewCamera } | null = null; // how the scene was looked at
   private held: { at: Vec3; depth: Vec3; seconds: number } | null = null;
   private cursor: Vec3 | null = null;
   private last = ""; // the request that was sent last, so that none is sent twice
@@ -48,11 +49,11 @@ class FluidTool implements Tool {
 
   /// The scene is shown again as it was before the water.
   private restoreView(): void {
-    if (!this.showBefore) return;
-    const show = this.showBefore;
-    this.showBefore = null;
+    if (!this.before) return;
+    const { show, view } = this.before;
+    this.before = null;
     this.context.store.setView({ show });
-    this.context.viewport.frame();
+    this.context.viewport.flyTo(view);
   }
 
   private get running(): boolean {
@@ -79,7 +80,7 @@ class FluidTool implements Tool {
     try {
       const facts = await connection.request("fluid", { start: { scene: this.scene, particles: this.particles } });
       this.tank = readFacts(facts);
-      this.showBefore ??= store.view.show;
+      this.before ??= { show: store.view.show, view: viewport.view.clone() };
       store.setView({ show: "mesh" }); // the scene's points have nothing to do with the water
       if (this.tank) viewport.frame({ lower: [0, 0, 0], upper: this.tank.tank });
     } catch (error) {

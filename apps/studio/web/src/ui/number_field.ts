@@ -1,6 +1,7 @@
 // A number that is typed, dragged sideways, or stepped by the arrow keys (Shift: ten steps, Alt: a tenth).
 import { LitElement, css, html } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { live } from "lit/directives/live.js";
 import { base } from "./styles";
 
 export interface NumberRange {
@@ -109,7 +110,7 @@ export class NumberField extends LitElement {
         aria-valuenow=${this.value}
         data-testid=${this.testid}
         ?disabled=${this.disabled}
-        .value=${this.typed ?? showNumber(this.value)}
+        .value=${live(this.typed ?? showNumber(this.value))}
         @input=${() => (this.typed = this.input.value)}
         @change=${() => this.take()}
         @blur=${() => this.take()}

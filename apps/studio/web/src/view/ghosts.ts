@@ -50,6 +50,7 @@ export class GhostLayer {
   private readonly added = pointsMaterial(kAdded);
   private readonly removed = pointsMaterial(kRemoved);
   private readonly kept = pointsMaterial(kKept);
+  private readonly dropped = pointsMaterial(kRemoved); // fainter: what is left is behind them
   private readonly spikes = new THREE.ShaderMaterial({
     vertexShader: spikesVertex,
     fragmentShader: spikesFragment,
@@ -61,10 +62,13 @@ export class GhostLayer {
   private readonly veiled = new Map([this.added, this.removed].map((material) => [material, throughSurface(material)]));
 
   constructor() {
-    for (const material of [this.added, this.removed, this.kept]) {
+    for (const material of [this.added, this.removed, this.kept, this.dropped]) {
       material.polygonOffset = true;
       material.polygonOffsetUnits = -4;
     }
+    this.dropped.transparent = true;
+    this.dropped.depthWrite = false;
+    this.dropped.uniforms["opacity"]!.value = 0.25;
   }
 
   set(added: Decoded | null, removed: Decoded | null): void {
@@ -77,9 +81,9 @@ export class GhostLayer {
 
   /// Sizes: points in pixels at the centre, normals as a share of the scene.
   setReference(distance: number, pixelRatio: number, radius: number): void {
-    for (const material of [this.added, this.removed, this.kept]) {
+    for (const material of [this.added, this.removed, this.kept, this.dropped]) {
       material.uniforms["reference"]!.value = distance;
-      material.uniforms["size"]!.value = (material === this.kept ? 2.5 : 4.5) * pixelRatio;
+      material.uniforms["size"]!.value = (material === this.kept || material === this.dropped ? 2.5 : 4.5) * pixelRatio;
     }
     this.spikes.uniforms["spike"]!.value = Math.min(0.02 * radius, 0.02 * distance);
   }
@@ -103,7 +107,7 @@ export class GhostLayer {
   /// Classes as the engine counts them: 0 kept, 1 turned round, 2 dropped.
   private showClasses(decoded: Decoded, classes: Uint8Array): void {
     const whole = geometryOf(decoded);
-    [this.kept, this.added, this.removed].forEach((material, wanted) => {
+    [this.kept, this.added, this.dropped].forEach((material, wanted) => {
       const indices: number[] = [];
       for (let i = 0; i < decoded.vertices; ++i) if (classes[decoded.tintStride * i] === wanted) indices.push(i);
       if (indices.length === 0) return;

@@ -82,6 +82,7 @@ test("undo brings the handle back to where it was", async () => {
   tool.pointerMove!(pointer(x, y - 30));
   tool.pointerUp!(pointer(x, y - 30));
   await settled();
+  assert.equal(sent.filter((s) => s.verb === "apply").length, 2, "the gizmo is where it was");
   const last = (sent[sent.length - 1]!.body.operation as DeformOperation).handles![1]!;
   assert.deepEqual((last.region["ball"] as { centre: Vec3 }).centre, [2, 2, 2]);
 });

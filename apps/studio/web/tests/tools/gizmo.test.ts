@@ -70,6 +70,12 @@ test("whole turns of a drag count", () => {
   assert.ok(Math.abs(rigidOf(pose, [1, 1, 1]).degrees! - 540) < 1e-6);
 });
 
+test("turns one after another about one axis add up, also when it points the other way", () => {
+  const once = turned(start, [0, 0, 1], 3);
+  assert.equal(rigidOf(turned(once, [0, 0, 1], 3), [1, 1, 1]).degrees, (6 * 180) / Math.PI);
+  assert.equal(rigidOf(turned(once, [0, 0, -1], 1), [1, 1, 1]).degrees, (2 * 180) / Math.PI);
+});
+
 test("turning about another axis afterwards forgets whole turns and keeps the turn", () => {
   const pose = turned(turned(start, [0, 0, 1], 0.5), [1, 0, 0], 0.5);
   assert.equal(pose.spin, undefined);

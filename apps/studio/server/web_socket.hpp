@@ -1,7 +1,7 @@
 // A connection that speaks WebSocket: messages of a page to the application, and back.
 #pragma once
 
-#include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,33 +14,30 @@
 
 namespace pointskin::studio::server {
 
-/// A stream whose end is not waited for longer than a while: Beast would wait until the other side closes, too.
+/// A stream that says when its WebSocket has ended. Beast then waits until the other side closes, too, however long.
 class PageStream : public beast::tcp_stream {
  public:
-  PageStream(beast::tcp_stream stream, std::chrono::milliseconds patience)
-      : beast::tcp_stream(std::move(stream)), timer_(get_executor()), patience_(patience) {}
+  PageStream(beast::tcp_stream stream, std::function<void()> on_end)
+      : beast::tcp_stream(std::move(stream)), on_end_(std::move(on_end)) {}
 
-  /// Beast calls this when a WebSocket has ended.
+  /// Called by Beast.
   template <class Handler>
   friend void async_teardown(beast::role_type role, PageStream& stream, Handler&& handler) {
-    stream.timer_.expires_after(stream.patience_);
-    stream.timer_.async_wait([&stream](BoostError error) {
-      if (!error) stream.close();
-    });
+    stream.on_end_();
     websocket::async_teardown(role, stream.socket(), std::forward<Handler>(handler));
   }
 
  private:
-  net::steady_timer timer_;
-  std::chrono::milliseconds patience_;
+  std::function<void()> on_end_;
 };
 
 class WebSocket : public Connection, public std::enable_shared_from_this<WebSocket> {
  public:
   WebSocket(Shared& shared, beast::tcp_stream stream, bool loopback)
       : shared_(shared),
-        socket_(std::move(stream), shared.options.limits.closing_time),
+        socket_(std::move(stream), [this] { hang_up_soon(); }),
         wake_(socket_.get_executor()),
+        patience_(socket_.get_executor()),
         seat_(shared.sockets),
         loopback_(loopback) {}
 
@@ -63,6 +60,7 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
     co_await socket_.async_accept(request, into(error));
     if (error) co_return hang_up();
     accepted_ = true;
+    if (std::exchange(closing_, false)) close(websocket::close_code::going_away);
     const auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) net::post(self->socket_.get_executor(), [self] { self->look_at_outbox(); });
     };
@@ -131,9 +129,16 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
   }
 
   void close(websocket::close_code code) {
-    if (!accepted_) return hang_up();  // what is said now would get between the bytes of the handshake
-    if (std::exchange(closing_, true)) return;
+    if (std::exchange(closing_, true) || !accepted_) return;  // not in the middle of the handshake: see run()
     socket_.async_close(code, [self = shared_from_this()](BoostError) {});
+  }
+
+  void hang_up_soon() {
+    patience_.expires_after(shared_.options.limits.closing_time);
+    patience_.async_wait([weak = weak_from_this()](BoostError error) {
+      const auto self = weak.lock();
+      if (!error && self != nullptr) self->hang_up();
+    });
   }
 
   void end() {
@@ -146,7 +151,7 @@ class WebSocket : public Connection, public std::enable_shared_from_this<WebSock
 
   Shared& shared_;
   websocket::stream<PageStream> socket_;
-  net::steady_timer wake_;
+  net::steady_timer wake_, patience_;
   const Seat seat_;
   const bool loopback_;
   bool accepted_ = false, ended_ = false, closing_ = false;

@@ -25,7 +25,7 @@ const options = {
   format: "esm",
   target: "es2022",
   minify: true,
-  legalComments: "none",
+  legalComments: "linked",
   logLevel: "warning",
 };
 

@@ -43,7 +43,7 @@ export async function save(studio, name, what, { format = null, download = false
       if (all[i].shadowRoot) all.push(...all[i].shadowRoot.querySelectorAll('*'));
       all.push(...all[i].children);
     }
-    return all.find(element => element.dataset?.testid === 'saved')?.textContent.includes('bytes');
+    return all.find(element => element.dataset?.testid === 'saved')?.textContent.toLowerCase().includes('saved');
   }, null, { timeout: 30_000 });
   const said = await studio.at('saved').innerText();
   await studio.press('Escape');

@@ -4,7 +4,7 @@ import { customElement, state } from "lit/decorators.js";
 import type { FileEntry, SaveWhat } from "../engine/protocol";
 import { EngineError } from "../engine/connection";
 import { button, segmentsRow, selectRow, switchRow } from "../ui/controls";
-import { bytes } from "../ui/format";
+import { bytes, count } from "../ui/format";
 import { base } from "../ui/styles";
 import { Part, tell } from "./context";
 import { joined, parentOf, withExtension } from "./paths";
@@ -158,7 +158,7 @@ export class SaveDialog extends Part {
     const body = this.toServer ? { what, name, folder, overwrite } : { what, name, download: true };
     const saved = what === "picture" ? await savePicture(context, name, folder, overwrite) : await context.connection.request("save", body);
     if (saved.download !== undefined) handOver(`/download/${saved.download}`, name);
-    this.said = `Saved, ${bytes(saved.bytes)}`;
+    this.said = `Saved, ${count(saved.bytes)} bytes`;
     context.notice("info", `Saved ${saved.path ?? name}, ${bytes(saved.bytes)}`);
   }
 }

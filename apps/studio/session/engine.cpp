@@ -87,7 +87,7 @@ void Engine::run(const JobQueue::Job& job) {
 
 bool Engine::work_ahead(bool quiet) {
   try {
-    return (quiet && desk_.work_ahead()) || live_.work_ahead();
+    return (quiet && (desk_.work_ahead() || (!live_.is_running() && previews_.prepare()))) || live_.work_ahead();
   } catch (const std::exception& error) {
     notice("error", error.what());
     live_.stop();

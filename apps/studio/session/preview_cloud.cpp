@@ -27,6 +27,15 @@ const Cloud& PreviewCloud::cloud() {
   return cloud_;
 }
 
+bool PreviewCloud::prepare() {
+  constexpr std::size_t kMostTriangles = 4'000'000;  // a cloud that is copied and sorted in a moment
+  if (!desk_.has_scene() || state_ == desk_.state_number()) return false;
+  const std::size_t triangles = desk_.present().mesh().triangles.size();
+  if (triangles == 0 || triangles > kMostTriangles) return false;
+  refresh();
+  return true;
+}
+
 Options PreviewCloud::options() {
   refresh();
   Options options = desk_.present().options();

@@ -18,6 +18,8 @@ class PreviewCloud {
 
   /// Measures on first use after a change: a few reconstructions.
   const Cloud& cloud();
+  /// Measures while nobody waits, so that the first move of a slider has its preview. @returns whether there was work
+  bool prepare();
   /// The scene's options at the depth of previews, with points taken as they are.
   [[nodiscard]] Options options();
 

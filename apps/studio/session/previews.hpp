@@ -26,6 +26,8 @@ class Previews {
   Json options(const nlohmann::json& patch);
   /// Back to what is.
   Json end();
+  /// Work that makes the first preview quick. @returns whether there was some
+  bool prepare() { return cloud_.prepare(); }
   /// Frees what is kept from one move of a drag to the next.
   void forget();
 

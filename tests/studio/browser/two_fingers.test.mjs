@@ -5,6 +5,7 @@ import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import test from 'node:test';
+import { save } from './actions.mjs';
 import { noBrowser, Studio } from './browser.mjs';
 import { changedBox, colours } from './pixels.mjs';
 import { runProgram, temporaryFolder } from './program.mjs';
@@ -12,14 +13,6 @@ import { frontView } from './projection.mjs';
 
 const sha256 = file => createHash('sha256').update(readFileSync(file)).digest('hex');
 
-async function save(studio, name, what) {
-  await studio.at('save').click();
-  await studio.at(`save-what-${what}`).click();
-  await studio.at('save-name').fill(name);
-  await studio.at('save-confirm').click();
-  await studio.at('saved').waitFor();
-  await studio.press('Escape');
-}
 
 test('two fingers are parted by a stroke', { skip: noBrowser(), timeout: 240_000 }, async () => {
   const folder = temporaryFolder();

@@ -34,7 +34,7 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// root/{a.ply, sub/b.ply, out -> outside, file -> outside/secret, inner -> sub, loop -> loop}, outside/secret
+/// root/{a.ply, sub/b.ply, out -> outside, file -> outside/secret, inner -> sub, loop -> loop}, outside/{secret, deep/secret}
 class RootsBy : public testing::TestWithParam<Lookup> {
  protected:
   RootsBy() {
@@ -42,11 +42,12 @@ class RootsBy : public testing::TestWithParam<Lookup> {
     folder_ = fs::canonical(mkdtemp(form.data()));
     root_ = folder_ / "root";
     fs::create_directories(root_ / "sub");
-    fs::create_directories(folder_ / "outside");
+    fs::create_directories(folder_ / "outside" / "deep");
     fs::create_directories(folder_ / "root2");
     save(root_ / "a.ply", "inside");
     save(root_ / "sub" / "b.ply", "below");
     save(folder_ / "outside" / "secret", "secret");
+    save(folder_ / "outside" / "deep" / "secret", "secret");
     save(folder_ / "root2" / "c.ply", "other");
     fs::create_symlink(folder_ / "outside", root_ / "out");
     fs::create_symlink(folder_ / "outside" / "secret", root_ / "file");
@@ -101,6 +102,7 @@ TEST_P(RootsBy, NothingOutsideIsRead) {
                                        folder_ / "root2" / "c.ply",
                                        folder_ / "roo",
                                        "out/secret",
+                                       "out/deep/secret",
                                        "file",
                                        "inner/b.ply",
                                        "loop",
@@ -143,7 +145,7 @@ TEST_P(RootsBy, ListsFoldersThenFilesAndNoLinks) {
 }
 
 TEST_P(RootsBy, NoFolderOutsideIsListed) {
-  for (const fs::path path : {"..", "out", "inner", "/", "/etc", "a.ply", "nothing", "sub/..", "loop"})
+  for (const fs::path path : {"..", "out", "out/deep", "inner", "/", "/etc", "a.ply", "nothing", "sub/..", "loop"})
     EXPECT_EQ(code_of([&] { (void)roots().list(path); }), 3) << path;
   EXPECT_EQ(code_of([&] { (void)roots().list(folder_); }), 3);
 }
@@ -191,7 +193,7 @@ TEST_P(RootsBy, NothingOutsideIsWritten) {
     EXPECT_EQ(code_of([&] { (void)roots().prepare_write("", name, true); }), 8) << name;
   EXPECT_EQ(code_of([&] { (void)roots().prepare_write("", std::string("a\0b", 3), true); }), 8);
   EXPECT_EQ(code_of([&] { (void)roots().prepare_write("", std::string(256, 'x'), true); }), 8);
-  for (const fs::path folder : {"..", "out", "inner", "/", "/tmp", "nothing", "a.ply"})
+  for (const fs::path folder : {"..", "out", "out/deep", "inner", "/", "/tmp", "nothing", "a.ply"})
     EXPECT_EQ(code_of([&] { (void)roots().prepare_write(folder, "x", true); }), 8) << folder;
   for (const std::string link : {"file", "out", "loop", "sub"})
     EXPECT_EQ(code_of([&] { (void)roots().prepare_write("", link, true); }), 8) << link;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 
@@ -127,6 +128,23 @@ TEST(StudioWire, CompressingLaterGivesTheSameBytes) {
   const std::vector<std::byte> packed = encode_mesh(mesh, everything(mesh, true));
   EXPECT_EQ(studio::wire::compressed(raw), packed);
   EXPECT_LT(packed.size(), raw.size() / 2);
+}
+
+TEST(StudioWire, ALargeMeshIsEncodedInPartsWithoutASeam) {
+  Mesh mesh;
+  test::Random random(3);
+  for (int i = 0; i < 600'000; ++i) {
+    const Vec3d d = random.direction();
+    mesh.vertices.push_back({static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)});
+    mesh.triangles.push_back({i, (i + 1) % 600'000, (i + 2) % 600'000});
+  }
+  mesh.normals = mesh.vertices;
+  const std::vector<std::byte> bytes = encode_mesh(mesh, {});
+  EXPECT_EQ(encode_mesh(mesh, {}), bytes);
+  const BlobReader blob(bytes);
+  EXPECT_LE(worst_step(mesh.vertices, mesh.origin, blob), 0.51);
+  const auto triangles = blob.numbers<std::int32_t>("triangles");
+  EXPECT_EQ(0, std::memcmp(triangles.data(), mesh.triangles.data(), 3 * sizeof(std::int32_t) * mesh.triangles.size()));
 }
 
 TEST(StudioWire, EveryDirectionIsWithin1Point2Degrees) {

@@ -52,7 +52,6 @@ export class Toasts extends Part {
         background: color-mix(in srgb, var(--orange) 14%, var(--raised));
       }
       .chip {
-        pointer-events: auto;
         padding: 4px 16px;
         border-radius: 14px;
         border: 1px solid var(--line);

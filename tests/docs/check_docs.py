@@ -15,7 +15,7 @@ sys.dont_write_bytecode = True  # the folder of the sources stays as it is
 from repository import CONSTANT, Repository, value_of
 
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/decisions/*.md")
-OURS = r"\.(hpp|cpp|cu|cuh|md|py|sh|cmake|mjs|schema\.json)"
+OURS = r"\.(hpp|cpp|cu|cuh|md|py|sh|cmake|mjs|ts|schema\.json)"
 # What users have: a name without a folder, or in a folder of theirs, with the ending of a kind of data.
 USERS_FILE = re.compile(r"[\w.{}*/-]*\.(ply|xyz|pts|asc|txt|csv|obj|off|stl|vtk|json|png|svg)")
 OTHER_PROGRAMS = {"cmake", "ctest", "ncu", "perf", "apt-get", "nvcc", "PoissonRecon", "docker"}

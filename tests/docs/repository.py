@@ -5,7 +5,7 @@ import pathlib
 import re
 
 SOURCES = ("src", "include", "apps", "bench", "examples", "tests", "cmake", ".ci", "docs/pictures")
-TEXT = {".hpp", ".cpp", ".cu", ".cuh", ".h", ".py", ".sh", ".txt", ".cmake", ".json", ".mjs", ".in", ""}
+TEXT = {".hpp", ".cpp", ".cu", ".cuh", ".h", ".py", ".sh", ".txt", ".cmake", ".json", ".mjs", ".ts", ".in", ""}
 CPLUSPLUS = {".hpp", ".cpp", ".cu", ".cuh", ".h"}
 SKIPPED = {".git", "node_modules", "__pycache__", ".cache", "corpus"}
 # Paths in documents are relative to one of these, or to the document.

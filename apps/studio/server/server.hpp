@@ -1,5 +1,5 @@
 // The server of the studio: HTTP and WebSocket on this machine, for pages that know a token. Serves an Application and
-// knows nothing of what it does. Decisions: docs/decisions/0041-studio-server.md.
+// knows nothing of what it does. Decisions: docs/decisions/0039-studio-server.md.
 #pragma once
 
 #include <chrono>

@@ -23,7 +23,11 @@ test('a torus is bent by two handles', { skip: noBrowser(), timeout: 180_000 }, 
     assert.deepEqual([done.record.after.components, done.record.after.genus], [1, 1]);
     const { handles } = done.operation;
     assert.equal(handles.length, 2);
-    assert.ok(!handles[0].rigid, 'the first one holds');
+    assert.deepEqual([handles[0].rigid.degrees, handles[0].rigid.translation], [0, [0, 0, 0]], 'the first one holds');
+    for (const [i, x] of [-0.7, 0.7].entries()) {
+      const { centre } = handles[i].region.ball;
+      assert.ok(Math.hypot(centre[0] - x, centre[1], centre[2] - 0.25) < 0.02, `set on the surface: ${centre}`);
+    }
     const [dx, dy, dz] = handles[1].rigid.translation;
     assert.ok(dx === 0 && dz === 0 && Math.abs(dy - rise) < 0.02, `moved by ${[dx, dy, dz]}`);
     const after = await meshBox(studio);

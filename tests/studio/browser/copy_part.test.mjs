@@ -12,7 +12,7 @@ const pointsOfPart = 4000;
 /** Chooses the file, whose points are then shown beside the scene, and waits until they can be placed. */
 async function chooseFile(studio, name) {
   await studio.press('c');
-  await studio.at('part-source-file').click();
+  await studio.at('part-from-file').click();
   await studio.at(`part-file-${name}`).click();
   await studio.at('gizmo-move-x').waitFor();
   await studio.at('viewport').focus();

@@ -1,6 +1,8 @@
 // What tests of tools have in common: a generated shape seen from the front, a step that is done by the hand, and the
 // step undone.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { colours } from './pixels.mjs';
 import { frontView } from './projection.mjs';
 
@@ -53,6 +55,12 @@ export async function ghostsOf(studio, act) {
   const since = studio.client.events.length;
   await act();
   return studio.client.event('ghosts', event => event.added + event.removed > 0, { since });
+}
+
+/** The operations with all their numbers, as the program saves them. */
+export async function script({ client, program }) {
+  await client.request('save', { what: 'script', name: 'script.json', folder: '', overwrite: true });
+  return JSON.parse(readFileSync(join(program.folder, 'script.json'), 'utf8')).operations;
 }
 
 /** The box in the world of the newest committed mesh, from the header of its blob. */

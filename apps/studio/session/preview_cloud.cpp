@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 #include <vector>
 
 #include <pointskin/merge.hpp>
@@ -48,24 +49,33 @@ Options PreviewCloud::options() {
 
 void PreviewCloud::refresh() {
   if (state_ == desk_.state_number()) return;
-  cloud_ = desk_.present().cloud();
-  cloud_.attributes.clear();
   state_ = desk_.state_number();
-  keep_evenly(cloud_, kMostPoints);
-  depth_ = kDeepest;
-  while (measured_ms() > kMostMs) {
-    if (depth_ > kFlattest)
-      --depth_;
-    else if (cloud_.size() / 2 >= kFewestPoints)
-      keep_evenly(cloud_, cloud_.size() / 2);
-    else
-      break;
-  }
+  Cloud whole = desk_.present().cloud();
+  whole.attributes.clear();
+  const bool is_alike = whole.size() < 2 * measured_size_ && measured_size_ < 2 * whole.size();
+  if (!is_alike) measure(whole);
+  cloud_ = std::move(whole);
+  keep_evenly(cloud_, points_);
 }
 
-double PreviewCloud::measured_ms() {
+/// From few points on, so that what is too slow costs little time.
+void PreviewCloud::measure(const Cloud& whole) {
+  const std::int64_t most = std::min(whole.size(), kMostPoints);
+  measured_size_ = 0;  // should this fail, the next one measures again
+  depth_ = kFlattest;
+  points_ = std::min(whole.size(), kFirstPoints);
+  double ms = tried(whole, points_, depth_);
+  for (; ms > kMostMs && points_ / 2 >= kFewestPoints; ms = tried(whole, points_, depth_)) points_ /= 2;
+  for (; 2 * ms < kMostMs && points_ < most; ms = tried(whole, points_, depth_)) points_ = std::min(2 * points_, most);
+  if (2 * ms < kMostMs && tried(whole, points_, kDeepest) < kMostMs) depth_ = kDeepest;
+  measured_size_ = whole.size();
+}
+
+double PreviewCloud::tried(const Cloud& whole, std::int64_t points, int depth) {
+  cloud_ = whole;
+  keep_evenly(cloud_, points);
   Options options = desk_.present().options();
-  options.depth = depth_;
+  options.depth = depth;
   options.point_normals = PointNormals::given;
   options.keep_strays = true;
   Reconstructor reconstructor(services_.workspace);

@@ -12,11 +12,12 @@
 namespace pointskin::studio {
 
 /// Made anew when the scene's points change: an even choice of them at depth 7 or 6, whatever takes under 100 ms here.
+/// That is measured once for clouds of about one size.
 class PreviewCloud {
  public:
   PreviewCloud(Services& services, SceneDesk& desk) : services_(services), desk_(desk) {}
 
-  /// Measures on first use after a change: a few reconstructions.
+  /// Measures on first use: reconstructions that take about half a second together.
   const Cloud& cloud();
   /// Measures while nobody waits, so that the first move of a slider has its preview. @returns whether there was work
   bool prepare();
@@ -25,17 +26,22 @@ class PreviewCloud {
 
  private:
   static constexpr double kMostMs = 100;
-  static constexpr std::int64_t kMostPoints = 400'000, kFewestPoints = 20'000;
+  static constexpr std::int64_t kMostPoints = 400'000, kFirstPoints = 50'000, kFewestPoints = 20'000;
   static constexpr int kDeepest = 7, kFlattest = 6;
 
   void refresh();
-  [[nodiscard]] double measured_ms();
+  /// Finds how many points of `whole`, and which depth. @param whole  without attributes
+  void measure(const Cloud& whole);
+  /// Takes so many points of `whole` and reconstructs them. @returns milliseconds
+  double tried(const Cloud& whole, std::int64_t points, int depth);
 
   Services& services_;
   SceneDesk& desk_;
   std::optional<std::uint64_t> state_;  ///< that the cloud was made of
   Cloud cloud_;
+  std::int64_t points_ = 0;  ///< of cloud_, at most
   int depth_ = kFlattest;
+  std::int64_t measured_size_ = 0;  ///< of the cloud that this was measured with; 0: none yet
 };
 
 }  // namespace pointskin::studio

@@ -43,7 +43,8 @@ void Engine::notice(const char* level, const std::string& text) const {
 
 /// Names sort by time.
 fs::path Engine::new_journal() const {
-  if (!options_.session.empty()) return options_.session;
+  // A scene that is opened later must not take the place of the one before.
+  if (!options_.session.empty() && !fs::exists(options_.session)) return options_.session;
   const auto now = std::chrono::system_clock::now();
   const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
   const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
@@ -63,6 +64,8 @@ void Engine::start() {
     desk_.resume(journal);
     return;
   }
+  if (!options_.session.empty() && fs::exists(options_.session))
+    throw Error(ErrorCode::usage, options_.session.string() + ": there is a session; go on with it by --resume");
   scene::Document document;
   document.options = options_.reconstruction;
   for (const fs::path& cloud : options_.clouds)

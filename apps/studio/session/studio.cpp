@@ -150,9 +150,10 @@ class Studio::Impl {
 
   /// A session that cannot be resumed ends the program; a cloud that cannot be read is told to the page.
   void begin(Engine& engine, std::promise<void>& ready) {
-    if (options_.resume) engine.start();
+    const bool must_begin = options_.resume || (!options_.session.empty() && fs::exists(options_.session));
+    if (must_begin) engine.start();
     ready.set_value();
-    if (options_.resume) return;
+    if (must_begin) return;
     try {
       engine.start();
     } catch (const std::exception& error) {

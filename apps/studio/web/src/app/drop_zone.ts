@@ -116,7 +116,7 @@ export class DropZone extends Part {
     return html`<section class="card-empty" data-testid="empty-state" aria-label="Open a scan">
       ${glyph(icons.points)}
       <h2>Drop a scan here</h2>
-      <p class="hint">PLY, XYZ, LAS, OBJ and more: points, with normals or without. Nothing leaves this machine.</p>
+      <p class="hint">PLY, XYZ, VTK, OBJ and more: points, with normals or without. Nothing leaves this machine.</p>
       <div class="actions">
         ${button({ label: "Open…", testid: "empty-open", primary: true, title: "Files below the program's root (Ctrl+O)", run: () => this.context.openDialog("open") })}
         ${button({ label: "From this computer…", testid: "empty-choose", run: () => void this.choose() })}

@@ -1,8 +1,11 @@
 // The four set operations with a second solid that the gizmo has moved: volumes are those of the two solids and of what
 // they have in common.
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { join } from 'node:path';
 import test from 'node:test';
 import { noBrowser, Studio } from './browser.mjs';
+import { generator, temporaryFolder } from './program.mjs';
 import { assertNear, choose, markAt, openShape, step, undo } from './steps.mjs';
 
 const radius = 1;
@@ -15,7 +18,8 @@ const lens = apart => (Math.PI * (2 * radius - apart) ** 2 * (apart ** 2 + 4 * r
 async function placeBall(studio, label, at) {
   await studio.press('u');
   await choose(studio, 'combine-operation', label);
-  await choose(studio, 'solid-shape', 'sphere');
+  await studio.at('solid-from-file').click();
+  await studio.at('solid-file-ball.ply').click();
   await studio.at('gizmo-move-x').waitFor();
   const [x, y] = await markAt(studio, 'gizmo-move-x');
   const pixels = at([0.8, 0, 0])[0] - at([0, 0, 0])[0];
@@ -24,7 +28,10 @@ async function placeBall(studio, label, at) {
 }
 
 test('union, intersection, difference and symmetric difference', { skip: noBrowser(), timeout: 300_000 }, async () => {
-  const studio = await Studio.open();
+  const folder = temporaryFolder();
+  const made = spawnSync(generator, ['sphere', '-o', join(folder, 'ball.ply'), '--points', '5000', '--seed', '5']);
+  assert.equal(made.status, 0, String(made.stderr));
+  const studio = await Studio.open({ folder });
   try {
     const { at, digest } = await openShape(studio, 'sphere');
     const expected = {

@@ -12,17 +12,13 @@ test('normals are estimated, turned, flipped and seen by a sensor', { skip: noBr
 
     const turned = await step(studio, 1, () => studio.at('orient-turn').click());
     assert.deepEqual([turned.record.operation, turned.operation.method], ['orient', 'turn']);
+    assert.equal(turned.record.flipped, scene.points);
     assert.notEqual(turned.digest, digest, 'inside is outside');
-    const again = await step(studio, 2, () => studio.at('orient-turn').click());
-    assert.notEqual(again.digest, turned.digest);
-    await undo(studio, 2, turned.digest);
-    await undo(studio, 1, digest);
-
-    const estimated = await step(studio, 1, () => studio.at('orient-estimate').click());
+    const estimated = await step(studio, 2, () => studio.at('orient-estimate').click());
     assert.equal(estimated.operation.method, 'estimate');
-    assert.equal(estimated.scene.points, scene.points);
-    assert.deepEqual([estimated.record.after.components, estimated.record.after.genus], [1, 1]);
-    assert.notEqual(estimated.digest, digest, 'other normals than those of the shape');
+    assert.equal(estimated.record.flipped, scene.points);
+    assert.equal(estimated.digest, digest, 'they point outwards again');
+    await undo(studio, 2, turned.digest);
     await undo(studio, 1, digest);
 
     await studio.at('orient-layers-front').click();
@@ -44,7 +40,7 @@ test('normals are estimated, turned, flipped and seen by a sensor', { skip: noBr
     assert.equal(seen.operation.sensors.length, 1);
     const [x, y, z] = seen.operation.sensors[0];
     assert.ok(Math.hypot(x - 1.2, y - 0.3, z) < 0.02, `the sensor is where the click was: ${[x, y, z]}`);
-    assert.ok(![digest, estimated.digest].includes(seen.digest), 'the sensor counts');
+    assert.ok(![digest, turned.digest].includes(seen.digest), 'the sensor counts');
     await undo(studio, 1, digest);
     assert.deepEqual(studio.problems, []);
   } finally {

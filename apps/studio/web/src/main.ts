@@ -1,5 +1,2 @@
-// Starts the page: theme, session, connection.
+// Starts the page; the frame of it signs in and connects.
 import "./app/app";
-import { exchangeToken } from "./engine/session";
-
-void exchangeToken();

@@ -4,7 +4,7 @@ import { customElement, query, state } from "lit/decorators.js";
 import { Blobs } from "../engine/blobs";
 import { Connection } from "../engine/connection";
 import { Link } from "../engine/link";
-import { exchangeToken, socketAddress } from "../engine/session";
+import { admission, exchangeToken, socketAddress } from "../engine/session";
 import { Store } from "../engine/store";
 import type { Level } from "../engine/store";
 import { LiveOptions } from "../panels/live_options";
@@ -46,7 +46,7 @@ export class App extends LitElement {
 
   override firstUpdated(): void {
     const store = new Store();
-    const connection = new Connection(socketAddress());
+    const connection = new Connection(socketAddress(), async () => (await admission()) === "refused");
     const viewport = new Viewport(this.canvas);
     const commands = new Commands();
     const notice = (level: Level, text: string) => void store.addNotice(level, text);
@@ -82,16 +82,16 @@ export class App extends LitElement {
     paintTheme(chosenTheme(), viewport);
     this.chooseTool("navigate");
     this.beat++;
+    // The address of a program that was started again differs after # alone, which loads no page.
+    window.addEventListener("hashchange", () => location.hash && void this.connect(context));
     void this.connect(context);
   }
 
   private async connect(context: StudioContext): Promise<void> {
-    const admission = await exchangeToken();
-    if (admission === "refused") {
-      this.refused = "This page is not signed in. Open the address that the program printed, with the part after #.";
-      return;
-    }
-    context.connection.start();
+    const answer = await exchangeToken();
+    const outside = answer === "refused" && context.connection.state !== "open";
+    this.refused = outside ? "This page is not signed in. Open the address that the program printed, with the part after #." : "";
+    if (answer !== "refused") context.connection.start();
   }
 
   private storeChanged(context: StudioContext): void {
@@ -138,14 +138,16 @@ export class App extends LitElement {
   }
 
   private overView(context: StudioContext) {
-    const lost = context.store.connection === "lost";
+    const { connection } = context.store;
+    const again = "The program was started again. Open the address that it printed then, here or in another tab; this page goes on by itself.";
+    const refused = this.refused || (connection === "refused" ? again : "");
     return html`
       <psk-view-gizmo .context=${context}></psk-view-gizmo>
       <psk-legend .context=${context}></psk-legend>
       <psk-drop-zone .context=${context}></psk-drop-zone>
       <psk-toasts .context=${context}></psk-toasts>
-      ${lost ? html`<div class="banner" role="status" data-testid="connection-banner">Connection lost, trying again</div>` : nothing}
-      ${this.refused ? html`<div class="banner" role="alert" data-testid="refused-banner">${this.refused}</div>` : nothing}
+      ${connection === "lost" ? html`<div class="banner" role="status" data-testid="connection-banner">Connection lost, trying again</div>` : nothing}
+      ${refused ? html`<div class="banner" role="alert" data-testid="refused-banner">${refused}</div>` : nothing}
     `;
   }
 

@@ -172,7 +172,7 @@ export class StatusBar extends Part {
 
   private device() {
     const { hello, connection } = this.store;
-    const text = connection === "open" ? (hello?.device ?? "") : connection === "lost" ? "not connected" : "connecting";
+    const text = connection === "open" ? (hello?.device ?? "") : connection === "lost" || connection === "refused" ? "not connected" : "connecting";
     return html`<span class="device" data-testid="status-device" title=${text}>${text}</span>`;
   }
 }

@@ -1,7 +1,8 @@
 // The page's end of the WebSocket: requests with replies, events, and reconnecting with back-off.
 import type { EventName, Events, Hello, Reply, Verb } from "./protocol";
 
-export type ConnectionState = "connecting" | "open" | "lost";
+/// refused: there is an engine, and it does not know this page; it may have been started again.
+export type ConnectionState = "connecting" | "open" | "lost" | "refused";
 
 /// An error reply. `code` is the engine's name for it; "superseded" and "interrupted" are no mistakes of anyone.
 export class EngineError extends Error {
@@ -36,10 +37,15 @@ export class Connection {
   private readonly pending = new Map<number, Pending>();
   private readonly listeners = new Map<string, Set<Listener>>();
 
-  constructor(private readonly url: string) {}
+  /// @param refused  asked before each new attempt: whether the engine would not let this page in
+  constructor(
+    private readonly url: string,
+    private readonly refused: () => Promise<boolean> = () => Promise.resolve(false),
+  ) {}
 
-  /// Opens the socket, and again whenever it is lost.
+  /// Opens the socket, and again whenever it is lost. Nothing to do while there is one.
   start(): void {
+    if (this.socket || this.closed) return;
     const socket = new WebSocket(this.url);
     this.socket = socket;
     socket.onopen = () => void this.greet();
@@ -109,8 +115,20 @@ export class Connection {
     this.pending.clear();
     this.socket = null;
     if (this.closed) return;
-    this.become("lost");
-    setTimeout(() => this.start(), backOff(this.attempt++));
+    this.become(this.state === "refused" ? "refused" : "lost");
+    this.later();
+  }
+
+  private later(): void {
+    setTimeout(() => void this.again(), backOff(this.attempt++));
+  }
+
+  /// Goes on asking while it is refused: another tab may sign in for all.
+  private async again(): Promise<void> {
+    if (this.socket || this.closed) return;
+    if (!(await this.refused())) return this.start();
+    this.become("refused");
+    this.later();
   }
 
   private become(state: ConnectionState): void {

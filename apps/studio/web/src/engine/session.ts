@@ -12,6 +12,15 @@ export async function exchangeToken(): Promise<Admission> {
       if (!answer.ok) return "refused";
       return "admitted";
     }
+    return await admission();
+  } catch {
+    return "unreachable";
+  }
+}
+
+/// Whether the cookie that this page has is still good.
+export async function admission(): Promise<Admission> {
+  try {
     const probe = await fetch("/blob/0", { credentials: "same-origin" });
     return probe.status === 401 ? "refused" : "admitted";
   } catch {

@@ -20,7 +20,8 @@ async function chooseFile(studio, name) {
 
 test('a part of a file is placed by the gizmo and snaps', { skip: noBrowser(), timeout: 180_000 }, async () => {
   const folder = temporaryFolder();
-  const made = spawnSync(generator, ['torus', '-o', join(folder, 'other.ply'), '--points', String(pointsOfPart), '--seed', '5']);
+  const made = spawnSync(generator,
+    ['torus', '-o', join(folder, 'other.ply'), '--points', String(pointsOfPart), '--seed', '5']);
   assert.equal(made.status, 0, String(made.stderr));
   const studio = await Studio.open({ folder });
   try {

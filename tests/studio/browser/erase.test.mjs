@@ -15,7 +15,7 @@ test('added points, then the front layer of the scan', { skip: noBrowser(), time
     const guided = await step(studio, 1, () => studio.press('Enter'));
 
     await studio.press('e');
-    const ghosts = await ghostsOf(studio, () => studio.drag(box(0, 0, 1, -1)));
+    const ghosts = await ghostsOf(studio, () => studio.drag(box(0, -1, 1, 0)));  // begins below the chip
     const halved = await step(studio, 2, () => studio.press('Enter'));
     assert.equal(halved.record.operation, 'remove');
     assert.equal(halved.record.removed, ghosts.removed);

@@ -21,8 +21,8 @@ test('a lasso with a hole fills what is between its loops', { skip: noBrowser(),
     assert.equal(done.record.added, ring.added, 'added is what was shown');
     const cell = done.operation.interval ** 3;
     assertNear(whole.added * cell, volumeOf((x, y, z) => inTorus(x, y, z) && Math.hypot(x, y) < 0.8), 0.06, 'one loop');
-    assertNear(ring.added * cell, volumeOf((x, y, z) => inTorus(x, y, z) && Math.abs(Math.hypot(x, y) - 0.7) < 0.1), 0.06,
-      'with the hole');
+    const between = (x, y, z) => inTorus(x, y, z) && Math.abs(Math.hypot(x, y) - 0.7) < 0.1;
+    assertNear(ring.added * cell, volumeOf(between), 0.06, 'with the hole');
     assert.equal(done.scene.points, scene.points + ring.added);
     assert.notEqual(done.digest, digest);
     assert.equal((await studio.at('status-points').innerText()).replaceAll(',', ''), String(done.scene.points));

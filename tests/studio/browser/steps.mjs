@@ -32,9 +32,8 @@ export async function step(studio, done, act) {
   const since = studio.client.events.length;
   await act();
   await studio.drawn(since);
-  const { scene } = await studio.client.event('state',
-    ({ scene: { history, ...scene } }) => scene.done === done && scene.surface && history[done - 1]?.record.after.components > 0,
-    { since });
+  const measured = ({ scene }) => scene.done === done && scene.surface && scene.history[done - 1].record.after.components > 0;
+  const { scene } = await studio.client.event('state', measured, { since });
   await studio.at('chip').waitFor();
   await assertSeen(studio);
   return { ...scene.history[done - 1], scene, digest: await studio.client.digest() };

@@ -152,7 +152,7 @@ TEST(SceneHistory, ReplaysToTheSameBytesFromJson) {
   std::vector<std::string> states;
   for (const std::string& text : one_of_every_kind()) {
     const scene::StepRecord& record = live.apply(operation_from(text));
-    EXPECT_EQ(record.operation, nlohmann::json::parse(text)["op"]);
+    EXPECT_EQ(record.operation, nlohmann::json::parse(text)["op"].get<std::string>());
     EXPECT_EQ(record.points, live.cloud().size());
     EXPECT_EQ(record.triangles, static_cast<std::int64_t>(live.mesh().triangles.size()));
     script.push_back(scene::to_json(live.operation(live.done() - 1), ""));

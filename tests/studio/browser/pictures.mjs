@@ -107,6 +107,10 @@ const scenes = {
     await take('tool_section');
   },
   async fluid({ studio }, take) {
+    await studio.press('5');  // in perspective, from above
+    await studio.press('1');
+    const { x, y, width, height } = await studio.canvas();
+    await studio.drag([[x + width / 2, y + height / 2], [x + 0.36 * width, y + 0.62 * height]]);
     await studio.press('w');
     await studio.at('fluid-start').click();
     await studio.client.event('frame', frame => frame.index >= 45, { timeout: 180_000 });

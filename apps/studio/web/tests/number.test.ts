@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { clampNumber, dragNumber, parseNumber, showNumber } from "../src/ui/number_field";
+import { clampNumber, dragNumber, fitNumber, parseNumber, showNumber } from "../src/ui/number_field";
 import { bytes, count, duration, measure, percent, shortCount, signed } from "../src/ui/format";
 
 const kDepth = { min: 5, max: 14, step: 1 };
@@ -32,6 +32,10 @@ test("dragging moves by a step for four pixels, a tenth of that with Shift", () 
 test("a field shows six digits at most", () => {
   assert.equal(showNumber(1 / 3), "0.333333");
   assert.equal(showNumber(NaN), "");
+  assert.equal(fitNumber(0.25024, 6), "0.2502");
+  assert.equal(fitNumber(-0.123456, 5), "-0.12");
+  assert.equal(fitNumber(20000, 3), "20000");
+  assert.equal(fitNumber(NaN, 6), "");
 });
 
 test("counts, sizes and times read well", () => {

@@ -42,6 +42,17 @@ export function showNumber(value: number): string {
   return String(Number(value.toPrecision(6)));
 }
 
+const kDigitWidth = 8; // CSS pixels of a figure at 13 px
+
+/// As many digits as fit in so many characters; more are seen once the field has the focus.
+export function fitNumber(value: number, characters: number): string {
+  for (let digits = 6; digits > 1; digits--) {
+    const text = String(Number(value.toPrecision(digits)));
+    if (text.length <= characters || digits === 2) return Number.isFinite(value) ? text : "";
+  }
+  return "";
+}
+
 @customElement("psk-number")
 export class NumberField extends LitElement {
   static override styles = [
@@ -58,7 +69,7 @@ export class NumberField extends LitElement {
         border: 1px solid var(--line);
         border-radius: 5px;
         background: var(--field);
-        padding: 0 8px;
+        padding: 0 6px;
       }
       .field:hover {
         border-color: var(--line-strong);
@@ -110,10 +121,14 @@ export class NumberField extends LitElement {
         aria-valuenow=${this.value}
         data-testid=${this.testid}
         ?disabled=${this.disabled}
-        .value=${live(this.typed ?? showNumber(this.value))}
+        .value=${live(this.typed ?? this.shown())}
+        @focus=${() => this.requestUpdate()}
         @input=${() => (this.typed = this.input.value)}
         @change=${() => this.take()}
-        @blur=${() => this.take()}
+        @blur=${() => {
+          this.take();
+          this.requestUpdate();
+        }}
         @keydown=${(event: KeyboardEvent) => this.key(event)}
         @pointerdown=${(event: PointerEvent) => this.down(event)}
         @pointermove=${(event: PointerEvent) => this.move(event)}
@@ -121,6 +136,17 @@ export class NumberField extends LitElement {
         @pointercancel=${() => this.up()}
       />${this.unit ? html`<span class="unit" aria-hidden="true">${this.unit}</span>` : null}
     </div>`;
+  }
+
+  protected override firstUpdated(): void {
+    this.requestUpdate(); // only now there is a width
+  }
+
+  /// All digits while one types, else as many as fit.
+  private shown(): string {
+    const width = this.input?.clientWidth ?? 0;
+    const focused = this.shadowRoot?.activeElement === this.input;
+    return focused || width === 0 ? showNumber(this.value) : fitNumber(this.value, Math.floor(width / kDigitWidth));
   }
 
   private get range(): NumberRange {
@@ -140,7 +166,7 @@ export class NumberField extends LitElement {
     if (this.typed === null) return;
     const value = parseNumber(this.typed);
     this.typed = null;
-    this.input.value = showNumber(this.value);
+    this.input.value = this.shown();
     if (value !== null) this.set(clampNumber(value, { ...this.range, step: 0 }), true);
   }
 

@@ -1,0 +1,83 @@
+// What a person sees, in both themes: no text without contrast, no control without a name, nothing cut off, by axe-core and
+// by measuring; and every command is reached by the keyboard alone.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import test from 'node:test';
+import { panel } from './actions.mjs';
+import { noBrowser, Studio } from './browser.mjs';
+import { require } from './packages.mjs';
+
+const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+const pictures = process.env.POINTSKIN_LOOKS;  // a folder for pictures of all, to be looked at
+
+/** Rules broken, one line each. The page's policy forbids scripts of others: axe comes in as a debugger's would. */
+async function faults(page) {
+  const session = await page.context().newCDPSession(page);
+  await session.send('Runtime.evaluate', { expression: axe });
+  const { result } = await session.send('Runtime.evaluate', {
+    expression: `axe.run(document, { resultTypes: ['violations'] }).then(found => JSON.stringify(found.violations
+      .map(fault => fault.id + ': ' + fault.nodes.map(node => node.target.flat().join(' ')).slice(0, 3).join(', '))))`,
+    awaitPromise: true, returnByValue: true });
+  return JSON.parse(result.value);
+}
+
+/** Elements with text whose text is wider than they are, and which do not say so by an ellipsis. */
+function cutOff(page) {
+  return page.evaluate(() => {
+    const cut = [];
+    const visit = root => {
+      for (const element of root.querySelectorAll('*')) {
+        if (element.shadowRoot) visit(element.shadowRoot);
+        const style = getComputedStyle(element);
+        const hasText = [...element.childNodes].some(node => node.nodeType === 3 && node.textContent.trim() !== '');
+        const wider = element.scrollWidth > element.clientWidth + 1 && style.overflowX !== 'visible';
+        const isField = element.tagName === 'INPUT' && element.type !== 'range' && element.type !== 'checkbox';
+        if ((hasText || isField) && wider && element.clientWidth > 0 && style.textOverflow !== 'ellipsis')
+          cut.push(`${element.dataset.testid ?? element.tagName} "${(element.value ?? element.textContent).slice(0, 30)}"`);
+      }
+    };
+    visit(document);
+    return cut;
+  });
+}
+
+const tools = ['v', 'b', 'r', 'l', 'p', 'e', 'c', 'd', 'g', 'u', 'o', 'x', 'w'];
+const panels = ['reconstruct', 'points', 'surface', 'problems', 'history'];
+
+for (const [theme, width, height, ratio] of [['dark', 1280, 800, 1], ['light', 1280, 800, 1], ['dark', 1920, 1080, 2],
+  ['light', 1920, 1080, 2]])
+  test(`${theme}, ${width} by ${height}, ratio ${ratio}`, { skip: noBrowser(), timeout: 400_000 }, async () => {
+    const studio = await Studio.open({ theme, width, height, ratio });
+    const found = [];
+    const look = async what => {
+      await studio.page.waitForTimeout(250);
+      for (const fault of await faults(studio.page)) found.push(`${what}: ${fault}`);
+      for (const text of await cutOff(studio.page)) found.push(`${what}: cut off: ${text}`);
+      if (pictures) await studio.page.screenshot({ path: join(pictures, `${theme}_${width}_${what}.png`) });
+    };
+    try {
+      await look('empty');
+      const since = studio.client.events.length;
+      await studio.client.request('open', { files: [{ shape: 'torus', points: 4000 }], options: { depth: 6 } });
+      await studio.drawn(since);
+      for (const key of tools) {
+        await studio.press(key);
+        await look(`tool_${key}`);
+      }
+      await studio.press('v');
+      for (const name of panels) {
+        await panel(studio, name);
+        await look(`panel_${name}`);
+      }
+      for (const [key, name] of [['Control+k', 'palette'], ['Control+o', 'open'], ['Control+s', 'save'], ['?', 'keys']]) {
+        await studio.press(key);
+        await look(name);
+        await studio.press('Escape');
+      }
+      assert.deepEqual([...new Set(found)], []);
+      assert.deepEqual(studio.problems, []);
+    } finally {
+      await studio.close();
+    }
+  });

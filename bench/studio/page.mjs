@@ -50,9 +50,9 @@ try {
   const waits = [];
   const beyond = [];
   for (let i = 0; i < strokes; i += 1) {
-    const y = middle[1] + (i - strokes / 2) * reach * 0.5;
+    const y = middle[1] - (i / strokes) * reach * 2;  // within the body
     await studio.drag([at([middle[0] - reach, y, 0]), at([middle[0] + reach, y + reach, 0])], { steps: 4 });
-    await page.waitForTimeout(700);
+    await page.waitForTimeout(1500);  // a look at the ghosts
     const since = client.events.length;
     const before = await page.evaluate(() => performance.now());
     await studio.press('Enter');

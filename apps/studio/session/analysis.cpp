@@ -175,13 +175,14 @@ std::optional<double> TimeModel::ms_for(std::int64_t bytes) const {
   return fixed + slope * b;
 }
 
-Json estimate_json(const Cloud& cloud, const Options& options, const TimeModel& model, int threads) {
-  constexpr int kAround = 3;
+Json estimate_json(const Cloud& cloud, const Options& options, const TimeModel& model, int threads,
+                   const std::function<bool()>& should_stop) {
+  constexpr int kBelow = 3;
   constexpr int kDeepest = 20;
   Json depths = Json::array();
   Json present = {{"bytes", nullptr}, {"ms", nullptr}};
-  for (int depth = std::max(1, options.depth - kAround); depth <= std::min(kDeepest, options.depth + kAround);
-       ++depth) {
+  for (int depth = std::max(1, options.depth - kBelow); depth <= std::min(kDeepest, options.depth + 1); ++depth) {
+    if (should_stop()) throw Error(ErrorCode::interrupted, "the estimate was interrupted");
     Options tried = options;
     tried.depth = depth;
     Json bytes;

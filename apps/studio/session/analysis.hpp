@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -52,8 +53,12 @@ class TimeModel {
   double count_ = 0, bytes_ = 0, ms_ = 0, bytes_squared_ = 0, bytes_ms_ = 0;
 };
 
-/// What depths around that of `options` would take: {"bytes", "ms", "depths": [{"depth", "bytes", "ms"}, ...]}, ms null where nothing
-/// is known, bytes null where the octree would not fit its ids. A few estimates of memory long.
-nlohmann::ordered_json estimate_json(const Cloud& cloud, const Options& options, const TimeModel& model, int threads);
+/// What the depths from 3 below that of `options` to the next one would take: {"bytes", "ms", "depths": [{"depth",
+/// "bytes", "ms"}, ...]}, ms null where nothing is known, bytes null where the octree would not fit its ids. Five
+/// estimates of memory long; deeper ones would take longer than all of these.
+/// @param should_stop  asked before each depth
+/// @throws Error interrupted if should_stop says so
+nlohmann::ordered_json estimate_json(const Cloud& cloud, const Options& options, const TimeModel& model, int threads,
+                                     const std::function<bool()>& should_stop);
 
 }  // namespace pointskin::studio

@@ -47,6 +47,19 @@ bool Audience::somebody_waits() const {
                      [](const auto& seat) { return seat.second.undrawn.size() < kMostUndrawn; });
 }
 
+void Audience::wait_until_drawn(std::uint64_t version, std::chrono::milliseconds most,
+                                const std::function<bool()>& stop) const {
+  constexpr std::chrono::milliseconds kLook{10};
+  const auto draws = [version](const auto& seat) {
+    const auto& undrawn = seat.second.undrawn;
+    return undrawn.size() == 1 && undrawn.contains(version);
+  };
+  const auto end = std::chrono::steady_clock::now() + most;
+  std::unique_lock lock(mutex_);
+  while (std::any_of(seats_.begin(), seats_.end(), draws) && std::chrono::steady_clock::now() < end && !stop())
+    drawn_.wait_for(lock, kLook);
+}
+
 void Audience::remember(const std::string& kind, std::vector<Json> events) {
   const std::lock_guard lock(mutex_);
   remembered_[kind] = std::move(events);
@@ -75,6 +88,7 @@ void Audience::drew(std::uint64_t client, std::uint64_t version) {
   if (seat == seats_.end()) return;
   auto& undrawn = seat->second.undrawn;
   undrawn.erase(undrawn.begin(), undrawn.upper_bound(version));
+  drawn_.notify_all();
 }
 
 }  // namespace pointskin::studio

@@ -1,7 +1,10 @@
 // All pages that are connected: what they are told, and how far behind each is.
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -32,6 +35,11 @@ class Audience {
   /// Whether show(.., true) would tell anybody.
   [[nodiscard]] bool somebody_waits() const;
 
+  /// Waits until the pages have drawn a version: a browser on this machine needs the processor as much as the engine.
+  /// Pages that had not drawn the one before are not waited for: nobody looks at them.
+  /// @param stop  asked now and then; ends it
+  void wait_until_drawn(std::uint64_t version, std::chrono::milliseconds most, const std::function<bool()>& stop) const;
+
   /// What a page that comes later is told first: the newest events of each kind. Replaces those before.
   void remember(const std::string& kind, std::vector<Json> events);
   void remember_more(const std::string& kind, const Json& event);
@@ -50,6 +58,7 @@ class Audience {
   };
 
   mutable std::mutex mutex_;
+  mutable std::condition_variable drawn_;
   std::map<std::uint64_t, Seat> seats_;
   std::map<std::string, std::vector<Json>> remembered_;
 };

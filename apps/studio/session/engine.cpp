@@ -80,6 +80,7 @@ void Engine::run(const JobQueue::Job& job) {
     reply(job.request, entry.handle(*this, job.request));
   } catch (const Error& error) {
     const bool is_old = error.code() == ErrorCode::interrupted && !job.slot.empty();
+    if (is_old && job.background && services_.queue.put_back(job)) return;
     refuse(job.request, is_old ? "superseded" : name_of(error.code()), error.what());
   } catch (const std::bad_alloc&) {
     refuse(job.request, name_of(ErrorCode::over_limit), "there is not enough memory for this");

@@ -24,7 +24,7 @@ class Engine {
 
   /// Opens what is to be open.
   void start();
-  /// Does a job and answers it.
+  /// Does a job and answers it, or puts it back where something more urgent came.
   void run(const JobQueue::Job& job);
   /// Something that nobody waits for. @param quiet  no request came lately: longer work may begin
   /// @returns whether there was something
@@ -36,6 +36,7 @@ class Engine {
   struct Entry {
     std::string slot;
     std::function<Json(Engine&, const Request&)> handle;
+    bool background = false;  ///< pages ask for it by themselves: it makes way for what a person asks for
   };
   /// By names. Entry::slot may depend on the request: see slot_of.
   static const std::map<std::string, Entry>& table();

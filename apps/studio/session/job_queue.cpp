@@ -27,9 +27,12 @@ std::optional<JobQueue::Job> JobQueue::next(std::chrono::milliseconds wait) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, wait, [this] { return closed_ || !jobs_.empty(); });
   if (closed_ || jobs_.empty()) return std::nullopt;
-  Job job = std::move(jobs_.front());
-  jobs_.pop_front();
+  auto first = std::find_if(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.background; });
+  if (first == jobs_.end()) first = jobs_.begin();
+  Job job = std::move(*first);
+  jobs_.erase(first);
   running_ = job.slot;
+  runs_background_ = job.background;
   cancelled_ = false;
   return job;
 }
@@ -40,17 +43,27 @@ void JobQueue::finished() {
   cancelled_ = false;
 }
 
+bool JobQueue::put_back(Job job) {
+  const std::lock_guard lock(mutex_);
+  const auto is_newer = [&job](const Job& waiting) { return waiting.slot == job.slot; };
+  if (closed_ || cancelled_ || std::any_of(jobs_.begin(), jobs_.end(), is_newer)) return false;
+  jobs_.push_back(std::move(job));
+  return true;
+}
+
 bool JobQueue::should_stop() const {
   const std::lock_guard lock(mutex_);
   if (closed_ || cancelled_) return true;
   if (!running_ || running_->empty()) return false;
   return std::any_of(jobs_.begin(), jobs_.end(),
-                     [this](const Job& job) { return job.slot.empty() || job.slot == *running_; });
+                     [this](const Job& job) {
+                       return job.slot.empty() || job.slot == *running_ || (runs_background_ && !job.background);
+                     });
 }
 
 bool JobQueue::waiting() const {
   const std::lock_guard lock(mutex_);
-  return closed_ || !jobs_.empty();
+  return closed_ || std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.background; });
 }
 
 bool JobQueue::waiting(const std::string& slot) const {

@@ -115,7 +115,8 @@ Json Measures::estimate(const nlohmann::json& patch) {
     times_.learn(estimate_device_bytes(cloud, desk_.present().options(), threads), desk_.last_ms());
     learned_state_ = desk_.state_number();
   }
-  return estimate_json(cloud, scene::read_options({patch, "options"}, desk_.present().options()), times_, threads);
+  const Options options = scene::read_options({patch, "options"}, desk_.present().options());
+  return estimate_json(cloud, options, times_, threads, [this] { return services_.queue.should_stop(); });
 }
 
 Json Measures::pick(const Vec3d& origin, const Vec3d& direction) const {

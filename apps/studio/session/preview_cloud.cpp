@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <pointskin/error.hpp>
 #include <pointskin/merge.hpp>
 
 #include "studio/wire/wire.hpp"
@@ -30,11 +31,27 @@ const Cloud& PreviewCloud::cloud() {
 
 bool PreviewCloud::prepare() {
   constexpr std::size_t kMostTriangles = 4'000'000;  // a cloud that is copied and sorted in a moment
-  if (!desk_.has_scene() || state_ == desk_.state_number()) return false;
+  if (!desk_.has_scene() || (state_ == desk_.state_number() && is_final_)) return false;
   const std::size_t triangles = desk_.present().mesh().triangles.size();
   if (triangles == 0 || triangles > kMostTriangles) return false;
+  Cloud whole = desk_.present().cloud();
+  whole.attributes.clear();
+  if (!is_measured_for(whole.size())) {
+    try {
+      measure(whole);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::interrupted) throw;
+      state_.reset();
+      return true;
+    }
+  }
+  state_.reset();
   refresh();
   return true;
+}
+
+bool PreviewCloud::is_measured_for(std::int64_t points) const {
+  return points < 2 * measured_size_ && measured_size_ < 2 * points;
 }
 
 Options PreviewCloud::options() {
@@ -49,19 +66,22 @@ Options PreviewCloud::options() {
 
 void PreviewCloud::refresh() {
   if (state_ == desk_.state_number()) return;
-  state_ = desk_.state_number();
-  Cloud whole = desk_.present().cloud();
-  whole.attributes.clear();
-  const bool is_alike = whole.size() < 2 * measured_size_ && measured_size_ < 2 * whole.size();
-  if (!is_alike) measure(whole);
-  cloud_ = std::move(whole);
+  cloud_ = desk_.present().cloud();
+  cloud_.attributes.clear();
+  is_final_ = is_measured_for(cloud_.size());
+  if (!is_final_) {
+    points_ = std::min(cloud_.size(), kFewestPoints);
+    depth_ = kFlattest;
+  }
   keep_evenly(cloud_, points_);
+  state_ = desk_.state_number();
 }
 
 /// From few points on, so that what is too slow costs little time.
 void PreviewCloud::measure(const Cloud& whole) {
   const std::int64_t most = std::min(whole.size(), kMostPoints);
-  measured_size_ = 0;  // should this fail, the next one measures again
+  state_.reset();      // cloud_ is used for it
+  measured_size_ = 0;  // should this be interrupted, the next one measures again
   depth_ = kFlattest;
   points_ = std::min(whole.size(), kFirstPoints);
   double ms = tried(whole, points_, depth_);
@@ -78,6 +98,7 @@ double PreviewCloud::tried(const Cloud& whole, std::int64_t points, int depth) {
   options.depth = depth;
   options.point_normals = PointNormals::given;
   options.keep_strays = true;
+  options.progress = [this](const Progress&) { return !services_.queue.waiting(); };
   Reconstructor reconstructor(services_.workspace);
   reconstructor.reconstruct(cloud_, options);  // takes the memory
   const auto start = std::chrono::steady_clock::now();

@@ -17,9 +17,10 @@ class PreviewCloud {
  public:
   PreviewCloud(Services& services, SceneDesk& desk) : services_(services), desk_(desk) {}
 
-  /// Measures on first use: reconstructions that take about half a second together.
+  /// What is small enough for any machine, before it was measured what this one can do.
   const Cloud& cloud();
-  /// Measures while nobody waits, so that the first move of a slider has its preview. @returns whether there was work
+  /// Measures while nobody waits: reconstructions that take about half a second together, and end as soon as something
+  /// is asked for. @returns whether there was work
   bool prepare();
   /// The scene's options at the depth of previews, with points taken as they are.
   [[nodiscard]] Options options();
@@ -30,6 +31,7 @@ class PreviewCloud {
   static constexpr int kDeepest = 7, kFlattest = 6;
 
   void refresh();
+  bool is_measured_for(std::int64_t points) const;
   /// Finds how many points of `whole`, and which depth. @param whole  without attributes
   void measure(const Cloud& whole);
   /// Takes so many points of `whole` and reconstructs them. @returns milliseconds
@@ -42,6 +44,7 @@ class PreviewCloud {
   std::int64_t points_ = 0;  ///< of cloud_, at most
   int depth_ = kFlattest;
   std::int64_t measured_size_ = 0;  ///< of the cloud that this was measured with; 0: none yet
+  bool is_final_ = false;           ///< cloud_ is as large as was measured
 };
 
 }  // namespace pointskin::studio

@@ -127,12 +127,13 @@ class Studio::Impl {
   }
 
   void later(Request request) {
-    std::string slot = Engine::find(request.what)->slot;
+    const Engine::Entry& entry = *Engine::find(request.what);
+    std::string slot = entry.slot;
     const auto final = request.body.find("final");
     const bool is_live = final == request.body.end() || !final->is_boolean() || !final->get<bool>();
     if (request.what == "options" && is_live) slot = "preview";
     const Request copy = {request.client, request.id, request.what, {}};
-    if (!queue_.push({std::move(request), std::move(slot)}))
+    if (!queue_.push({std::move(request), std::move(slot), entry.background}))
       refuse(copy, "over_limit", "too many requests wait to be answered");
   }
 

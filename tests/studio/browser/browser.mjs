@@ -63,8 +63,12 @@ export class Studio {
   /** The canvas in pixels of the page: {x, y, width, height}. */
   canvas() { return this.at('viewport').boundingBox(); }
 
-  /** The picture of the canvas. */
-  async picture() { return decode(await this.at('viewport').screenshot()); }
+  /** The picture of the canvas, when all pixels are drawn. */
+  async picture() {
+    await this.page.waitForTimeout(50);
+    await this.at('viewport').and(this.page.locator('[data-frame="whole"]')).waitFor();
+    return decode(await this.at('viewport').screenshot());
+  }
 
   /** Presses, moves through the places (pixels of the page) and releases. */
   async drag(places, { button = 'left', steps = 6, modifiers = [] } = {}) {

@@ -22,7 +22,7 @@ async function faults(page) {
   return JSON.parse(result.value);
 }
 
-/** Elements with text whose text is wider than they are, and which do not say so by an ellipsis. */
+/** Elements with text that is wider than they are and does not say so by an ellipsis; those for screen readers are 1 wide. */
 function cutOff(page) {
   return page.evaluate(() => {
     const cut = [];
@@ -33,7 +33,7 @@ function cutOff(page) {
         const hasText = [...element.childNodes].some(node => node.nodeType === 3 && node.textContent.trim() !== '');
         const wider = element.scrollWidth > element.clientWidth + 1 && style.overflowX !== 'visible';
         const isField = element.tagName === 'INPUT' && element.type !== 'range' && element.type !== 'checkbox';
-        if ((hasText || isField) && wider && element.clientWidth > 0 && style.textOverflow !== 'ellipsis')
+        if ((hasText || isField) && wider && element.clientWidth > 1 && style.textOverflow !== 'ellipsis')
           cut.push(`${element.dataset.testid ?? element.tagName} "${(element.value ?? element.textContent).slice(0, 30)}"`);
       }
     };

@@ -44,7 +44,12 @@ export class App extends LitElement {
   private active: Tool | null = null;
   private lastView: unknown = null;
 
+  /// In a task of its own, so that the one that loads the page stays short.
   override firstUpdated(): void {
+    setTimeout(() => this.start());
+  }
+
+  private start(): void {
     const store = new Store();
     const connection = new Connection(socketAddress(), async () => (await admission()) === "refused");
     const viewport = new Viewport(this.canvas);

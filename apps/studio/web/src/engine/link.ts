@@ -103,8 +103,12 @@ export class Link {
 
   private async mesh(event: MeshEvent): Promise<void> {
     const ghosts = this.ghostsWanted; // those asked for from now on belong to the new mesh
+    const detail = { version: event.version };
+    performance.mark("psk:mesh-announced", { detail });
     const decoded = await this.load(event.blob);
+    performance.mark("psk:mesh-decoded", { detail });
     if (decoded) await this.viewport.stageMesh(decoded);
+    performance.mark("psk:mesh-staged", { detail });
     if (!decoded || event.version < this.meshShown) return this.ack(event.version);
     this.meshShown = event.version;
     const begun = performance.now();

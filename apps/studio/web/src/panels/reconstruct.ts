@@ -99,8 +99,7 @@ function bars({ store }: StudioContext, trim: number) {
 function showTrim({ store, viewport }: StudioContext): void {
   const trim = store.pendingOptions?.trim;
   const { histogram } = store;
-  viewport.surface.setTrim(trim !== undefined && trim > 0 && histogram ? densityOf(histogram, trim) : -1);
-  viewport.requestRender();
+  viewport.setTrim(trim !== undefined && trim > 0 && histogram ? densityOf(histogram, trim) : -1);
 }
 
 /// The hand is on the trim: the engine sends the whole surface with its densities, once; all else the page shows itself.

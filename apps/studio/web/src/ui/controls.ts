@@ -1,5 +1,6 @@
 // Rows of controls as templates; components that use them have the style sheet of styles.ts.
 import { html, nothing } from "lit";
+import { live } from "lit/directives/live.js";
 import type { TemplateResult } from "lit";
 import { glyph } from "./icons";
 import { styled } from "./styled";
@@ -111,10 +112,10 @@ export function selectRow<T extends string>(spec: Named & { choices: Choice<T>[]
   const changed = (event: Event) => spec.change((event.target as HTMLSelectElement).value as T);
   return html`<label class="row" title=${spec.title ?? ""}>
     <span class="label">${spec.label}</span>
-    <select aria-label=${spec.label} data-testid=${spec.testid} .value=${spec.value} @change=${changed}>
+    <select aria-label=${spec.label} data-testid=${spec.testid} @change=${changed}>
       ${spec.choices.map(
         (choice) =>
-          html`<option value=${choice.value} ?selected=${choice.value === spec.value} ?disabled=${choice.disabled}>${choice.label}</option>`,
+          html`<option value=${choice.value} .selected=${live(choice.value === spec.value)} ?disabled=${choice.disabled}>${choice.label}</option>`,
       )}
     </select>
   </label>`;

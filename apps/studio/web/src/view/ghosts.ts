@@ -71,12 +71,15 @@ export class GhostLayer {
     this.dropped.uniforms["opacity"]!.value = 0.25;
   }
 
-  set(added: Decoded | null, removed: Decoded | null): void {
+  /// @returns whether this changes the picture
+  set(added: Decoded | null, removed: Decoded | null): boolean {
+    const before = this.group.children.length;
     for (const child of this.group.children) (child as THREE.Points).geometry.dispose();
     this.group.clear();
     if (added?.tint) this.showClasses(added, added.tint);
     else if (added) this.show(added, this.added);
     if (removed) this.show(removed, this.removed);
+    return before > 0 || this.group.children.length > 0;
   }
 
   /// Sizes: points in pixels at the centre, normals as a share of the scene.

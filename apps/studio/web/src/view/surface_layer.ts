@@ -46,9 +46,12 @@ export class SurfaceLayer {
     if (this.mesh && tint) this.mesh.geometry.setAttribute("tint", new THREE.BufferAttribute(tint, stride, false));
   }
 
-  /// Everything sparser than this is shown as going away; -1: nothing is.
-  setTrim(density: number): void {
-    this.material.uniforms["trimDensity"]!.value = this.decoded?.values["density"] ? density : -1;
+  /// Everything sparser than this is shown as going away; -1: nothing is. @returns whether this changes the picture
+  setTrim(density: number): boolean {
+    const uniform = this.material.uniforms["trimDensity"]!;
+    const before = uniform.value;
+    uniform.value = this.decoded?.values["density"] ? density : -1;
+    return uniform.value !== before;
   }
 
   apply(settings: ViewSettings): void {
@@ -81,6 +84,13 @@ export class SurfaceLayer {
     this.lines.visible = !!this.settings?.wireframe;
     place(this.lines, of);
     this.group.add(this.lines);
+  }
+
+  /// Whether triangles that face away may be left out, which cannot be seen of a closed surface from outside. For frames
+  /// that must be quick: from within they can.
+  hideBacks(hide: boolean): void {
+    const closed = hide && !!this.decoded?.closed && !this.material.clippingPlanes?.length;
+    this.material.side = closed ? THREE.FrontSide : THREE.DoubleSide;
   }
 
   setTheme(front: string, back: string): void {

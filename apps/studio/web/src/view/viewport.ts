@@ -6,9 +6,11 @@ import type { ViewSettings } from "../engine/store";
 import type { Pick } from "../tools/tool";
 import { ViewCamera, add, radiusOf } from "./camera";
 import { GhostLayer } from "./ghosts";
+import { contextOptions } from "./gl_context";
 import { GridLayer } from "./grid";
 import { Picker } from "./picker";
 import { PointLayer } from "./point_layer";
+import { Presenter } from "./presenter";
 import { Section } from "./section";
 import { Stager } from "./stager";
 import { SurfaceLayer } from "./surface_layer";
@@ -16,6 +18,8 @@ import { SurfaceLayer } from "./surface_layer";
 // Colours are sRGB from the style sheet to the canvas; nothing is converted on the way.
 THREE.ColorManagement.enabled = false;
 
+const kCoarse = 0.5; // share of the pixels of each side while something moves, where frames take long
+const kRest = 150; // milliseconds without a frame until one of all pixels is drawn
 const kEmptyBox: Box = { lower: [-1, -1, -1], upper: [1, 1, 1] };
 
 export class Viewport {
@@ -27,19 +31,28 @@ export class Viewport {
   readonly section = new Section();
   readonly still: boolean; // no animations
   private readonly renderer: THREE.WebGLRenderer;
+  private readonly presenter: Presenter;
   private readonly picker: Picker;
-  private readonly stager = new Stager(() => new Promise((done) => this.afterNextFrame(done)));
+  private readonly stager = new Stager(() => {
+    this.requestRender();
+    return new Promise((done) => this.afterNextFrame(done));
+  });
   private readonly grid = new GridLayer();
   private readonly perspective = new THREE.PerspectiveCamera();
   private readonly orthographic = new THREE.OrthographicCamera();
   private readonly listeners = new Set<() => void>();
   private readonly drawnListeners: (() => void)[] = [];
   private settings: ViewSettings | null = null;
-  private asked = false;
+  private asked = false; // a frame of the page is asked for
+  private stale = false; // the canvas is to be drawn in it
   private flight = 0;
+  private refining = 0; // timer
+  private pixelRatio = 0; // of the screen, when the canvas got its size
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
+    const { software, options } = contextOptions();
+    this.renderer = new THREE.WebGLRenderer({ canvas, ...options });
+    this.presenter = new Presenter(this.renderer, software);
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // shaders write sRGB themselves
     this.renderer.setClearColor(0x000000, 0);
     this.renderer.localClippingEnabled = true;
@@ -79,14 +92,19 @@ export class Viewport {
 
   /// Part of the points; `from` = 0 replaces all that there were.
   setPoints(decoded: Decoded | null, from = 0): void {
+    const before = this.points.group.visible;
     this.points.set(decoded, from);
-    this.contentChanged();
+    if (before || this.points.group.visible) this.contentChanged();
   }
 
   /// Points that an operation would add and take away; null: none.
   setGhosts(added: Decoded | null, removed: Decoded | null = null): void {
-    this.ghosts.set(added, removed);
-    this.requestRender();
+    if (this.ghosts.set(added, removed)) this.requestRender();
+  }
+
+  /// Vertices sparser than this are shown as going away; -1: none.
+  setTrim(density: number): void {
+    if (this.surface.setTrim(density)) this.requestRender();
   }
 
   /// Class of each vertex of the mesh on the screen (colours kTints); null: that of the blob.
@@ -178,12 +196,36 @@ export class Viewport {
   // ---- drawing ----
 
   requestRender(): void {
+    this.stale = true;
+    this.askFrame();
+  }
+
+  private askFrame(): void {
     if (this.asked) return;
     this.asked = true;
     requestAnimationFrame(() => {
       this.asked = false;
-      this.render();
+      if (!this.presenter.busy) this.nextFrame(); // else when that one is shown
     });
+  }
+
+  private nextFrame(): void {
+    const waiting = this.drawnListeners.splice(0);
+    const shown = () => {
+      for (const listener of waiting) listener();
+      if (this.stale || this.drawnListeners.length > 0) this.askFrame();
+    };
+    if (this.stale) this.render(this.presenter.slow ? kCoarse : 1, shown);
+    else shown();
+  }
+
+  /// All pixels, once nothing has moved for a moment.
+  private refineSoon(): void {
+    clearTimeout(this.refining);
+    this.refining = window.setTimeout(() => {
+      if (this.presenter.busy || this.asked) this.refineSoon();
+      else this.render(1, () => (this.stale || this.drawnListeners.length > 0) && this.askFrame());
+    }, kRest);
   }
 
   /// Calls after each frame, for overlays. @returns a function that ends it
@@ -192,15 +234,17 @@ export class Viewport {
     return () => this.listeners.delete(listener);
   }
 
-  /// Calls once, after the next frame is drawn.
+  /// Calls once, when all that was asked for so far is drawn. Asks for no drawing itself.
   afterNextFrame(listener: () => void): void {
     this.drawnListeners.push(listener);
-    this.requestRender();
+    this.askFrame();
   }
 
   /// The present view as PNG, over the given colours from top to bottom.
   async picture(top: string, bottom: string): Promise<Blob> {
-    this.render();
+    this.prepareFrame(1);
+    if (this.renderer.getPixelRatio() !== this.pixelRatio) this.renderer.setPixelRatio(this.pixelRatio);
+    this.renderer.render(this.scene, this.camera);
     const copy = document.createElement("canvas");
     [copy.width, copy.height] = [this.canvas.width, this.canvas.height];
     const context = copy.getContext("2d")!;
@@ -232,7 +276,8 @@ export class Viewport {
     const { clientWidth, clientHeight } = this.canvas;
     if (!clientWidth || !clientHeight) return;
     [this.view.width, this.view.height] = [clientWidth, clientHeight];
-    this.renderer.setPixelRatio(window.devicePixelRatio);
+    this.pixelRatio = window.devicePixelRatio;
+    this.renderer.setPixelRatio(this.pixelRatio);
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.picker.invalidate();
     this.requestRender();
@@ -249,14 +294,24 @@ export class Viewport {
     camera.matrixWorld.copy(camera.matrix);
   }
 
-  private render(): void {
-    if (Math.abs(this.renderer.getPixelRatio() - window.devicePixelRatio) > 1e-6) this.resize();
+  private prepareFrame(share: number): void {
+    this.stale = false;
+    if (this.pixelRatio !== window.devicePixelRatio) this.resize();
     this.updateCamera();
     this.picker.invalidate();
-    this.points.setReference(this.view.distance, window.devicePixelRatio);
-    this.ghosts.setReference(this.view.distance, window.devicePixelRatio, radiusOf(this.box));
-    this.renderer.render(this.scene, this.camera);
-    for (const listener of this.listeners) listener();
-    for (const listener of this.drawnListeners.splice(0)) listener();
+    this.surface.hideBacks(share < 1);
+    this.points.setReference(this.view.distance, share * window.devicePixelRatio);
+    this.ghosts.setReference(this.view.distance, share * window.devicePixelRatio, radiusOf(this.box));
+  }
+
+  /// @param share  of the pixels of each side; under 1 a frame of all of them follows
+  private render(share: number, shown: () => void): void {
+    this.prepareFrame(share);
+    this.presenter.draw(this.scene, this.camera, share, () => {
+      for (const listener of this.listeners) listener();
+      this.canvas.dataset["frame"] = share < 1 ? "coarse" : "whole";
+      shown();
+      if (share < 1) this.refineSoon();
+    });
   }
 }

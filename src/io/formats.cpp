@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
-#include <ranges>
 #include <utility>
 
 #include "io/ply_header.hpp"
@@ -65,9 +64,11 @@ const Format* find_extension(Formats table, const std::string& extension) {
 
 /// For stdin and names without an extension.
 const Format* guess(Formats table, std::string_view bytes, bool want_mesh) {
-  return find(std::ranges::reverse_view(table), [&](const Format& f) {
+  const auto is = [&](const Format& f) {
     return f.run.looks_like != nullptr && (f.info.reads_meshes || !want_mesh) && f.run.looks_like(bytes, want_mesh);
-  });
+  };
+  const auto last = std::find_if(table.rbegin(), table.rend(), is);
+  return last == table.rend() ? nullptr : &*last;
 }
 
 const Format& detect(Formats table, const Source& source, bool want_mesh) {

@@ -75,7 +75,10 @@ void Engine::start() {
 }
 
 void Engine::run(const JobQueue::Job& job) {
+  constexpr std::chrono::milliseconds kDrawing{600};
   const Entry& entry = *find(job.request.what);
+  if (job.background)
+    services_.audience.wait_until_drawn(teller_.version(), kDrawing, [this] { return services_.queue.waiting(); });
   try {
     reply(job.request, entry.handle(*this, job.request));
   } catch (const Error& error) {

@@ -31,6 +31,9 @@ class MeshTeller {
   /// @returns its version; 0 if no page was told
   std::uint64_t show(const Mesh& mesh, const MeshFacts& facts);
 
+  /// Of the newest mesh or frame.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+
   /// A frame of water or of a sequence. @param facts  what its event says beside the blob
   /// @returns false if no page keeps up; nothing was encoded then
   bool show_frame(const Mesh& mesh, Json facts);

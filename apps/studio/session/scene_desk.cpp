@@ -15,9 +15,6 @@ namespace {
 /// Larger meshes are not measured: it would take longer than to make them.
 constexpr std::size_t kMostMeasured = 12'000'000;
 
-/// What follows a change waits so long at most for pages to draw it.
-constexpr std::chrono::milliseconds kDrawing{600};
-
 using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point start) {
@@ -179,20 +176,21 @@ void SceneDesk::changed(Json ms) {
   points_are_old_ = true;
   points_.count = scene_->done() == 0 ? base_points_ : scene_->record(scene_->done() - 1).points;
   points_.has_normals = !scene_->mesh().triangles.empty();
-  const std::uint64_t version = show_mesh(std::move(ms));
-  tell_state();
-  services_.audience.wait_until_drawn(version, kDrawing, [this] { return services_.queue.waiting(); });
+  show_mesh(std::move(ms));
   measure_surface();
   tell_state();
 }
 
-std::uint64_t SceneDesk::show_mesh(Json ms) {
+void SceneDesk::show_mesh(Json ms) {
   const Mesh& mesh = present().mesh();
   MeshFacts facts;
   facts.depth = scene_->options().depth;
   facts.full_triangles = static_cast<std::int64_t>(mesh.triangles.size());
   facts.ms = std::move(ms);
-  if (facts.full_triangles <= kMostTriangles) return teller_.show(mesh, facts);
+  if (facts.full_triangles <= kMostTriangles) {
+    teller_.show(mesh, facts);
+    return;
+  }
   const Cloud cloud = scene_->cloud();
   Options options = scene_->options();
   options.point_normals = PointNormals::given;
@@ -204,7 +202,7 @@ std::uint64_t SceneDesk::show_mesh(Json ms) {
     reconstructor.reconstruct(cloud, options, coarse);
   } while (static_cast<std::int64_t>(coarse.triangles.size()) > kMostTriangles && options.depth > 1);
   facts.depth = options.depth;
-  return teller_.show(coarse, facts);
+  teller_.show(coarse, facts);
 }
 
 void SceneDesk::measure_surface() {

@@ -50,8 +50,8 @@ class SceneDesk {
   /// The event `state`.
   [[nodiscard]] Json state() const;
   void tell_state() const;
-  /// Shows the present mesh, as after an operation. @returns its version
-  std::uint64_t show_mesh(Json ms = Json::object());
+  /// Shows the present mesh, as after an operation.
+  void show_mesh(Json ms = Json::object());
   /// Work that may wait until nobody does: the points. @returns whether there was some
   bool work_ahead();
 

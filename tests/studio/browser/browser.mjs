@@ -19,6 +19,13 @@ export function noBrowser() {
 
 const flags = ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-background-networking', '--mute-audio'];
 
+/** The picture of a page's canvas, when all that was asked for is drawn, with all its pixels. */
+export async function pictureOf(page) {
+  const canvas = page.getByTestId('viewport');
+  await canvas.and(page.locator('[data-frame="whole"]')).waitFor();
+  return decode(await canvas.screenshot());
+}
+
 /** A program, a page on it and a client that hears what the server says. */
 export class Studio {
   /**
@@ -63,11 +70,9 @@ export class Studio {
   /** The canvas in pixels of the page: {x, y, width, height}. */
   canvas() { return this.at('viewport').boundingBox(); }
 
-  /** The picture of the canvas, when all pixels are drawn. */
-  async picture() {
-    await this.page.waitForTimeout(50);
-    await this.at('viewport').and(this.page.locator('[data-frame="whole"]')).waitFor();
-    return decode(await this.at('viewport').screenshot());
+  /** The picture of the canvas; of one that moves all the time, as it is now. */
+  async picture({ moves = false } = {}) {
+    return moves ? decode(await this.at('viewport').screenshot()) : pictureOf(this.page);
   }
 
   /** Presses, moves through the places (pixels of the page) and releases. */

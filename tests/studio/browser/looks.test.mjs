@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import test from 'node:test';
 import { panel } from './actions.mjs';
-import { noBrowser, Studio } from './browser.mjs';
+import { noBrowser, pictureOf, Studio } from './browser.mjs';
 import { require } from './packages.mjs';
 
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
@@ -54,7 +54,7 @@ for (const [theme, width, height, ratio] of [['dark', 1280, 800, 1], ['light', 1
       await studio.page.waitForTimeout(250);
       for (const fault of await faults(studio.page)) found.push(`${what}: ${fault}`);
       for (const text of await cutOff(studio.page)) found.push(`${what}: cut off: ${text}`);
-      if (pictures) await studio.page.screenshot({ path: join(pictures, `${theme}_${width}_${what}.png`) });
+      if (pictures && await pictureOf(studio.page)) await studio.page.screenshot({ path: join(pictures, `${theme}_${width}_${what}.png`) });
     };
     try {
       await look('empty');

@@ -2,13 +2,11 @@
 // its session, the tabs say that it asks for its new address, and go on by themselves when one of them has opened it.
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { noBrowser, Studio } from './browser.mjs';
+import { noBrowser, pictureOf, Studio } from './browser.mjs';
 import { Client } from './client.mjs';
 import { Program } from './program.mjs';
-import { changedBox, decode } from './pixels.mjs';
+import { changedBox } from './pixels.mjs';
 import { ghostsOf, openShape, step } from './steps.mjs';
-
-const picture = async page => decode(await page.getByTestId('viewport').screenshot());
 
 /** Waits until the page has drawn that version of the mesh. */
 const drawn = (page, version) => page.waitForFunction(least => performance.getEntriesByName('psk:mesh-drawn')
@@ -30,7 +28,7 @@ async function difference(first, second) {
     await page.keyboard.press('f');
     await page.mouse.move(640, 790);
     await page.getByTestId('chip').waitFor({ state: 'hidden', timeout: 30_000 });
-    pictures.push(await picture(page));
+    pictures.push(await pictureOf(page));
   }
   return changedBox(...pictures)?.pixels ?? 0;
 }

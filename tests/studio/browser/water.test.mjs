@@ -17,7 +17,7 @@ test('live water is pushed by the mouse', { skip: noBrowser(), timeout: 240_000 
     await studio.at('fluid-start').click();
     await studio.client.event('frame', frame => frame.index >= 3, { timeout: 120_000 });
     await studio.page.waitForTimeout(1000);
-    assert.ok(colours(await studio.picture()) > 20, 'the water is seen');
+    assert.ok(colours(await studio.picture({ moves: true })) > 20, 'the water is seen');
     const { x, y, width, height } = await studio.canvas();
     const calm = frames(studio).at(-1).max_speed;
     const { mouse } = studio.page;

@@ -197,6 +197,7 @@ export class Viewport {
 
   requestRender(): void {
     this.stale = true;
+    this.canvas.dataset["frame"] = "asked";
     this.askFrame();
   }
 
@@ -309,7 +310,7 @@ export class Viewport {
     this.prepareFrame(share);
     this.presenter.draw(this.scene, this.camera, share, () => {
       for (const listener of this.listeners) listener();
-      this.canvas.dataset["frame"] = share < 1 ? "coarse" : "whole";
+      if (!this.stale) this.canvas.dataset["frame"] = share < 1 ? "coarse" : "whole";
       shown();
       if (share < 1) this.refineSoon();
     });

@@ -29,7 +29,7 @@ function pageMemory() {
   return most;
 }
 
-const made = spawnSync(generator, ['knot', '-o', cloud, '--points', String(points)], { encoding: 'utf8' });
+const made = spawnSync(generator, ['sphere', '-o', cloud, '--points', String(points)], { encoding: 'utf8' });
 if (made.status !== 0) throw new Error(made.stderr);
 const alone = spawnSync('/usr/bin/env', ['bash', '-c',
   `"$0" reconstruct "$1" --depth ${depth} -o "$2" --report "$3" -q`, program, cloud, join(folder, 'alone.ply'), join(folder, 'alone.json')],

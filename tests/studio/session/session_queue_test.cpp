@@ -25,7 +25,9 @@ class Listener : public studio::Client {
 
 class SessionQueue : public testing::Test {
  protected:
-  bool push(std::int64_t id, const std::string& slot) { return queue.push({{listener, id, "x", {}}, slot}); }
+  bool push(std::int64_t id, const std::string& slot, bool background = false) {
+    return queue.push({{listener, id, "x", {}}, slot, background});
+  }
   std::int64_t next() {
     const std::optional<JobQueue::Job> job = queue.next(0ms);
     return job ? job->request.id : -1;
@@ -84,6 +86,37 @@ TEST_F(SessionQueue, WhatCountsRunsToItsEndUnlessItIsCancelled) {
   queue.finished();
   EXPECT_EQ(next(), 2);
   EXPECT_FALSE(queue.should_stop()) << "the next one is not cancelled";
+}
+
+TEST_F(SessionQueue, TheBackgroundWaitsForAllOthersAndStopsForThem) {
+  push(1, "measure", true);
+  EXPECT_FALSE(queue.waiting()) << "for nothing that a person asked for";
+  push(2, "preview");
+  EXPECT_TRUE(queue.waiting());
+  EXPECT_EQ(next(), 2);
+  EXPECT_FALSE(queue.should_stop()) << "a preview does not make way for the background";
+  EXPECT_EQ(next(), 1);
+  push(3, "estimate", true);
+  EXPECT_FALSE(queue.should_stop()) << "those of the background wait for each other";
+  push(4, "preview");
+  EXPECT_TRUE(queue.should_stop());
+}
+
+TEST_F(SessionQueue, WhatTheBackgroundBeganIsDoneLater) {
+  push(1, "measure", true);
+  const std::optional<JobQueue::Job> job = queue.next(0ms);
+  ASSERT_TRUE(job);
+  push(2, "");
+  EXPECT_TRUE(queue.put_back(*job));
+  queue.finished();
+  EXPECT_EQ(next(), 2);
+  EXPECT_EQ(next(), 1);
+  push(5, "measure", true);
+  EXPECT_FALSE(queue.put_back(*job)) << "a newer one waits";
+  EXPECT_EQ(next(), 5);
+  queue.cancel();
+  EXPECT_FALSE(queue.put_back(*job)) << "it was cancelled";
+  EXPECT_TRUE(listener->messages.empty());
 }
 
 TEST_F(SessionQueue, TooManyAreNotTaken) {

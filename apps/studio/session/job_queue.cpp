@@ -55,10 +55,9 @@ bool JobQueue::should_stop() const {
   const std::lock_guard lock(mutex_);
   if (closed_ || cancelled_) return true;
   if (!running_ || running_->empty()) return false;
-  return std::any_of(jobs_.begin(), jobs_.end(),
-                     [this](const Job& job) {
-                       return job.slot.empty() || job.slot == *running_ || (runs_background_ && !job.background);
-                     });
+  return std::any_of(jobs_.begin(), jobs_.end(), [this](const Job& job) {
+    return job.slot.empty() || job.slot == *running_ || (runs_background_ && !job.background);
+  });
 }
 
 bool JobQueue::waiting() const {

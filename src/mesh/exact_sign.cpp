@@ -90,7 +90,9 @@ struct WholeDifferences {
 
   [[nodiscard]] int sign_of_determinant() const {
     const auto& [u, v, w] = rows;
-    const auto minor = [&](std::size_t i, std::size_t j) { return Whole{u[i]} * v[j] - Whole{u[j]} * v[i]; };
+    const auto minor = [&u = u, &v = v](std::size_t i, std::size_t j) {
+      return Whole{u[i]} * v[j] - Whole{u[j]} * v[i];
+    };
     const Whole det = w[0] * minor(1, 2) + w[1] * minor(2, 0) + w[2] * minor(0, 1);
     return (det > 0) - (det < 0);
   }

@@ -35,6 +35,7 @@ std::vector<float> floats_of(const AttributeValues& values) {
 }  // namespace
 
 Mesh Measures::reconstructed(Options options) const {
+  options.depth = desk_.shown_depth();
   options.point_normals = PointNormals::given;
   options.keep_strays = true;
   ProgressTeller progress(services_, "measure");
@@ -56,7 +57,7 @@ const Mesh& Measures::annotated() {
 
 void Measures::show(const Mesh& mesh, wire::Values values) {
   MeshFacts facts;
-  facts.depth = desk_.present().options().depth;
+  facts.depth = desk_.shown_depth();
   facts.full_triangles = static_cast<std::int64_t>(desk_.present().mesh().triangles.size());
   facts.values.push_back(std::move(values));
   teller_.show(mesh, facts);
@@ -77,7 +78,7 @@ Json Measures::compare(const scene::SolidSource& reference, const std::string& n
   constexpr std::int64_t kSamples = 200'000;
   const CompareOptions options{.samples = kSamples, .threads = threads};
   const MeshComparison comparison = pointskin::compare(mesh, other, options);
-  show(mesh, {"distance", to_floats(distances(mesh, other, {.threads = threads}))});
+  show(desk_.shown(), {"distance", to_floats(distances(desk_.shown(), other, {.threads = threads}))});
   Json table = comparison_json(comparison);
   table["reference"] = name;
   table["tau"] = options.tau;
@@ -85,10 +86,10 @@ Json Measures::compare(const scene::SolidSource& reference, const std::string& n
 }
 
 Json Measures::values(const std::string& name) {
-  const Mesh& present = desk_.present().mesh();
   if (name == "distance") {
+    const Mesh& mesh = desk_.shown();
     const Cloud cloud = desk_.present().cloud();
-    show(present, {name, to_floats(distances(present, cloud, {.threads = services_.device.threads}))});
+    show(mesh, {name, to_floats(distances(mesh, cloud, {.threads = services_.device.threads}))});
     return Json::object();
   }
   if (name == "density" || name == "weakness") {

@@ -14,6 +14,7 @@
 
 namespace pointskin::studio {
 
+/// Of the surface that pages are shown: of a very large one, of a coarser one. The comparison's table is of the whole.
 /// Functions may throw Error. What takes a reconstruction is kept until the scene changes. Of the engine's thread.
 class Measures {
  public:
@@ -30,7 +31,7 @@ class Measures {
   Json pick(const Vec3d& origin, const Vec3d& direction) const;
 
  private:
-  /// The scene's surface as it is, with what `options` add to its vertices. Not trimmed where densities are asked for.
+  /// The scene's surface as it is shown, with what `options` add to its vertices.
   Mesh reconstructed(Options options) const;
   /// With density and weakness, made once a state.
   const Mesh& annotated();

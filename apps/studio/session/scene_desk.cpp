@@ -1,6 +1,8 @@
 #include "scene_desk.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <utility>
 
 #include <pointskin/camera.hpp>
@@ -34,6 +36,13 @@ class Holding {
   ProgressTeller* before_;
 };
 
+/// By how many depths a surface of so many triangles is too fine: every depth has a quarter of the next one's.
+int levels_above(std::int64_t most, std::int64_t triangles) {
+  int levels = 0;
+  for (; triangles > most; triangles /= 4) ++levels;
+  return levels;
+}
+
 }  // namespace
 
 SceneDesk::Points SceneDesk::facts_of(const Cloud& cloud) {
@@ -52,7 +61,7 @@ SceneDesk::Opened SceneDesk::open(const scene::Document& document) {
                          scene::MissingNormals::allowed, facts);
   opened.notices = std::move(facts.notices);
   opened.points = facts_of(base);
-  teller_.show_points(base, kMostPoints);  // what was read is seen at once
+  teller_.show_points(base, services_.most_shown);  // what was read is seen at once
   opened.dropped = facts.not_finite + facts.no_normal;
   scene::SceneOptions options;
   options.reconstruction = document.options;
@@ -182,27 +191,30 @@ void SceneDesk::changed(Json ms) {
 }
 
 void SceneDesk::show_mesh(Json ms) {
-  const Mesh& mesh = present().mesh();
   MeshFacts facts;
-  facts.depth = scene_->options().depth;
-  facts.full_triangles = static_cast<std::int64_t>(mesh.triangles.size());
+  facts.full_triangles = static_cast<std::int64_t>(present().mesh().triangles.size());
   facts.ms = std::move(ms);
-  if (facts.full_triangles <= kMostTriangles) {
-    teller_.show(mesh, facts);
-    return;
-  }
+  coarse_.reset();
+  if (facts.full_triangles > services_.most_shown) make_coarse();
+  facts.depth = shown_depth();
+  teller_.show(shown(), facts);
+}
+
+void SceneDesk::make_coarse() {
   const Cloud cloud = scene_->cloud();
   Options options = scene_->options();
   options.point_normals = PointNormals::given;
   options.keep_strays = true;
   Reconstructor reconstructor(services_.workspace);
   Mesh coarse;
+  auto triangles = static_cast<std::int64_t>(scene_->mesh().triangles.size());
   do {
-    --options.depth;
+    options.depth = std::max(1, options.depth - levels_above(services_.most_shown, triangles));
     reconstructor.reconstruct(cloud, options, coarse);
-  } while (static_cast<std::int64_t>(coarse.triangles.size()) > kMostTriangles && options.depth > 1);
-  facts.depth = options.depth;
-  teller_.show(coarse, facts);
+    triangles = static_cast<std::int64_t>(coarse.triangles.size());
+  } while (triangles > services_.most_shown && options.depth > 1);
+  coarse_ = std::move(coarse);
+  coarse_depth_ = options.depth;
 }
 
 void SceneDesk::measure_surface() {
@@ -218,7 +230,7 @@ bool SceneDesk::work_ahead() {
   points_are_old_ = false;
   const Cloud cloud = scene_->cloud();
   points_ = facts_of(cloud);
-  teller_.show_points(cloud, kMostPoints);
+  teller_.show_points(cloud, services_.most_shown);
   tell_state();
   return true;
 }

@@ -24,9 +24,6 @@ namespace pointskin::studio {
 /// All functions but the constructor may throw Error; the scene then stays as it was. Of the engine's thread.
 class SceneDesk {
  public:
-  /// A mesh with more triangles is shown at a lower depth, a cloud with more points in part.
-  static constexpr std::int64_t kMostTriangles = 5'000'000, kMostPoints = 5'000'000;
-
   SceneDesk(Services& services, MeshTeller& teller) : services_(services), teller_(teller) {}
 
   /// Begins a scene and its journal. What the document says is done is done.
@@ -50,8 +47,11 @@ class SceneDesk {
   /// The event `state`.
   [[nodiscard]] Json state() const;
   void tell_state() const;
-  /// Shows the present mesh, as after an operation.
+  /// Shows the present mesh, as after an operation; at a lower depth if it has too many triangles.
   void show_mesh(Json ms = Json::object());
+  /// The mesh that pages are shown, and its depth.
+  [[nodiscard]] const Mesh& shown() const { return coarse_ ? *coarse_ : present().mesh(); }
+  [[nodiscard]] int shown_depth() const { return coarse_ ? coarse_depth_ : present().options().depth; }
   /// Work that may wait until nobody does: the points. @returns whether there was some
   bool work_ahead();
 
@@ -82,6 +82,7 @@ class SceneDesk {
   void take(Opened opened, const scene::Document& document);
   void changed(Json ms);
   [[nodiscard]] const MeshReport& surface() const;
+  void make_coarse();
   void measure_surface();
   [[nodiscard]] Json entry(std::size_t i) const;
   [[nodiscard]] Json record_json(std::size_t i) const;
@@ -96,6 +97,8 @@ class SceneDesk {
   scene::Base base_;
   Options first_options_;
   std::int64_t dropped_ = 0;
+  std::optional<Mesh> coarse_;  ///< what is shown of a surface with too many triangles
+  int coarse_depth_ = 0;
   std::vector<std::optional<MeshReport>> surfaces_;  ///< of every state that was seen, by the operations done
   Points points_;                                    ///< where points_are_old_, the box is that of the state before
   std::int64_t base_points_ = 0;

@@ -1,6 +1,7 @@
 // What all parts of the engine work with.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include <pointskin/device.hpp>
@@ -21,6 +22,7 @@ struct Services {
   JobQueue& queue;
   const Roots& roots;            ///< where files may be read and written
   std::filesystem::path folder;  ///< of the program's own files: journals, uploads
+  std::int64_t most_shown = 0;   ///< triangles, and points, that pages are shown at most
 };
 
 }  // namespace pointskin::studio

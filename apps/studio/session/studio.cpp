@@ -140,7 +140,7 @@ class Studio::Impl {
   void work(std::promise<void>& ready) {
     try {
       Services services{options_.device, Workspace(options_.device), audience_, blobs_, queue_, roots_,
-                        options_.folder};
+                        options_.folder, options_.most_shown};
       Engine engine(options_, std::move(services), exchange_);
       begin(engine, ready);
       loop(engine);

@@ -25,6 +25,8 @@ struct StudioOptions {
   Options reconstruction{};
   std::string version{};        ///< of the program, for pages
   std::int64_t max_upload = 0;  ///< bytes, for pages
+  /// Triangles and points that pages are shown: larger surfaces are shown at a lower depth, larger clouds in part.
+  std::int64_t most_shown = 5'000'000;
 };
 
 /// The journals' folder of this user: $XDG_STATE_HOME/pointskin, or ~/.local/state/pointskin.

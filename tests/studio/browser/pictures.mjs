@@ -2,7 +2,7 @@
 //
 //     POINTSKIN_PROGRAM=build/bin/pointskin node tests/studio/browser/pictures.mjs docs/pictures [NAME...]
 import { join } from 'node:path';
-import { Studio } from './browser.mjs';
+import { pictureOf, Studio } from './browser.mjs';
 import { frontView } from './projection.mjs';
 
 const [folder, ...wanted] = process.argv.slice(2);
@@ -125,7 +125,10 @@ for (const [name, show] of Object.entries(scenes)) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   const opened = await hand();
   try {
-    await show(opened, what => opened.studio.page.screenshot({ path: join(folder, `studio_${what}.png`) }));
+    await show(opened, async what => {
+      await pictureOf(opened.studio.page);  // waits for a whole frame
+      await opened.studio.page.screenshot({ path: join(folder, `studio_${what}.png`) });
+    });
     console.log(name);
   } catch (error) {
     console.log(`${name}: ${error.message.split('\n')[0]}`);

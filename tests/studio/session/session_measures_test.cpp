@@ -166,6 +166,33 @@ TEST_F(SessionMeasures, ARayFindsThePlaceUnderThePointer) {
       << "through the hole";
 }
 
+TEST_F(SessionMeasures, ALargeSurfaceIsShownCoarserAndSavedInFull) {
+  studio::StudioOptions options;
+  options.most_shown = 5'000;
+  start(std::move(options));
+  open_shape("sphere", 40'000, 7);
+  const Json mesh = page().last("mesh");
+  const auto triangles = mesh.at("triangles").get<std::int64_t>(),
+             whole = mesh.at("full_triangles").get<std::int64_t>();
+  EXPECT_GT(whole, 30'000);
+  EXPECT_LE(triangles, 5'000);
+  EXPECT_GT(triangles, 1'000);
+  EXPECT_EQ(mesh.at("depth"), 4) << "at depth 5 there are too many";
+  EXPECT_EQ(blob(mesh.at("blob")).header().at("triangles"), triangles);
+  const Json points = page().last("points");
+  EXPECT_EQ(points.at("total"), 40'000);
+  EXPECT_EQ(points.at("from").get<int>() + points.at("count").get<int>(), 5'000);
+
+  (void)page().ask("save", {{"what", "mesh"}, {"name", "whole.ply"}});
+  EXPECT_EQ(static_cast<std::int64_t>(read_mesh(file("whole.ply")).triangles.size()), whole);
+
+  (void)page().ask("values", {{"name", "distance"}});
+  EXPECT_EQ(static_cast<std::int64_t>(shown_values("distance").size()), mesh.at("vertices"));
+  (void)page().ask("values", {{"name", "density"}});
+  EXPECT_EQ(page().last("mesh").at("triangles"), triangles);
+  EXPECT_EQ(page().last("mesh").at("depth"), 4);
+}
+
 TEST_F(SessionMeasures, WhatWasMeasuredDoesNotOutliveTheScene) {
   open_shape("sphere");
   const Json before = page().ask("histogram");

@@ -126,8 +126,9 @@ TEST(TypesOfPly, RejectTextThatTheyDoNotHold) {
                                                                     {"int", {"-2147483649", "2147483648"}},
                                                                     {"uint", {"-1", "4294967296"}},
                                                                     {"int", {"0.5", "nan", "inf", "1e300"}}};
-  for (const auto& [type, values] : cases)
+  for (const auto& [name, values] : cases)
     for (const std::string& value : values) {
+      const std::string type = name;
       const std::string head =
           "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty ";
       const std::string story = story_of(ErrorCode::invalid_input, [&] {

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { backOff } from "../src/engine/connection";
-import type { Histogram, SceneState, StepRecord } from "../src/engine/protocol";
-import { Store } from "../src/engine/store";
+import type { Histogram, MeshEvent, SceneState, StepRecord } from "../src/engine/protocol";
+import { isCoarser, Store } from "../src/engine/store";
 import { densityOf, placeOf } from "../src/panels/histogram";
 import { chipText } from "../src/app/chip";
 import { nextFrame } from "../src/app/sequence";
@@ -24,6 +24,13 @@ test("many updates in a task make one change", async () => {
   store.update();
   await Promise.resolve();
   assert.equal(changes, 2);
+});
+
+test("a surface of fewer triangles than there are is a coarser one, unless it is a preview", () => {
+  const mesh = { preview: false, triangles: 100, full_triangles: 400 } as MeshEvent;
+  assert.equal(isCoarser(mesh), true);
+  assert.equal(isCoarser({ ...mesh, preview: true }), false);
+  assert.equal(isCoarser({ ...mesh, triangles: 400 }), false);
 });
 
 test("options being dragged lie over those applied", () => {

@@ -1,6 +1,7 @@
 // The bar at the bottom: what runs, what there is, what each stage took, on which device.
 import { css, html, nothing } from "lit";
 import { customElement } from "lit/decorators.js";
+import { isCoarser } from "../engine/store";
 import { count, duration, percent } from "../ui/format";
 import { styled } from "../ui/styled";
 import { base } from "../ui/styles";
@@ -154,6 +155,8 @@ export class StatusBar extends Part {
     const topology = scene.topology ?? undefined;
     return html`${this.fact("points", scene.points, "status-points")}
     ${this.fact("triangles", mesh?.preview ? mesh.triangles : scene.triangles, "status-triangles")}
+    ${mesh && isCoarser(mesh) ? html`<span class="fact coarser" title="Too many to draw: a surface of less depth is shown, the whole one is saved"
+      ><b data-testid="status-shown">${count(mesh.triangles)}</b> shown</span>` : nothing}
     ${this.fact("genus", topology?.genus, "status-genus")} ${this.fact("components", topology?.components, "status-components")}`;
   }
 

@@ -22,6 +22,11 @@ export type ShowMode = "points" | "mesh" | "both";
 export type Level = "info" | "warning" | "error";
 export type PanelId = "reconstruct" | "points" | "surface" | "problems" | "history";
 
+/// Whether the page is shown less than there is: a surface with too many triangles to draw, at a lower depth.
+export function isCoarser(mesh: MeshEvent): boolean {
+  return !mesh.preview && mesh.triangles < mesh.full_triangles;
+}
+
 export interface Notice {
   id: number;
   level: Level;

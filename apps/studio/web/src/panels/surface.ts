@@ -3,7 +3,7 @@ import { css, html, nothing } from "lit";
 import type { StudioContext } from "../app/context";
 import { tell } from "../app/context";
 import type { Distances, Vec3 } from "../engine/protocol";
-import type { ColourMode } from "../engine/store";
+import { type ColourMode, isCoarser } from "../engine/store";
 import { button, facts, segmentsRow, selectRow, slider, switchRow } from "../ui/controls";
 import { bytes, count, measure } from "../ui/format";
 
@@ -115,13 +115,13 @@ export function surfacePanel(context: StudioContext) {
   const { mesh, view, scene } = store;
   if (!scene || !mesh) return html`<p class="hint">No surface yet.</p>`;
   const { topology, surface } = scene;
-  const shown = mesh.triangles < mesh.full_triangles;
+  const coarser = isCoarser(mesh);
   const tight = surface?.watertight ?? context.viewport.surface.decoded?.closed;
   return html`<h3>Measures</h3>
     ${facts([
       ["Triangles", count(scene.triangles)],
       ["Vertices", surface ? count(surface.vertices) : "–"],
-      ["Depth", mesh.depth],
+      ["Depth", coarser ? `${scene.options.depth ?? "–"}, shown at ${mesh.depth}` : mesh.depth],
       ["Genus", topology ? count(topology.genus) : "–"],
       ["Components", topology ? count(topology.components) : "–"],
       ["Euler number", topology ? topology.euler.toString().replace("-", "−") : "–"],
@@ -130,7 +130,7 @@ export function surfacePanel(context: StudioContext) {
       ["Volume", surface && surface.closed ? measure(surface.volume) : "–"],
       ["Sent", bytes(mesh.bytes)],
     ])}
-    ${shown ? html`<p class="hint" data-testid="shown-coarser">Shown with ${count(mesh.triangles)} triangles; saving writes all.</p>` : nothing}
+    ${coarser ? html`<p class="hint" data-testid="shown-coarser">Shown with ${count(mesh.triangles)} triangles; saving writes all.</p>` : nothing}
     <h3>Drawing</h3>
     ${selectRow({
       label: "Colour by",

@@ -2,10 +2,10 @@
 // beside that of `pointskin reconstruct`, and of the page, and whether a surface that is shown coarser is saved in full.
 //
 //     POINTSKIN_PROGRAM=build/bin/pointskin POINTSKIN_GENERATE=build/bin/pointskin_generate \
-//       node bench/studio/big.mjs [POINTS] [DEPTH] [SHAPE]
+//       node bench/studio/big.mjs [POINTS] [DEPTH] [SHAPE] [STROKES]
 //
-// 12000000 11 gyroid has 45 million triangles. Needs about 12 GB of memory, 20 for that, and 3 GB of disk in the folder for
-// temporary files.
+// 8500000 11 gyroid 0 has more than 40 million triangles. Needs about 12 GB of memory, 20 for that, and 3 GB of disk in the
+// folder for temporary files.
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { spawnSync } from 'node:child_process';
@@ -16,6 +16,7 @@ import { frontView } from '../../tests/studio/browser/projection.mjs';
 const points = Number(process.argv[2] ?? 20_000_000);
 const depth = Number(process.argv[3] ?? 9);
 const shape = process.argv[4] ?? 'sphere';
+const strokes = Number(process.argv[5] ?? 6);
 const folder = temporaryFolder();
 const cloud = join(folder, 'big.ply');
 const say = (what, value) => console.log(`${what.padEnd(52)} ${value}`);
@@ -55,15 +56,16 @@ try {
   if (mesh.triangles < mesh.full_triangles) say('  the page says', `${await studio.at('status-triangles').innerText()} triangles, ${await studio.at('status-shown').innerText()} shown`);
   const { scene } = await studio.client.request('hello');
   const at = await frontView(studio, scene.box);
-  await studio.press('b');
-  await studio.drag([at([-0.1, 0.1, 0]), at([0.1, 0.12, 0])]);
-  await studio.page.waitForTimeout(3000);
-  const before = Date.now();
-  const from = studio.client.events.length;
-  await studio.press('Enter');
-  const { scene: after } = await studio.client.event('state', event => event.scene?.done === 1, { since: from, timeout: 300_000 });
-  say('a stroke, s', ((Date.now() - before) / 1000).toFixed(1));
-  say('  added points', after.history[0].record.added);
+  for (let k = 0; k < strokes; ++k) {
+    await studio.press('b');
+    await studio.drag([at([-0.1, 0.1 + 0.05 * k, 0]), at([0.1, 0.12 + 0.05 * k, 0])]);
+    await studio.page.waitForTimeout(3000);
+    const before = Date.now();
+    const from = studio.client.events.length;
+    await studio.press('Enter');
+    const { scene: after } = await studio.client.event('state', event => event.scene?.done === k + 1, { since: from, timeout: 300_000 });
+    say('a stroke, s', `${((Date.now() - before) / 1000).toFixed(1)}, ${after.history[k].record.added} points added`);
+  }
   await studio.page.waitForTimeout(15_000);
   const peak = await studio.program.peakMemory();
   say('memory of the server, at its highest', `${gigabytes(peak)}, beyond the engine ${gigabytes(peak - engine)} (asked <= 4 GB)`);

@@ -121,6 +121,10 @@ struct EditOptions {
   /// Points keep their attributes for cloud(), whether the surface shows them (Options::attributes) or not.
   bool keep_attributes = false;
   int states_kept = 4;  ///< states held on the device for undo, besides the base; others are made again; >= 1
+  /// Bytes that these and the base may take. Beyond it only the base and the last state are held, without what follows
+  /// from their points, and not the last one either while the next is made; undoing more than one step then takes a
+  /// reconstruction for every step from the base on. >= 0
+  std::int64_t undo_bytes = std::int64_t{1} << 30;
 };
 
 /// A base cloud and a list of operations on it. The cloud, the field and the surface stay on the device from one

@@ -26,6 +26,7 @@ const EditOptions& checked(const EditOptions& options) {
   detail::validate_settled(options.reconstruction);
   require(options.reconstruction.offset == 0, "option offset must be 0 in an editing session");
   require(options.states_kept >= 1, "option states_kept must be at least 1");
+  require(options.undo_bytes >= 0, "option undo_bytes must not be negative");
   return options;
 }
 
@@ -61,6 +62,7 @@ class EditSession::Impl {
 
   const StepReport& apply(const Operation& operation) {
     StepReport report;
+    if (is_over_budget()) keep_only_base();
     edit::SharedState next = make_next(states_[done_], operation, report);  // may throw: nothing has changed
     const bool changed = next != states_[done_];
     const Stopwatch watch;
@@ -80,7 +82,10 @@ class EditSession::Impl {
 
   [[nodiscard]] EditPreview preview(const Operation& operation) const {
     edit::validate(operation);
-    return exec::visit(space(), [&](auto& ex) { return edit::preview(ex, settings_, *states_[done_], operation); });
+    return exec::visit(space(), [&](auto& ex) {
+      edit::make_whole(ex, *states_[done_]);
+      return edit::preview(ex, settings_, *states_[done_], operation);
+    });
   }
 
   bool undo() {
@@ -127,7 +132,10 @@ class EditSession::Impl {
 
   edit::SharedState make_next(const edit::SharedState& before, const Operation& operation, StepReport& report) const {
     edit::validate(operation);
-    return exec::visit(space(), [&](auto& ex) { return edit::make_next(ex, settings_, before, operation, report); });
+    return exec::visit(space(), [&](auto& ex) {
+      edit::make_whole(ex, *before);
+      return edit::make_next(ex, settings_, before, operation, report);
+    });
   }
 
   /// Of the mesh, or what is known where the options want none.
@@ -140,12 +148,46 @@ class EditSession::Impl {
   void go_to(std::size_t done) {
     std::size_t from = done;
     while (states_[from] == nullptr) --from;  // the base is never forgotten
-    for (StepReport unused; from < done; ++from)
+    for (StepReport unused; from < done; ++from) {
       states_[from + 1] = make_next(states_[from], steps_[from].operation, unused);
+      done_ = from + 1;
+      forget_some();
+    }
     done_ = done;
+    forget_some();
+  }
+
+  /// What the present state leaves of the others.
+  void forget_some() {
     const auto kept = static_cast<std::size_t>(settings_.options.states_kept);
     for (std::size_t i = 1; i < states_.size(); ++i)
       if (i + kept <= done_ || i >= done_ + kept) states_[i] = nullptr;
+    if (!is_over_budget()) return;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      if (states_[i] == nullptr || states_[i] == states_[done_]) continue;
+      if (i == 0 || i + 1 == done_)
+        states_[i]->slim();
+      else
+        states_[i] = nullptr;
+    }
+  }
+
+  /// Before the next state is made.
+  void keep_only_base() {
+    for (std::size_t i = 1; i < states_.size(); ++i)
+      if (i != done_) states_[i] = nullptr;
+  }
+
+  /// Whether the states besides the present one would take more than they may, if they were whole.
+  [[nodiscard]] bool is_over_budget() const {
+    std::int64_t bytes = 0;
+    const edit::State* last = states_[done_].get();
+    for (const edit::SharedState& state : states_) {  // equal ones stand side by side
+      if (state == nullptr || state == states_[done_] || state.get() == last) continue;
+      last = state.get();
+      bytes += last->bytes;
+    }
+    return bytes > settings_.options.undo_bytes;
   }
 
   [[nodiscard]] const exec::AnySpace& space() const { return workspace_.data().space; }

@@ -96,11 +96,17 @@ Cloud cloud_of(Exec& ex, const PointBuffers& points, const Vec3d& origin) {
 }  // namespace
 
 template <exec::Space Exec>
+void make_whole(Exec& ex, State& state) {
+  if (state.is_slim()) state.field.samples = detail::samples_of(ex, state.points, state.field.frame);
+}
+
+template <exec::Space Exec>
 Beginning begin_session(Exec& ex, const Cloud& base, const EditOptions& options) {
   Settings settings{options, base.origin, {}, {}, 1};
   Options& reconstruction = settings.options.reconstruction;
   reconstruction.residuals = false;  // nobody sees them, and they cost more than the solve
   settings.envelope = detail::make_envelope(ex, reconstruction, base.origin);
+  const std::int64_t held = ex.pool()->held_bytes();
   auto state = std::make_shared<State>();
   BaseFit fitted = fit_base(ex, base, settings.options, settings.envelope);
   state->points = std::move(fitted.points);
@@ -108,6 +114,7 @@ Beginning begin_session(Exec& ex, const Cloud& base, const EditOptions& options)
   settings.base_box = fitted.box;
   settings.normal_length = fitted.normal_length;
   extract(ex, settings, *state);
+  state->bytes = ex.pool()->held_bytes() - held;
   return {std::move(settings), std::move(state)};
 }
 
@@ -115,15 +122,17 @@ template <exec::Space Exec>
 SharedState make_next(Exec& ex, const Settings& settings, const SharedState& before, const Operation& operation,
                       StepReport& report) {
   Stopwatch watch;
+  const std::int64_t held = ex.pool()->held_bytes();
   Change change = find_change(ex, input_of(settings, *before), operation);
   describe(operation, change, report);
   std::shared_ptr<State> state;
-  if (!change.is_none()) state = std::make_shared<State>(State{changed_points(ex, before->points, change), {}, {}});
+  if (!change.is_none()) state = std::make_shared<State>(State{changed_points(ex, before->points, change), {}, {}, 0});
   change = {};  // the fit needs the memory
   report.edit_ms = lap(ex, watch);
   if (state != nullptr) {
     report.warm = fit(ex, settings, *before, std::holds_alternative<Insert>(operation), *state);
     extract(ex, settings, *state);
+    state->bytes = ex.pool()->held_bytes() - held;
   }
   const SharedState next = state != nullptr ? std::move(state) : before;
   report.reconstruct_ms = lap(ex, watch);
@@ -166,6 +175,7 @@ Cloud copy_cloud(Exec& ex, const Settings& settings, const State& state) {
   return cloud;
 }
 
+PSK_INSTANTIATE(make_whole);
 PSK_INSTANTIATE(begin_session);
 PSK_INSTANTIATE(make_next);
 PSK_INSTANTIATE(preview);

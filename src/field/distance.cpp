@@ -17,8 +17,9 @@ struct Normalise {
     const double y = n.y;
     const double z = n.z;
     const double length = std::sqrt(x * x + y * y + z * z);
-    if (length > 0)
-      normals[i] = {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
+    normals[i] = length > 0 ? Vec3f{static_cast<float>(x / length), static_cast<float>(y / length),
+                                    static_cast<float>(z / length)}
+                            : Vec3f{};
   }
 };
 

@@ -255,6 +255,14 @@ FieldData fit_field(Exec& ex, PointBuffers& points, const FitSetup& setup, const
   return offset;
 }
 
+template <exec::Space Exec>
+FieldSamples samples_of(Exec& ex, const PointBuffers& points, const octree::Frame& cube) {
+  SortedSamples sorted = sort_into_cube(ex, points, cube);
+  field::normalise(ex, sorted.samples.normals.view());
+  return {std::move(sorted.samples.positions), std::move(sorted.samples.normals), std::move(sorted.added)};
+}
+
 PSK_INSTANTIATE(fit_field);
+PSK_INSTANTIATE(samples_of);
 
 }  // namespace pointskin::detail

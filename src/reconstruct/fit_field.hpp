@@ -76,4 +76,8 @@ struct FitSetup {
 template <exec::Space Exec>
 FieldData fit_field(Exec& ex, PointBuffers& points, const FitSetup& setup, const Options& options, RunReport& report);
 
+/// FieldData::samples of a fit, anew, from its points and its cube: a field that waits need not keep them. O(points).
+template <exec::Space Exec>
+FieldSamples samples_of(Exec& ex, const PointBuffers& points, const octree::Frame& cube);
+
 }  // namespace pointskin::detail

@@ -130,6 +130,7 @@ TEST_F(GpuEdits, WarmAndColdAlikeUnderEveryOption) {
   dirichlet.reconstruction.boundary = Boundary::dirichlet;
   dirichlet.reconstruction.confidence = true;
   dirichlet.states_kept = 1;
+  dirichlet.undo_bytes = 0;
   expect_parity(test::two_fingers_cloud(20'000, 7), dirichlet, test::parting_strokes());
 }
 

@@ -113,6 +113,34 @@ TEST(Undo, MakesStatesAgainThatAreNoLongerKept) {
   }
 }
 
+TEST(Undo, InLittleMemoryGivesTheSameBytes) {
+  EditOptions little = options_at(6);
+  little.undo_bytes = 0;
+  const Cloud cloud = two_fingers_cloud(20'000, 3);
+  EditSession session(cloud, little, Device::cpu(2));
+  EditSession keeps_all = session_of(cloud, 6);
+  const std::vector<Operation> strokes = test::parting_strokes();
+  const auto both = [&](const auto& act) {
+    act(session);
+    act(keeps_all);
+    expect_same_bytes(session.mesh(), keeps_all.mesh());
+    for (const Operation& stroke : strokes)
+      EXPECT_TRUE(test::same_bytes(session.preview(stroke).added.normals, keeps_all.preview(stroke).added.normals));
+  };
+  const auto stroke = [&](std::size_t i) { return [&strokes, i](EditSession& s) { s.apply(strokes[i]); }; };
+  const auto undo = [](EditSession& s) { EXPECT_TRUE(s.undo()); };
+  const auto redo = [](EditSession& s) { EXPECT_TRUE(s.redo()); };
+  for (const std::size_t i : {0, 1, 1}) both(stroke(i));
+  for (int i = 0; i < 3; ++i) both(undo);
+  both(redo);
+  both(redo);
+  both(undo);
+  both(stroke(0));
+  both(stroke(1));
+  both(undo);
+  EXPECT_TRUE(test::same_bytes(session.cloud().positions, keeps_all.cloud().positions));
+}
+
 TEST(Replay, GivesTheSameBytesWhateverHappenedBetween) {
   const Cloud cloud = two_fingers_cloud(20'000, 4);
   const std::vector<Operation> strokes = test::parting_strokes();

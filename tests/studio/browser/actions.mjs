@@ -47,6 +47,7 @@ export async function save(studio, name, what, { format = null, download = false
   }, null, { timeout: 30_000 });
   const said = await studio.at('saved').innerText();
   await studio.press('Escape');
+  await studio.at('save-dialog').waitFor({ state: 'detached' });  // keys are the dialog's until then
   return said;
 }
 

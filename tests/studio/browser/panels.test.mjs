@@ -48,8 +48,12 @@ test('trim cuts what was tinted', { skip: noBrowser(), timeout: 180_000 }, async
     const slider = studio.at('opt-trim');
     await slider.focus();
     for (let i = 0; i < 12; i += 1) await studio.press('ArrowRight');
-    await studio.page.waitForTimeout(1500);
-    assert.ok(changedBox(await studio.picture(), plain), 'what goes is seen');
+    let seen = null;
+    for (let tries = 0; tries < 60 && !seen; tries += 1) {  // the tint comes with the next preview
+      await studio.page.waitForTimeout(250);
+      seen = changedBox(await studio.picture(), plain);
+    }
+    assert.ok(seen, 'what goes is seen');
     const scene = await state(studio, since, now => now.done > 0 && now.options.trim > 0);
     assert.ok(scene.triangles < whole, `${scene.triangles} triangles of ${whole}`);
     assert.equal(scene.surface.closed, false);

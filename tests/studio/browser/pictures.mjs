@@ -113,8 +113,9 @@ const scenes = {
     await studio.drag([[x + width / 2, y + height / 2], [x + 0.36 * width, y + 0.62 * height]]);
     await studio.press('w');
     await studio.at('fluid-start').click();
-    await studio.client.event('frame', frame => frame.index >= 45, { timeout: 180_000 });
+    await studio.client.event('frame', frame => frame.index >= 75, { timeout: 180_000 });
     await studio.at('fluid-pause').click();
+    await studio.press('f');
     await settle(studio, 4000);
     await take('tool_fluid');
     await take('fluid');

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { MeshoptEncoder } from "meshoptimizer/encoder";
-import { buffersOf, decodeBlob, isClosed, linesOf, rangeOf, readHeader } from "../src/engine/blob";
+import { buffersOf, decodeBlob, isClosed, linesOf, rangeOf, readHeader, signedVolume } from "../src/engine/blob";
 
 interface Part {
   name: string;
@@ -97,6 +97,13 @@ test("a surface is closed until one triangle is missing or turned", () => {
   assert.equal(isClosed(kTetrahedron.subarray(3)), false);
   assert.equal(isClosed(new Uint32Array([1, 2, 0, ...kTetrahedron.subarray(3)])), false);
   assert.equal(isClosed(new Uint32Array()), false);
+});
+
+test("the volume of a tetrahedron, and of one that is inside out", () => {
+  const corners = Uint16Array.from([9, 9, 9, 0, 15, 9, 9, 0, 9, 15, 9, 0, 9, 9, 15, 0]);
+  const outward = Uint32Array.from([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]);
+  assert.equal(signedVolume(corners, outward), 36);
+  assert.equal(signedVolume(corners, outward.slice().reverse()), -36);
 });
 
 test("the range of colours leaves single outliers and NaN out", () => {

@@ -38,6 +38,7 @@ export interface Decoded {
   values: Record<string, Float32Array>;
   ranges: Record<string, [number, number]>; // 2nd to 98th percentile of each of values
   closed: boolean; // no edge without a neighbour
+  outward: boolean; // closed, and its triangles face outside
   bytes: number;
   transferMs: number;
   decodeMs: number;
@@ -103,6 +104,7 @@ function emptyOf(header: BlobHeader, bytes: number): Decoded {
     values: {},
     ranges: {},
     closed: false,
+    outward: false,
     bytes,
     transferMs: 0,
     decodeMs: 0,
@@ -127,7 +129,10 @@ export async function decodeBlob(bytes: Uint8Array): Promise<Decoded> {
       decoded.ranges[name] = rangeOf(values);
     }
   }
-  if (decoded.index) decoded.closed = isClosed(decoded.index);
+  if (decoded.index) {
+    decoded.closed = isClosed(decoded.index);
+    decoded.outward = decoded.closed && signedVolume(decoded.positions, decoded.index) > 0;
+  }
   return decoded;
 }
 
@@ -149,6 +154,19 @@ function edgeNumber(a: number, b: number): number {
   h = Math.imul(h ^ (h >>> 13), 0x297a2d39);
   h ^= h >>> 16;
   return a < b ? h : -h;
+}
+
+/// The volume that a closed surface encloses, in the units of its positions; negative where it is inside out.
+export function signedVolume(positions: Uint16Array, index: Uint32Array): number {
+  let six = 0;
+  for (let i = 0; i < index.length; i += 3) {
+    const [a, b, c] = [index[i]! * 4, index[i + 1]! * 4, index[i + 2]! * 4];
+    const [ax, ay, az] = [positions[a]!, positions[a + 1]!, positions[a + 2]!];
+    const [bx, by, bz] = [positions[b]! - ax, positions[b + 1]! - ay, positions[b + 2]! - az];
+    const [cx, cy, cz] = [positions[c]! - ax, positions[c + 1]! - ay, positions[c + 2]! - az];
+    six += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
+  }
+  return six / 6;
 }
 
 /// The buffers that go to the page with the message, each once.

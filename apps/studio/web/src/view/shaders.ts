@@ -87,7 +87,8 @@ void main() {
   if (outside && mode == 2) base = mapColour((vValue - range.x) / max(range.y - range.x, 1e-30));
   if (hasTint && vTint > 0) base = mix(base, tints[min(vTint, 7)], 0.72);
   if (vDensity < trimDensity) base = mix(base, tints[1], 0.8);
-  float crease = clamp(length(fwidth(n)) * 0.9 - 0.12, 0.0, 0.38);
+  float turn = length(fwidth(n)); // near 1 it is no crease, but a pixel of an outline that belongs to two triangles
+  float crease = clamp(turn * 0.9 - 0.12, 0.0, 0.38) * (1.0 - smoothstep(0.5, 1.0, turn));
   gl_FragColor = vec4(clay(base, n, toEye) * (1.0 - crease), opacity);
 }`;
 

@@ -86,11 +86,18 @@ export class SurfaceLayer {
     this.group.add(this.lines);
   }
 
-  /// Whether triangles that face away may be left out, which cannot be seen of a closed surface from outside. For frames
-  /// that must be quick: from within they can.
-  hideBacks(hide: boolean): void {
-    const closed = hide && !!this.decoded?.closed && !this.material.clippingPlanes?.length;
-    this.material.side = closed ? THREE.FrontSide : THREE.DoubleSide;
+  /// Leaves out triangles that face away, which cannot be seen of a closed surface from outside, and flicker in its
+  /// outline. @param quick  for a frame that must be quick: from within the surface, too
+  hideBacks(eye: THREE.Camera, quick: boolean): void {
+    const hidden = (quick || this.isOutside(eye)) && !!this.decoded?.outward && !this.material.clippingPlanes?.length;
+    this.material.side = hidden ? THREE.FrontSide : THREE.DoubleSide;
+  }
+
+  private isOutside(eye: THREE.Camera): boolean {
+    if (!this.decoded || eye instanceof THREE.OrthographicCamera) return true;
+    const { lower, upper } = this.decoded.box;
+    const at = eye.position.toArray();
+    return at.some((value, i) => value < lower[i]! || value > upper[i]!);
   }
 
   setTheme(front: string, back: string): void {

@@ -300,7 +300,7 @@ export class Viewport {
     if (this.pixelRatio !== window.devicePixelRatio) this.resize();
     this.updateCamera();
     this.picker.invalidate();
-    this.surface.hideBacks(share < 1);
+    this.surface.hideBacks(this.camera, share < 1);
     this.points.setReference(this.view.distance, share * window.devicePixelRatio);
     this.ghosts.setReference(this.view.distance, share * window.devicePixelRatio, radiusOf(this.box));
   }

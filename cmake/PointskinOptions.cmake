@@ -10,6 +10,7 @@ set(POINTSKIN_STUDIO AUTO CACHE STRING
   "Build the command `studio`: AUTO (where Node 18, npm, Boost and meshoptimizer are found), ON or OFF")
 set_property(CACHE POINTSKIN_STUDIO PROPERTY STRINGS AUTO ON OFF)
 option(POINTSKIN_INSTALL "Install the library and what is built with it" ${PROJECT_IS_TOP_LEVEL})
+option(POINTSKIN_SHARED "Build the shared library, with the C interface, beside the archive" ${PROJECT_IS_TOP_LEVEL})
 if(PROJECT_IS_TOP_LEVEL)
   option(BUILD_TESTING "Build the tests and the examples" ON)
 else()

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <pointskin/error.hpp>
+#include <pointskin/formats.hpp>
 #include <pointskin/io.hpp>
 
 #include "args.hpp"
@@ -127,7 +128,8 @@ constexpr char kFooter[] =
 
 OptionTable check_options(CheckArgs& args) {
   return {{"Check",
-           {option("MESH", "mesh: PLY, OBJ, STL or OFF; - reads PLY from stdin", &args.file, {}, {.required = true}),
+           {option("MESH", "mesh: " + format_names(&FormatInfo::reads_meshes) + "; - reads PLY from stdin", &args.file,
+                   {}, {.required = true}),
             option("--self-intersections",
                    "also find pairs of triangles that meet beside what they share; 5 if there are any",
                    &args.self_intersections)}},

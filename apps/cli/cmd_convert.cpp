@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <pointskin/formats.hpp>
 #include <pointskin/io.hpp>
 
 #include "args.hpp"
@@ -60,10 +61,12 @@ int run(const ConvertArgs& args) {
 
 OptionTable convert_options(ConvertArgs& args) {
   return {{"Input",
-           {option("IN", "mesh: PLY, OBJ, STL, OFF; cloud: PLY, XYZ, PTS, ASC, TXT, CSV; - is stdin", &args.input, {},
+           {option("IN", "mesh or cloud: " + format_names(&FormatInfo::reads_clouds) + "; - is stdin", &args.input, {},
                    {.required = true}),
-            option("OUT", "mesh: .ply, .obj, .stl; cloud: .ply; - writes PLY to stdout", &args.output, {},
-                   {.required = true}),
+            option("OUT",
+                   "mesh: " + extension_list(&FormatInfo::writes_meshes) +
+                       "; cloud: " + extension_list(&FormatInfo::writes_clouds) + "; - is stdout",
+                   &args.output, {}, {.required = true}),
             shift_row(args.shift)}},
           {"Files", {ascii_row(args.ascii), overwrite_row(args.overwrite)}},
           {"Limits", {threads_row(args.threads)}},

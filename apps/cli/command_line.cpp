@@ -10,6 +10,7 @@
 
 #include "args.hpp"
 #include "console.hpp"
+#include "manual.hpp"
 #include "usage_errors.hpp"
 
 namespace pointskin::cli {
@@ -120,6 +121,8 @@ class Program {
     app_.footer(kFooter);
     for (const Command& command : commands) add(command);
     add(help_);
+    add(manual_);
+    add(completion_);
     add(version_);
   }
 
@@ -146,20 +149,32 @@ class Program {
     });
   }
 
+  /// Null for none. @throws Error usage if there is no such command
+  [[nodiscard]] const CLI::App* find(const std::string& topic) const {
+    const CLI::App* const command = topic.empty() ? nullptr : command_of(app_, {topic});
+    if (command == nullptr && !topic.empty()) throw_usage(no_such_command(app_, topic));
+    return command;
+  }
+
   /// The help on `topic`, or on the program for none. @throws Error usage if there is no such command
   [[nodiscard]] std::string help_on(const std::string& topic) const {
-    const CLI::App* const command = topic.empty() ? &app_ : command_of(app_, {topic});
-    if (command == nullptr) throw_usage(no_such_command(app_, topic));
+    const CLI::App* const command = find(topic);
     const std::string name = app_.get_name() + (topic.empty() ? "" : " " + topic);
-    return app_.get_formatter()->make_help(command, name, CLI::AppFormatMode::Normal);
+    return app_.get_formatter()->make_help(command == nullptr ? &app_ : command, name, CLI::AppFormatMode::Normal);
   }
 
   CLI::App app_;
   std::function<int()> job_;
-  std::string topic_;
+  std::string topic_, shell_;
   const Command help_{{"help", "Print the help on the program, or on a command."},
                       {{"", {option("COMMAND", "the command [default the program]", &topic_)}}},
                       [this](const GivenOptions&) { return write_stdout(help_on(topic_)), 0; }};
+  const Command manual_{{"manual", "Print a manual page: pointskin manual reconstruct | man -l -"},
+                        {{"", {option("COMMAND", "the command [default the program]", &topic_)}}},
+                        [this](const GivenOptions&) { return write_stdout(manual_of(app_, find(topic_))), 0; }};
+  const Command completion_{{"completion", "Print what a shell needs to complete commands and options."},
+                            {{"", {option("SHELL", "bash, zsh or fish", &shell_)}}},
+                            [this](const GivenOptions&) { return write_stdout(completion_of(app_, shell_)), 0; }};
   const Command version_{{"version", "Print the version."}, {}, [](const GivenOptions&) {
                            return write_stdout(version_text() + "\n"), 0;
                          }};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <pointskin/formats.hpp>
 
 namespace pointskin::cli {
 namespace {
@@ -118,8 +119,8 @@ OptionRow clouds_row(std::vector<std::string>& files, OptionRules rules) {
 }
 
 OptionRow output_row(std::string& file, OptionRules rules) {
-  return option("-o,--output OUT", "mesh: .ply, .obj or .stl; - writes PLY to stdout", &file, {"output", 62},
-                std::move(rules));
+  return option("-o,--output OUT", "mesh: " + extension_list(&FormatInfo::writes_meshes) + "; - writes PLY to stdout",
+                &file, {"output", 62}, std::move(rules));
 }
 
 OptionRow threads_row(int& threads) {

@@ -1,5 +1,7 @@
 #include "fluid_args.hpp"
 
+#include <pointskin/formats.hpp>
+
 #include "args.hpp"
 #include "scene/frame_files.hpp"
 #include "unused_options.hpp"
@@ -8,15 +10,17 @@ namespace pointskin::cli {
 namespace {
 
 OptionGroup file_options(FluidArgs& args) {
-  return {"Files",
-          {option("IN", "particles of a frame, or frame_{}.vtk for a sequence; - reads stdin", &args.input,
-                  {"input", 60, kNeverNull}),
-           option("-o,--output OUT", "mesh: .ply, .obj or .stl, {} where IN has it; - writes PLY to stdout",
-                  &args.output, {"output", 61, kNeverNull}),
-           option("--first N", "number of the first frame of a sequence", &args.first, {"first", 50}),
-           option("--last N", "number of the last frame of a sequence", &args.last, {"last", 51}),
-           option("--report FILE", "write what was done as JSON; also measures the meshes", &args.report),
-           overwrite_row(args.overwrite), shift_row(args.shift)}};
+  return {
+      "Files",
+      {option("IN", "particles of a frame, or frame_{}.vtk for a sequence; - reads stdin", &args.input,
+              {"input", 60, kNeverNull}),
+       option("-o,--output OUT",
+              "mesh: " + extension_list(&FormatInfo::writes_meshes) + "; {} where IN has it; - writes PLY to stdout",
+              &args.output, {"output", 61, kNeverNull}),
+       option("--first N", "number of the first frame of a sequence", &args.first, {"first", 50}),
+       option("--last N", "number of the last frame of a sequence", &args.last, {"last", 51}),
+       option("--report FILE", "write what was done as JSON; also measures the meshes", &args.report),
+       overwrite_row(args.overwrite), shift_row(args.shift)}};
 }
 
 OptionGroup surface_options(FluidOptions& o) {

@@ -10,7 +10,9 @@
 #include <variant>
 #include <vector>
 
-namespace pointskin {
+#include <pointskin/export.hpp>
+
+namespace pointskin PSK_EXPORT {
 
 /// Types of scalars, as files have them. PLY has all but the integers of 64 bits.
 enum class AttributeType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };

@@ -3,10 +3,11 @@
 
 #include <array>
 
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/render.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// Four by four, row by row; acts on column vectors (x, y, z, 1).
 using Matrix4 = std::array<double, 16>;

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include <pointskin/attribute.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/vector.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// Points with optional unit-free outward normals and named scalars.
 ///

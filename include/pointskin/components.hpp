@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/vector.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// The connected pieces of a mesh: triangles that share a vertex belong to the same one. Pieces are numbered in the
 /// order of their smallest vertices.

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 // ---- Regions: where a handle holds the cloud, in world coordinates of the rest pose. Points have a distance to them,
 // 0 inside.

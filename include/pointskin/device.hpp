@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <string>
 
-namespace pointskin {
+#include <pointskin/export.hpp>
+
+namespace pointskin PSK_EXPORT {
 
 enum class DeviceKind { cpu, cuda };
 

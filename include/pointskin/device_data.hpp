@@ -9,11 +9,12 @@
 
 #include <pointskin/attribute.hpp>
 #include <pointskin/cloud.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// `size` elements in the memory of a workspace's device, in a row. Owns nothing. On a GPU the host must not look at
 /// them.

@@ -11,11 +11,12 @@
 
 #include <pointskin/camera.hpp>
 #include <pointskin/cloud.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// Where the normals of added points come from.
 enum class GuideNormals {

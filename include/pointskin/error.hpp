@@ -4,7 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace pointskin {
+#include <pointskin/export.hpp>
+
+namespace pointskin PSK_EXPORT {
 
 /// What went wrong. The numeric value is the exit code of the `pointskin` program.
 enum class ErrorCode : int {

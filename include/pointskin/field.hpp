@@ -6,11 +6,12 @@
 #include <vector>
 
 #include <pointskin/device_data.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 struct ExtractOptions;
 

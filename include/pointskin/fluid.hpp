@@ -7,11 +7,12 @@
 
 #include <pointskin/cloud.hpp>
 #include <pointskin/device_data.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// The function that the surface is a level set of.
 enum class FluidKernel {

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace pointskin {
+#include <pointskin/export.hpp>
+
+namespace pointskin PSK_EXPORT {
 
 /// Which attributes of vertices the files hold that are written in a format.
 enum class HeldAttributes {
@@ -23,8 +25,13 @@ struct FormatInfo {
   std::vector<std::string> extensions;  ///< in lower case, with their dots: ".ply"
   HeldAttributes attributes = HeldAttributes::all;
   NumberCoding coding = NumberCoding::text;
-  bool reads_clouds = false;  ///< read_cloud; of a mesh its vertices
-  bool reads_meshes = false;  ///< read_mesh
+  std::string read{};            ///< what is read of its files, for people: "positions, normals, all scalars"
+  std::string written{};         ///< what is written; empty: nothing is
+  std::string library{};         ///< the one that it is read and written with; empty: Pointskin's own code
+  std::string tested_against{};  ///< other programs whose files are read in the tests, and that read ours
+  bool built = true;             ///< false: this build was made without its library, and does nothing of it
+  bool reads_clouds = false;     ///< read_cloud; of a mesh its vertices
+  bool reads_meshes = false;     ///< read_mesh
   bool writes_clouds = false;
   bool writes_meshes = false;
 };
@@ -41,6 +48,10 @@ const FormatInfo* format_of(const std::string& path, std::span<const FormatInfo>
 /// The extensions of the formats that can do something, in a sentence: extension_list(&FormatInfo::writes_meshes) is
 /// ".ply, .obj or .stl". In the order of `formats`.
 std::string extension_list(bool FormatInfo::*can, std::span<const FormatInfo> formats = file_formats());
+
+/// The names of the formats that can do something, as a list: format_names(&FormatInfo::reads_meshes) is
+/// "PLY, OBJ, STL, OFF". In the order of `formats`.
+std::string format_names(bool FormatInfo::*can, std::span<const FormatInfo> formats = file_formats());
 
 /// True if read_mesh may find faces in the file `path`: it is of a format of meshes by its first bytes, else by its
 /// name, and if it is a PLY, its header announces some. False also if it cannot be opened: the reader tells why. "-" is

@@ -6,9 +6,10 @@
 #include <string>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 struct ReadOptions {
   /// Offset to subtract from every coordinate before float is used. Unset ("auto"): zero if float keeps the
@@ -24,7 +25,7 @@ struct ReadOptions {
 /// three are whole numbers in 0..255 and some exceed 1; 7: xyz + scalar + rgb; 9: xyz + rgb + normal, or xyz + normal +
 /// rgb where only that fits; any number when a first line or comment names the columns), legacy VTK (ascii and binary;
 /// the points of POLYDATA and UNSTRUCTURED_GRID; the components of a vector v are v_x, v_y and v_z), JSON ([[x, y, z],
-/// ...]), and the vertices of OBJ, STL and OFF. The format is taken from the content ("ply" and VTK magic), else from
+/// ...]), and the vertices of OBJ, STL, OFF, GLB and GLTF (below). The format is taken from the content ("ply" and VTK magic), else from
 /// the extension, else (no extension) from the content again. `path` "-" reads stdin. Coordinates are read as double;
 /// points with a coordinate that is not finite or larger than 1e38 are dropped and counted in Cloud::dropped; a
 /// non-finite normal becomes a zero normal. Every extra scalar property travels by name and in the type of the file,
@@ -39,7 +40,9 @@ struct ReadOptions {
 ///         Counts are compared with the file's size before memory is taken.
 Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
-/// Reads a triangle mesh: PLY (as above, polygons are fanned), OBJ, STL (binary and ascii, equal corners merged), OFF.
+/// Reads a triangle mesh: PLY (as above, polygons are fanned), OBJ, STL (binary and ascii, equal corners merged), OFF,
+/// GLB and GLTF (all triangles of the scene, where its nodes put them; COLOR_0 is red, green and blue; attributes of
+/// applications lose the underscore; buffers as data: URIs or files in the same folder; no compression).
 /// Normals get unit length; those of OBJ are taken if every corner names the normal with the number of its vertex.
 /// Attributes have the types that read_cloud gives them.
 /// @throws Error invalid_input as read_cloud, also for an index out of range or a vertex that is not finite;
@@ -53,7 +56,8 @@ struct WriteOptions {
 };
 
 /// Writes `mesh`; the format follows the extension: .ply (binary little endian, `list uchar int vertex_indices`), .obj,
-/// .stl (binary). `path` "-" writes PLY to stdout. Vertices are float, or double when mesh.origin is not zero. PLY
+/// .stl (binary), .off (text, with normals and uint8 colours), .glb (glTF 2.0, the origin as the node's translation, all
+/// attributes; integers of 32 and 64 bits as floats). `path` "-" writes PLY to stdout. Vertices are float, or double when mesh.origin is not zero. PLY
 /// holds every attribute in its type, bit for bit, but: integers of 64 bits are int or uint if those hold all of them,
 /// else double, which rounds beyond 2^53; labels (is_label) of which some are missing are float or double with NaN, and
 /// where other integers are missing there is 0. The file appears by atomic rename from a temporary file in the same

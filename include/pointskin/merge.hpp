@@ -4,9 +4,10 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// Adds the points of `more` behind those of `cloud`, whose own come first and keep their order.
 ///

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/vector.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// Indexed triangle mesh. World position of vertex i = origin + vertices[i].
 struct Mesh {

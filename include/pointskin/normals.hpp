@@ -9,12 +9,13 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/progress.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/warning.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// What decides to which side a normal points.
 enum class NormalMethod {

@@ -7,10 +7,11 @@
 #include <span>
 #include <vector>
 
+#include <pointskin/export.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 struct OctreeOptions {
   int depth = 8;       ///< D, in [1, 20]; the finest cells are cube / 2^D wide

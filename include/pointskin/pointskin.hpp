@@ -1,6 +1,7 @@
 // Everything of the library in one include.
 #pragma once
 
+#include <pointskin/arrays.hpp>
 #include <pointskin/attribute.hpp>
 #include <pointskin/boolean.hpp>
 #include <pointskin/camera.hpp>

@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/render.hpp>
 #include <pointskin/vector.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 struct ProblemOptions {
   double threshold = 0.25;   ///< weakness at which a vertex belongs to a region, in (0, 1]

@@ -1,7 +1,9 @@
 // Where a run is.
 #pragma once
 
-namespace pointskin {
+#include <pointskin/export.hpp>
+
+namespace pointskin PSK_EXPORT {
 
 /// Handed to the `progress` of options.
 struct Progress {

@@ -11,6 +11,7 @@
 #include <pointskin/cloud.hpp>
 #include <pointskin/device.hpp>
 #include <pointskin/device_data.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/field.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/normals.hpp>
@@ -18,7 +19,7 @@
 #include <pointskin/warning.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// What happens where the surface meets the faces of the working cube.
 enum class DomainFaces {

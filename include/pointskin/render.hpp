@@ -7,9 +7,10 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// An sRGB picture, 8 bits a channel.
 struct Image {
@@ -127,6 +128,10 @@ std::optional<WorldBox> fitted_box(const Cloud& cloud, int threads = 0);
 /// Part of the picture's width or height that the outline (Fit::box), and of its shorter side that the bounding sphere
 /// (Fit::sphere) fills.
 inline constexpr double kRenderFill = 0.92;
+
+/// `image` as the bytes of an 8-bit RGB PNG.
+/// @throws Error usage if the size of `rgb` is not 3 width height or there are no pixels
+std::string png_of(const Image& image);
 
 /// Writes `image` as an 8-bit RGB PNG, whatever the extension of `path`; with the promises of write_mesh (io.hpp): the
 /// file appears whole or not at all.

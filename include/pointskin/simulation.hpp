@@ -10,12 +10,14 @@
 #include <vector>
 
 #include <pointskin/device_data.hpp>
+#include <pointskin/export.hpp>
 #include <pointskin/fluid.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/workspace.hpp>
 
-namespace pointskin::simulation {
+namespace pointskin {
+namespace simulation PSK_EXPORT {
 
 enum class SceneKind {
   dam_break,         ///< a block of water at one end of a tank
@@ -174,4 +176,5 @@ class Simulation {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace pointskin::simulation
+}  // namespace simulation
+}  // namespace pointskin

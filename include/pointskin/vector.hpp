@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <type_traits>
 
-namespace pointskin {
+#include <pointskin/export.hpp>
+
+namespace pointskin PSK_EXPORT {
 
 /// Three numbers without padding, initialised as {x, y, z}, 0 where nothing is said. All functions below are constexpr,
 /// take constant time and do their operations in the order written here.

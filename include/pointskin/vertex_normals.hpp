@@ -1,9 +1,10 @@
 // Normals of vertices from the faces around them.
 #pragma once
 
+#include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 /// Gives `mesh` vertex normals, in place of those it has: the mean of the faces' normals around a vertex, weighted by
 /// their areas, at unit length. They point outward where triangles are counter-clockwise seen from outside. Vertices

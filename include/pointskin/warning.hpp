@@ -3,7 +3,9 @@
 
 #include <string>
 
-namespace pointskin {
+#include <pointskin/export.hpp>
+
+namespace pointskin PSK_EXPORT {
 
 /// What a Warning is about.
 enum class WarningKind {
@@ -16,6 +18,9 @@ enum class WarningKind {
   far_from_points,     ///< much of the surface is far from all points
   coarse_depth,        ///< the points hold clearly more detail than the depth shows
 };
+
+/// "strays", "normals_disagree" and so on: the enumerator's own name.
+const char* name_of(WarningKind kind);
 
 /// One thing, in one sentence for people that says how much of it there is and what helps. Options are named as on the
 /// command line.

@@ -5,8 +5,9 @@
 #include <memory>
 
 #include <pointskin/device.hpp>
+#include <pointskin/export.hpp>
 
-namespace pointskin {
+namespace pointskin PSK_EXPORT {
 
 namespace detail {
 struct WorkspaceData;

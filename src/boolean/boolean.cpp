@@ -29,7 +29,7 @@ void check(const BooleanOptions& options) {
 
 }  // namespace
 
-class Booleans::Impl {
+class PSK_HIDDEN Booleans::Impl {
  public:
   Workspace workspace;
 };

@@ -29,7 +29,7 @@ const Cloud& checked(const Cloud& rest, const Options& options, const Device& de
 
 }  // namespace
 
-class Deformer::Impl {
+class PSK_HIDDEN Deformer::Impl {
  public:
   Impl(const Cloud& rest, const Options& options, Workspace in)
       : workspace(std::move(in)),

@@ -138,4 +138,26 @@ std::optional<Warning> warning_of_doubts(const NormalReport& report) {
                              diagnose::percent(share))};
 }
 
+const char* name_of(WarningKind kind) {
+  switch (kind) {
+    case WarningKind::strays:
+      return "strays";
+    case WarningKind::normals_disagree:
+      return "normals_disagree";
+    case WarningKind::normals_inside_out:
+      return "normals_inside_out";
+    case WarningKind::normals_doubtful:
+      return "normals_doubtful";
+    case WarningKind::off_surface:
+      return "off_surface";
+    case WarningKind::at_domain_faces:
+      return "at_domain_faces";
+    case WarningKind::far_from_points:
+      return "far_from_points";
+    case WarningKind::coarse_depth:
+      break;
+  }
+  return "coarse_depth";
+}
+
 }  // namespace pointskin

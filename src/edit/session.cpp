@@ -47,7 +47,7 @@ Operation settled(Operation operation, const edit::State& before) {
 }
 
 /// The history of a session.
-class EditSession::Impl {
+class PSK_HIDDEN EditSession::Impl {
  public:
   Impl(const Cloud& base, const EditOptions& options, Workspace workspace) : workspace_(std::move(workspace)) {
     edit::Beginning beginning =

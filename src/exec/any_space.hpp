@@ -59,7 +59,7 @@ decltype(auto) visit(const AnySpace& space, F&& f) {
 namespace pointskin::detail {
 
 /// What a Workspace stands for.
-struct WorkspaceData {
+struct PSK_HIDDEN WorkspaceData {
   Device device;
   exec::AnySpace space;
 };

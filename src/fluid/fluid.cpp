@@ -15,7 +15,7 @@
 
 namespace pointskin {
 
-class FluidSurfacer::Impl {
+class PSK_HIDDEN FluidSurfacer::Impl {
  public:
   /// Calls finish(ex, surface, names) in the space.
   template <class Finish>

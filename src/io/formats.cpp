@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "io/libraries.hpp"
 #include "io/ply_header.hpp"
 #include "io/readers.hpp"
 #include "io/writers.hpp"
@@ -18,6 +19,28 @@ namespace {
 
 bool has_extension(const FormatInfo& format, const std::string& extension) {
   return std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end();
+}
+
+constexpr char kJson[] = "nlohmann-json";
+
+FormatFunctions gltf_functions() {
+  FormatFunctions run;
+  if constexpr (kHasJson) {
+    run.announces_faces = gltf_announces_faces;
+    run.read_cloud = parse_gltf_cloud;
+    run.read_mesh = parse_gltf_mesh;
+  }
+  return run;
+}
+
+FormatFunctions glb_functions() {
+  FormatFunctions run = gltf_functions();
+  if constexpr (kHasJson) {
+    run.has_magic = is_glb;
+    run.write_cloud = format_glb_cloud;
+    run.write_mesh = format_glb_mesh;
+  }
+  return run;
 }
 
 /// Lists name formats in the order of the table.
@@ -42,7 +65,16 @@ std::vector<Format> make_table() {
         .write_mesh = format_obj}},
       {{.name = "STL", .extensions = {".stl"}, .attributes = none, .coding = binary},
        {.looks_like = looks_like_stl, .read_mesh = parse_stl, .write_mesh = format_stl}},
-      {{.name = "OFF", .extensions = {".off"}}, {.looks_like = looks_like_off, .read_mesh = parse_off}},
+      {{.name = "OFF", .extensions = {".off"}, .attributes = colours, .coding = text},
+       {.looks_like = looks_like_off, .read_mesh = parse_off, .write_mesh = format_off}},
+      {{.name = "GLB",
+        .extensions = {".glb"},
+        .attributes = all,
+        .coding = binary,
+        .library = kJson,
+        .built = kHasJson},
+       glb_functions()},
+      {{.name = "glTF", .extensions = {".gltf"}, .library = kJson, .built = kHasJson}, gltf_functions()},
   };
 }
 
@@ -76,7 +108,10 @@ const Format& detect(Formats table, const Source& source, bool want_mesh) {
   const Format* format = find_magic(table, source.bytes);
   if (format == nullptr)
     format = extension.empty() ? guess(table, source.bytes, want_mesh) : find_extension(table, extension);
-  if (format != nullptr) return *format;
+  if (format != nullptr && format->info.built) return *format;
+  if (format != nullptr)
+    fail(source, "is " + format->info.name + ", which this build was made without",
+         "build it where " + format->info.library + " is installed");
   fail(source, "has the unknown extension " + in_quotes(extension),
        "use " + extension_list(want_mesh ? &FormatInfo::reads_meshes : &FormatInfo::reads_clouds, infos_of(table)));
 }
@@ -84,6 +119,7 @@ const Format& detect(Formats table, const Source& source, bool want_mesh) {
 }  // namespace
 
 Format::Format(FormatInfo about, const FormatFunctions& functions) : info(std::move(about)), run(functions) {
+  if (!info.built) run = {};
   info.reads_meshes = run.read_mesh != nullptr;
   info.reads_clouds = run.read_cloud != nullptr || info.reads_meshes;
   info.writes_clouds = run.write_cloud != nullptr;
@@ -167,6 +203,13 @@ std::string extension_list(bool FormatInfo::*can, std::span<const FormatInfo> fo
   std::string list;
   for (std::size_t i = 0; i < words.size(); ++i)
     list += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return list;
+}
+
+std::string format_names(bool FormatInfo::*can, std::span<const FormatInfo> formats) {
+  std::string list;
+  for (const FormatInfo& format : formats)
+    if (format.*can) list += (list.empty() ? "" : ", ") + format.name;
   return list;
 }
 

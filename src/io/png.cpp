@@ -34,7 +34,7 @@ std::string encode(const Image& image) {
 
 }  // namespace
 
-void write_png(const std::string& path, const Image& image) {
+std::string png_of(const Image& image) {
   constexpr int kLargestSide = 1 << 20;  // keeps the encoder's 32-bit row sizes in range
   const bool in_range =
       image.width > 0 && image.height > 0 && image.width <= kLargestSide && image.height <= kLargestSide;
@@ -44,7 +44,9 @@ void write_png(const std::string& path, const Image& image) {
   if (!in_range || image.rgb.size() != pixels)
     throw Error(ErrorCode::usage, "a picture of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                                       " pixels cannot be written from " + std::to_string(image.rgb.size()) + " bytes");
-  write_file_atomically(path, encode(image));
+  return encode(image);
 }
+
+void write_png(const std::string& path, const Image& image) { write_file_atomically(path, png_of(image)); }
 
 }  // namespace pointskin

@@ -82,7 +82,8 @@ void for_triples(const PointTable& table, const std::array<std::size_t, 3>& colu
       return static_cast<double>(load<T>(column.data + offset, x.swapped));
     };
     const std::int64_t stride = x.stride_bytes;
-    for (std::int64_t offset = rows.first * stride; offset < rows.end * stride; offset += stride)
+    std::int64_t offset = rows.first * stride;
+    for (std::int64_t row = rows.first; row < rows.end; ++row, offset += stride)
       f(Vec3d{value(x, offset), value(y, offset), value(z, offset)});
   });
 }

@@ -23,6 +23,14 @@ Mesh parse_ply_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& opti
 Mesh parse_obj(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_stl(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_off(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Mesh parse_gltf_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_gltf_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+
+/// True if the file starts as binary glTF does.
+bool is_glb(std::string_view start);
+
+/// False if the start of the JSON tells of points and lines alone.
+bool gltf_announces_faces(std::string_view start);
 
 /// True if the file starts with "# vtk DataFile".
 inline bool is_vtk(std::string_view start) { return start.starts_with("# vtk DataFile"); }

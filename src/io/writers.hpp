@@ -49,6 +49,17 @@ Blocks format_obj(const Mesh& mesh, const WriteOptions& options);
 /// @throws Error over_limit for more than 2^32 - 1 triangles
 Blocks format_stl(const Mesh& mesh, const WriteOptions& options);
 
+/// OFF text: world coordinates in the fewest digits that read back equal, normals, and colours if red, green and blue are
+/// uint8 attributes.
+Blocks format_off(const Mesh& mesh, const WriteOptions& options);
+
+/// glTF 2.0 in one binary file: positions relative to the node's translation, which is the origin; normals; COLOR_0, if
+/// red, green and blue are uint8 or uint16 attributes, with alpha where there is one; every other attribute under its
+/// name with an underscore in front, 64-bit and 32-bit numbers as floats.
+/// @throws Error over_limit for more than 4 GiB, which its lengths do not hold
+Blocks format_glb_mesh(const Mesh& mesh, const WriteOptions& options);
+Blocks format_glb_cloud(const Cloud& cloud, const WriteOptions& options);
+
 /// Rows of a file that are made alike: append(first, last, bytes) adds the rows [first, last) to `bytes`.
 struct Section {
   std::size_t rows;

@@ -80,7 +80,7 @@ NormalMethod chosen_method(const Cloud& cloud, const normals::Views& views, Norm
 
 }  // namespace
 
-class NormalEstimator::Impl {
+class PSK_HIDDEN NormalEstimator::Impl {
  public:
   Workspace workspace;
   NormalReport report;

@@ -50,7 +50,7 @@ OctreeNeighbours within(Exec& ex, const BuiltOctree& tree, std::span<const Vec3f
 
 namespace pointskin {
 
-class Octree::Impl {
+class PSK_HIDDEN Octree::Impl {
  public:
   Workspace workspace;
   octree::BuiltOctree tree;

@@ -21,7 +21,7 @@
 namespace pointskin::detail {
 
 /// A solved field and where it is.
-class FieldImpl {
+class PSK_HIDDEN FieldImpl {
  public:
   /// @param options  of the solve; of a field that is to be extracted once, of that, too
   /// @param origin   of the cloud: what places in `data` are relative to

@@ -41,7 +41,7 @@ void check_combinations(const Options& options) {
 
 }  // namespace
 
-class Reconstructor::Impl {
+class PSK_HIDDEN Reconstructor::Impl {
  public:
   explicit Impl(Workspace workspace) : engine_(std::move(workspace)) {}
 

@@ -65,7 +65,7 @@ void validate(const SimulationOptions& options) {
   check_range("fewest substeps", options.fewest_substeps, 1, options.most_substeps);
 }
 
-class Simulation::Impl {
+class PSK_HIDDEN Simulation::Impl {
  public:
   Impl(Scene scene, const SimulationOptions& options, Workspace workspace)
       : scene_(std::move(scene)), options_(options), workspace_(std::move(workspace)) {

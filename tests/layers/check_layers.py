@@ -32,6 +32,7 @@ LAYERS = {
     "simulation": SOLVE | {"fluid", "simulation"},  # shows its water by the surfaces of fluid
     "render": {"core", "exec", "octree", "mesh", "render"},
     "problems": {"core", "exec", "mesh", "render", "problems"},
+    "c": {"c"},  # calls what every program may call
 }
 # The rooms of the program: what the files of apps/<room> may include with quotes, by its path from apps/. A file may
 # include those of its own room by their names alone.

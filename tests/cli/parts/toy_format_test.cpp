@@ -71,20 +71,22 @@ TEST_F(ToyFormat, IsProbed) {
 }
 
 TEST_F(ToyFormat, IsNamedWhereOthersAreUnknown) {
+  const auto list = [&](bool FormatInfo::*can) { return extension_list(can, infos_); };
+  EXPECT_TRUE(list(&FormatInfo::reads_meshes).ends_with(" or .toy"));
   EXPECT_EQ(story_of(ErrorCode::usage, [&] { cli::check_mesh_output("a.step", infos_); }),
-            "a.step: unknown output format; use .ply, .obj, .stl or .toy, or - for PLY on stdout");
+            "a.step: unknown output format; use " + list(&FormatInfo::writes_meshes) + ", or - for PLY on stdout");
   EXPECT_EQ(story_of(ErrorCode::usage, [&] { io::mesh_format("a.step", table_); }),
-            "a.step: unknown extension; use .ply, .obj, .stl or .toy");
+            "a.step: unknown extension; use " + list(&FormatInfo::writes_meshes));
   EXPECT_EQ(story_of(ErrorCode::invalid_input,
                      [&] {
                        io::parse_mesh({"a.step", "1"}, {}, table_);
                      }),
-            "a.step: has the unknown extension '.step'; use .ply, .obj, .stl, .off or .toy");
+            "a.step: has the unknown extension '.step'; use " + list(&FormatInfo::reads_meshes));
   EXPECT_EQ(story_of(ErrorCode::invalid_input,
                      [&] {
                        io::parse_mesh({"a.csv", "1"}, {}, table_);
                      }),
-            "a.csv: is a file of points, not a mesh; name a .ply, .obj, .stl, .off or .toy file");
+            "a.csv: is a file of points, not a mesh; name a " + list(&FormatInfo::reads_meshes) + " file");
 }
 
 TEST_F(ToyFormat, IsWritten) {

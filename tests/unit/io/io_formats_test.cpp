@@ -81,19 +81,19 @@ TEST(Formats, MeshesOfPointsAreRefusedByName) {
       const std::string story = story_of(ErrorCode::invalid_input, [&] {
         io::parse_mesh({"a" + format.info.extensions.front(), "1 2 3\n"}, {});
       });
-      EXPECT_NE(story.find("is a file of points, not a mesh; name a .ply, .obj, .stl or .off file"), std::string::npos)
+      const std::string meshes = extension_list(&FormatInfo::reads_meshes);
+      EXPECT_NE(story.find("is a file of points, not a mesh; name a " + meshes + " file"), std::string::npos)
           << format.info.name << ": " << story;
     }
 }
 
 TEST(Formats, UnknownExtensionsListThoseThatAreKnown) {
   EXPECT_EQ(story_of(ErrorCode::invalid_input, [] { test::mesh_of("a.step", "1 2 3\n"); }),
-            "a.step: has the unknown extension '.step'; use .ply, .obj, .stl or .off");
+            "a.step: has the unknown extension '.step'; use " + extension_list(&FormatInfo::reads_meshes));
   EXPECT_EQ(story_of(ErrorCode::invalid_input, [] { test::cloud_of("a.step", "1 2 3\n"); }),
-            "a.step: has the unknown extension '.step'; use .ply, .xyz, .pts, .asc, .txt, .csv, .vtk, .json, .obj, "
-            ".stl or .off");
-  EXPECT_EQ(story_of(ErrorCode::usage, [] { write_mesh("a.off", test::box_mesh()); }),
-            "a.off: unknown extension; use .ply, .obj or .stl");
+            "a.step: has the unknown extension '.step'; use " + extension_list(&FormatInfo::reads_clouds));
+  EXPECT_EQ(story_of(ErrorCode::usage, [] { write_mesh("a.step", test::box_mesh()); }),
+            "a.step: unknown extension; use " + extension_list(&FormatInfo::writes_meshes));
 }
 
 TEST(MayHoldFaces, AsksTheHeaderOfAPly) {

@@ -173,7 +173,8 @@ TEST(MeshFiles, AreRefusedWhenTheMeshDoesNotFitTogether) {
   const Mesh good = far_tetrahedron();
   Mesh bad = good;
   bad.triangles[0] = {0, 1, 4};
-  for (const char* name : {"a.ply", "a.obj", "a.stl"}) EXPECT_NE(story(ErrorCode::invalid_input, bad, name), "");
+  for (const char* name : {"a.ply", "a.obj", "a.stl", "a.off", "a.glb"})
+    EXPECT_NE(story(ErrorCode::invalid_input, bad, name), "");
   bad = good;
   bad.normals.pop_back();
   EXPECT_NE(story(ErrorCode::usage, bad), "");
@@ -183,7 +184,7 @@ TEST(MeshFiles, AreRefusedWhenTheMeshDoesNotFitTogether) {
   bad = good;
   bad.attributes[1].name = "nx";
   EXPECT_NE(story(ErrorCode::usage, bad), "");
-  EXPECT_NE(story(ErrorCode::usage, good, "a.glb"), "");
+  EXPECT_NE(story(ErrorCode::usage, good, "a.step"), "");
   EXPECT_NE(story(ErrorCode::usage, good, "noextension"), "");
   EXPECT_EQ(folder.file_count(), 0u);
 }

@@ -1,0 +1,6 @@
+"""`python -m pointskin` is the program."""
+import sys
+
+from .program import main
+
+sys.exit(main())

@@ -84,7 +84,7 @@ def encoded(path: Any) -> bytes:
 
 
 class Handle:
-    """Owns an object of the library, and frees it once."""
+    """Owns an object of the library, and frees it once. Given to a function as it is, it lives until the call returns."""
 
     _free_name = ""
 
@@ -97,6 +97,10 @@ class Handle:
         if self._pointer is None:
             raise PointskinError("this object was closed")
         return self._pointer
+
+    @property
+    def _as_parameter_(self) -> ctypes.c_void_p:  # what ctypes passes on
+        return ctypes.c_void_p(self.pointer)
 
     def close(self) -> None:
         """Frees it now. What was taken from it before must not be used any more."""

@@ -35,7 +35,7 @@ def choice(name: str, value: Any) -> int:
 
 
 class Filled:
-    """A struct of C with what its pointers point to."""
+    """A struct of C with what its pointers point to. Given to a function as it is, all of it lives until the call returns."""
 
     def __init__(self, kind: Any, kept: Sequence[Any] = ()):
         self.value = struct(kind)
@@ -60,7 +60,7 @@ class Filled:
         return self
 
     @property
-    def pointer(self) -> Any:
+    def _as_parameter_(self) -> Any:  # what ctypes passes on
         return ctypes.byref(self.value)
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import ctypes
 import warnings
-from typing import Any, Dict, List, Tuple, Union
+from typing import Any, Dict, List, Union
 
 import numpy as np
 
@@ -14,9 +14,9 @@ from ._options import Filled, as_dict, choice, normal_options, render_options, r
 from ._progress import Progress, Watch
 from ._workspaces import workspace_for
 from .clouds import Cloud, cloud_of
-from .errors import PointskinWarning, UsageError
+from .errors import PointskinWarning
 from .meshes import Mesh
-from .pictures import Image
+from .pictures import Image, pair
 from .reconstruction import EXTRACT, SOLVE, Device, _named
 
 Surface = Union[Mesh, Cloud]
@@ -35,7 +35,7 @@ def orient(points: Any, normals: Any = None, *, device: Device = "auto", threads
     workspace = workspace_for(device, threads)
     with workspace, Watch(progress) as watch:
         filled = normal_options(options, watch)
-        call("psk_orient", workspace.pointer, cloud.handle.pointer, filled.pointer, ctypes.byref(report))
+        call("psk_orient", workspace.pointer, cloud.handle, filled, ctypes.byref(report))
     cloud.report = as_dict(report, ("size", "assumed", "warning"))
     cloud.report["assumed"] = (report.assumed or b"").decode()
     if report.warning:
@@ -43,21 +43,12 @@ def orient(points: Any, normals: Any = None, *, device: Device = "auto", threads
     return cloud
 
 
-def _pair(surface: Surface) -> Tuple[Any, Any]:
-    """Mesh and cloud pointers, one of them None."""
-    if isinstance(surface, Mesh):
-        return surface.handle.pointer, None
-    if isinstance(surface, Cloud):
-        return None, surface.handle.pointer
-    raise UsageError(f"a Mesh or a Cloud is needed, not {type(surface).__name__}")
-
-
 def compare(surface: Surface, reference: Surface, **options: Any) -> Dict[str, Any]:
     """Distances both ways between two surfaces (mean, rms, p95, max; world units), normal consistency and F-score.
     Options: samples (500,000), tau (0.01 of the reference's diagonal), threads. Deterministic."""
     found = struct(_c.psk_comparison)
     filled = Filled(_c.psk_compare_options).set(options, "compare")
-    call("psk_compare", *_pair(surface), *_pair(reference), filled.pointer, ctypes.byref(found))
+    call("psk_compare", *pair(surface), *pair(reference), filled, ctypes.byref(found))
     report = as_dict(found)
     for name in ("to_reference", "from_reference", "two_sided"):
         report[name] = dict(zip(("mean", "rms", "p95", "max"), report[name]))
@@ -70,7 +61,7 @@ def distances(surface: Surface, reference: Surface, *, with_sign: bool = False, 
     negative inside of the reference, which must be watertight then."""
     count = len(surface.local_vertices) if isinstance(surface, Mesh) else len(surface)
     found = np.empty(count, dtype=np.float64)
-    call("psk_distances", *_pair(surface), *_pair(reference), int(with_sign), threads,
+    call("psk_distances", *pair(surface), *pair(reference), int(with_sign), threads,
          found.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
     return found
 
@@ -107,7 +98,7 @@ class Problem:
     def render(self, view: int = 0, caption: str = "", **options: Any) -> Image:
         """A picture of the region by one of its views."""
         filled = render_options(options)
-        return Image(make("psk_problems_render", self._handle.pointer, self._index, view, self._mesh.handle.pointer, filled.pointer,
+        return Image(make("psk_problems_render", self._handle, self._index, view, self._mesh.handle, filled,
                           caption.encode()))
 
     def __repr__(self) -> str:
@@ -118,12 +109,12 @@ def problems(mesh: Mesh, **options: Any) -> List[Problem]:
     """Regions where the surface is a guess, the worst first. mesh: made with weakness=True. Options: threshold, least_area,
     up, threads. Raises UsageError for a mesh without the attribute "weakness"."""
     filled = Filled(_c.psk_problem_options).set(options, "problems")
-    handle = _ProblemsHandle(make("psk_find_problems", mesh.handle.pointer, filled.pointer))
+    handle = _ProblemsHandle(make("psk_find_problems", mesh.handle, filled))
     from ._library import library
     found = []
-    for index in range(library().psk_problems_count(handle.pointer)):
+    for index in range(library().psk_problems_count(handle)):
         problem = struct(_c.psk_problem)
-        call("psk_problems_get", handle.pointer, index, ctypes.byref(problem))
+        call("psk_problems_get", handle, index, ctypes.byref(problem))
         found.append(Problem(handle, index, mesh, problem))
     return found
 
@@ -142,7 +133,7 @@ def boolean(a: Surface, b: Surface, operation: str = "unite", *, device: Device 
         inner = filled.keep(run_options(_named(options, SOLVE + EXTRACT, "boolean"), watch))
         filled.value.reconstruction = ctypes.pointer(inner.value)
         filled.set({"creases": int(creases), "coincidence_cells": coincidence_cells}, "boolean")
-        call("psk_boolean", workspace.pointer, *_pair(a), *_pair(b), choice("operation", operation), filled.pointer,
+        call("psk_boolean", workspace.pointer, *pair(a), *pair(b), choice("operation", operation), filled,
              ctypes.byref(mesh), ctypes.byref(cloud), ctypes.byref(report))
     made = Mesh._of(mesh.value or 0, None, as_dict(report))
     made.report["cloud"] = Cloud._of(cloud.value or 0)

@@ -81,7 +81,7 @@ class Points:
         return next((found.stream for found in self.inputs if found.stream is not None), None)
 
     @property
-    def pointer(self) -> Any:
+    def _as_parameter_(self) -> Any:
         return ctypes.byref(self.value)
 
 
@@ -154,7 +154,7 @@ class Cloud:
         given = Points(points, normals, attributes, origin)
         if given.gpu >= 0:
             raise UsageError("a Cloud is on the host; reconstruct(), solve() and Fluid take arrays of a GPU as they are")
-        self.handle = CloudHandle(make("psk_cloud_create", given.pointer, read_options(shift, threads).pointer))
+        self.handle = CloudHandle(make("psk_cloud_create", given, read_options(shift, threads)))
         #: What the last orient() did.
         self.report: Dict[str, Any] = {}
 
@@ -165,24 +165,24 @@ class Cloud:
         return cloud
 
     def __len__(self) -> int:
-        return int(library().psk_cloud_size(self.handle.pointer))
+        return int(library().psk_cloud_size(self.handle))
 
     @property
     def dropped(self) -> int:
         """Points that were left out because a coordinate was not finite."""
-        return int(library().psk_cloud_dropped(self.handle.pointer))
+        return int(library().psk_cloud_dropped(self.handle))
 
     @property
     def origin(self) -> NumpyArray:
         """Shape (3,): what was taken off large coordinates."""
         three = (ctypes.c_double * 3)()
-        library().psk_cloud_origin(self.handle.pointer, three)
+        library().psk_cloud_origin(self.handle, three)
         return np.array(three)
 
     @property
     def local_points(self) -> NumpyArray:
         """Shape (n, 3), float32, relative to `origin`; the cloud's own memory."""
-        return host_view(self.handle, library().psk_cloud_positions(self.handle.pointer), 3)
+        return host_view(self.handle, library().psk_cloud_positions(self.handle), 3)
 
     @property
     def points(self) -> NumpyArray:
@@ -194,7 +194,7 @@ class Cloud:
     @property
     def normals(self) -> Optional[NumpyArray]:
         """Shape (n, 3), float32, the cloud's own memory; None without normals."""
-        array = library().psk_cloud_normals(self.handle.pointer)
+        array = library().psk_cloud_normals(self.handle)
         return host_view(self.handle, array, 3) if array.data else None
 
     @property
@@ -205,16 +205,16 @@ class Cloud:
 
     def save(self, path: "os.PathLike[str] | str", **options: Any) -> None:
         """Writes a file; the format follows the extension. Options: ascii, threads. Raises OutputNotWrittenError."""
-        call("psk_cloud_write", self.handle.pointer, encoded(path), write_options(options).pointer)
+        call("psk_cloud_write", self.handle, encoded(path), write_options(options))
 
     def copy(self) -> "Cloud":
-        return Cloud._of(make("psk_cloud_copy", self.handle.pointer))
+        return Cloud._of(make("psk_cloud_copy", self.handle))
 
     def merged(self, *more: "Cloud") -> "Cloud":
         """This one and others behind it. Attributes of one name become one; points that lack it have none."""
         whole = self.copy()
         for other in more:
-            call("psk_cloud_merge", whole.handle.pointer, other.handle.pointer)
+            call("psk_cloud_merge", whole.handle, other.handle)
         return whole
 
     def keep(self, mask: Any) -> "Cloud":
@@ -223,7 +223,7 @@ class Cloud:
         if flags.shape != (len(self),):
             raise UsageError(f"the mask must have the shape ({len(self)},), not {flags.shape}")
         kept = self.copy()
-        call("psk_cloud_keep", kept.handle.pointer, flags.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8)), len(flags))
+        call("psk_cloud_keep", kept.handle, flags.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8)), len(flags))
         return kept
 
     def render(self, **options: Any) -> Any:

@@ -27,18 +27,18 @@ def read(path: Path, *, shift: Any = None, threads: int = 0) -> Union[Cloud, Mes
     shift: three numbers to take off the coordinates before float is used; None: chosen, 0 unless coordinates are large.
     Raises InvalidInputError, with the line or byte. O(n)."""
     cloud, mesh = ctypes.c_void_p(), ctypes.c_void_p()
-    call("psk_read", encoded(path), read_options(shift, threads).pointer, ctypes.byref(cloud), ctypes.byref(mesh))
+    call("psk_read", encoded(path), read_options(shift, threads), ctypes.byref(cloud), ctypes.byref(mesh))
     return Mesh._of(mesh.value) if mesh.value else _warn_of_dropped(Cloud._of(cloud.value or 0), path)
 
 
 def read_cloud(path: Path, *, shift: Any = None, threads: int = 0) -> Cloud:
     """The points of a file, or the vertices of a mesh."""
-    return _warn_of_dropped(Cloud._of(make("psk_cloud_read", encoded(path), read_options(shift, threads).pointer)), path)
+    return _warn_of_dropped(Cloud._of(make("psk_cloud_read", encoded(path), read_options(shift, threads))), path)
 
 
 def read_mesh(path: Path, *, shift: Any = None, threads: int = 0) -> Mesh:
     """The mesh of a file. Raises InvalidInputError for a file of points."""
-    return Mesh._of(make("psk_mesh_read", encoded(path), read_options(shift, threads).pointer))
+    return Mesh._of(make("psk_mesh_read", encoded(path), read_options(shift, threads)))
 
 
 def write(path: Path, what: Union[Cloud, Mesh], **options: Any) -> None:

@@ -53,7 +53,7 @@ class Mesh:
         triangles = struct(_c.psk_triangles)
         triangles.vertices = ctypes.pointer(given.value)
         triangles.triangles = corners.c_array()
-        self._take(make("psk_mesh_create", ctypes.byref(triangles), read_options(shift, threads).pointer), None, {})
+        self._take(make("psk_mesh_create", ctypes.byref(triangles), read_options(shift, threads)), None, {})
 
     def _take(self, pointer: int, workspace: Optional[Workspace], report: Dict[str, Any]) -> None:
         self.handle = MeshHandle(pointer, workspace)
@@ -72,7 +72,7 @@ class Mesh:
     @property
     def gpu(self) -> int:
         """The GPU that holds the mesh, -1 for the host."""
-        return int(library().psk_mesh_gpu(self.handle.pointer))
+        return int(library().psk_mesh_gpu(self.handle))
 
     def _array(self, array: _c.psk_array, components: int) -> Array:
         if self.gpu < 0:
@@ -83,13 +83,13 @@ class Mesh:
     def origin(self) -> NumpyArray:
         """Shape (3,): world position of a vertex is origin + local_vertices. Zero but for large coordinates."""
         three = (ctypes.c_double * 3)()
-        library().psk_mesh_origin(self.handle.pointer, three)
+        library().psk_mesh_origin(self.handle, three)
         return np.array(three)
 
     @property
     def local_vertices(self) -> Array:
         """Shape (v, 3), float32, relative to `origin`; the mesh's own memory."""
-        return self._array(library().psk_mesh_vertices(self.handle.pointer), 3)
+        return self._array(library().psk_mesh_vertices(self.handle), 3)
 
     @property
     def vertices(self) -> Array:
@@ -104,14 +104,14 @@ class Mesh:
     @property
     def faces(self) -> Array:
         """Shape (t, 3), int32; the mesh's own memory."""
-        return self._array(library().psk_mesh_triangles(self.handle.pointer), 3)
+        return self._array(library().psk_mesh_triangles(self.handle), 3)
 
     triangles = faces
 
     @property
     def normals(self) -> Optional[Array]:
         """Shape (v, 3), float32, unit length, outward; None without normals."""
-        array = library().psk_mesh_normals(self.handle.pointer)
+        array = library().psk_mesh_normals(self.handle)
         return self._array(array, 3) if array.rows else None
 
     @property
@@ -127,7 +127,7 @@ class Mesh:
         if self.gpu < 0:
             return self
         with self._busy():
-            return Mesh._of(make("psk_mesh_to_host", self.handle.pointer), None, self.report)
+            return Mesh._of(make("psk_mesh_to_host", self.handle), None, self.report)
 
     def _busy(self) -> Any:
         import contextlib
@@ -136,22 +136,22 @@ class Mesh:
     def copy(self) -> "Mesh":
         """A copy on the host."""
         with self._busy():
-            return Mesh._of(make("psk_mesh_to_host", self.handle.pointer), None, self.report)
+            return Mesh._of(make("psk_mesh_to_host", self.handle), None, self.report)
 
     def save(self, path: "os.PathLike[str] | str", **options: Any) -> None:
         """Writes a file; the format follows the extension. Options: ascii, threads. Raises OutputNotWrittenError."""
         with self._busy():
-            call("psk_mesh_write", self.handle.pointer, encoded(path), write_options(options).pointer)
+            call("psk_mesh_write", self.handle, encoded(path), write_options(options))
 
     def cloud(self) -> Cloud:
         """The vertices as a Cloud, with normals and attributes."""
         with self._busy():
-            return Cloud._of(make("psk_mesh_cloud", self.handle.pointer))
+            return Cloud._of(make("psk_mesh_cloud", self.handle))
 
     def with_normals(self) -> "Mesh":
         """A copy whose normals are the area-weighted means of the faces' around."""
         mesh = self.copy()
-        call("psk_mesh_add_normals", mesh.handle.pointer)
+        call("psk_mesh_add_normals", mesh.handle)
         return mesh
 
     # ---- measures
@@ -161,7 +161,7 @@ class Mesh:
         watertight and more. O(t log t)."""
         report = struct(_c.psk_mesh_report)
         with self._busy():
-            call("psk_mesh_measure", self.handle.pointer, threads, ctypes.byref(report))
+            call("psk_mesh_measure", self.handle, threads, ctypes.byref(report))
         found = as_dict(report)
         found.update({name: bool(found[name]) for name in ("closed", "manifold", "oriented", "watertight")})
         return found
@@ -175,14 +175,14 @@ class Mesh:
         """Pairs of triangles that meet elsewhere than in what they share, and how many of them only touch. Exact."""
         pairs, touching = ctypes.c_int64(), ctypes.c_int64()
         with self._busy():
-            call("psk_mesh_self_intersections", self.handle.pointer, threads, ctypes.byref(pairs), ctypes.byref(touching))
+            call("psk_mesh_self_intersections", self.handle, threads, ctypes.byref(pairs), ctypes.byref(touching))
         return pairs.value, touching.value
 
     def components(self, threads: int = 0) -> NumpyArray:
         """Shape (v,), int32: the connected piece of every vertex, -1 where no triangle uses it."""
         pieces = np.empty(len(self.local_vertices), dtype=np.int32)
         with self._busy():
-            call("psk_mesh_components", self.handle.pointer, threads, pieces.ctypes.data_as(ctypes.POINTER(ctypes.c_int32)), None)
+            call("psk_mesh_components", self.handle, threads, pieces.ctypes.data_as(ctypes.POINTER(ctypes.c_int32)), None)
         return pieces
 
     # ---- pictures and other libraries
@@ -241,9 +241,9 @@ class Mesh:
         self.report = report
 
     def __len__(self) -> int:
-        return int(library().psk_mesh_triangle_count(self.handle.pointer))
+        return int(library().psk_mesh_triangle_count(self.handle))
 
     def __repr__(self) -> str:
         where = f" on GPU {self.gpu}" if self.gpu >= 0 else ""
-        vertices = library().psk_mesh_vertex_count(self.handle.pointer)
+        vertices = library().psk_mesh_vertex_count(self.handle)
         return f"<pointskin.Mesh of {vertices} vertices, {len(self)} faces{where}>"

@@ -29,7 +29,7 @@ class Image:
     @property
     def pixels(self) -> NumpyArray:
         width, height = ctypes.c_int32(), ctypes.c_int32()
-        array = library().psk_image_pixels(self.handle.pointer, ctypes.byref(width), ctypes.byref(height))
+        array = library().psk_image_pixels(self.handle, ctypes.byref(width), ctypes.byref(height))
         return host_view(self.handle, array, 3).reshape(height.value, width.value, 3)
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> NumpyArray:
@@ -38,27 +38,28 @@ class Image:
     def png(self) -> bytes:
         """The bytes of a PNG file."""
         data, count = ctypes.POINTER(ctypes.c_uint8)(), ctypes.c_int64()
-        call("psk_image_png", self.handle.pointer, ctypes.byref(data), ctypes.byref(count))
+        call("psk_image_png", self.handle, ctypes.byref(data), ctypes.byref(count))
         return ctypes.string_at(data, count.value)
 
     _repr_png_ = png
 
     def save(self, path: "Union[str, os.PathLike[str]]") -> None:
         """Writes a PNG, whatever the extension. Raises OutputNotWrittenError."""
-        call("psk_image_write_png", self.handle.pointer, encoded(path))
+        call("psk_image_write_png", self.handle, encoded(path))
 
     def __repr__(self) -> str:
         height, width, _ = self.pixels.shape
         return f"<pointskin.Image {width} x {height}>"
 
 
-def _pair(what: Any) -> Any:
+def pair(what: Any) -> Any:
+    """Handles of a mesh and of a cloud, one of them None. Raises UsageError for anything else."""
     from .clouds import Cloud
     from .meshes import Mesh
     if isinstance(what, Mesh):
-        return what.handle.pointer, None
+        return what.handle, None
     if isinstance(what, Cloud):
-        return None, what.handle.pointer
+        return None, what.handle
     raise UsageError(f"a Mesh or a Cloud is needed, not {type(what).__name__}")
 
 
@@ -76,7 +77,7 @@ def render(what: Any, **options: Any) -> Image:
 
 def make_image(what: Any, filled: Any, report: Any) -> int:
     image = ctypes.c_void_p()
-    call("psk_render", *_pair(what), filled.pointer, ctypes.byref(image), ctypes.byref(report))
+    call("psk_render", *pair(what), filled, ctypes.byref(image), ctypes.byref(report))
     return image.value or 0
 
 
@@ -84,7 +85,7 @@ def camera(what: Any, **options: Any) -> Dict[str, Any]:
     """The camera of the picture that render() draws: view and projection, shape (4, 4), width and height. For
     EditSession."""
     found = _c.psk_camera()
-    call("psk_camera_of", *_pair(what), render_options(options).pointer, ctypes.byref(found))
+    call("psk_camera_of", *pair(what), render_options(options), ctypes.byref(found))
     return {"view": np.array(found.view).reshape(4, 4), "projection": np.array(found.projection).reshape(4, 4),
             "width": found.width, "height": found.height}
 

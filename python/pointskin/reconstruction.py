@@ -155,9 +155,9 @@ def reconstruct(points: Any, normals: Any = None, *, attributes: Union[None, boo
 def _reconstruct(run: _Run, filled: Filled) -> int:
     if run.arrays is None:
         assert run.cloud is not None
-        return make("psk_reconstruct", run.workspace.reconstructor, run.cloud.handle.pointer, filled.pointer)
+        return make("psk_reconstruct", run.workspace.reconstructor, run.cloud.handle, filled)
     memory = _c.PSK_DEVICE if run.arrays.gpu >= 0 else _c.PSK_HOST
-    return make("psk_reconstruct_points", run.workspace.reconstructor, run.arrays.pointer, filled.pointer, memory)
+    return make("psk_reconstruct_points", run.workspace.reconstructor, run.arrays, filled, memory)
 
 
 class _FieldHandle(Handle):
@@ -183,13 +183,13 @@ class Field:
     @property
     def isovalue(self) -> float:
         """The mean over the samples, where the surface lies unless another value is asked for."""
-        return float(library().psk_field_isovalue(self.handle.pointer))
+        return float(library().psk_field_isovalue(self.handle))
 
     @property
     def cube(self) -> Any:
         """Lower corner, shape (3,), and side of the working cube, world units."""
         lower, side = (ctypes.c_double * 3)(), ctypes.c_double()
-        library().psk_field_cube(self.handle.pointer, lower, ctypes.byref(side))
+        library().psk_field_cube(self.handle, lower, ctypes.byref(side))
         return np.array(lower), side.value
 
     def __call__(self, points: Any) -> NumpyArray:
@@ -200,7 +200,7 @@ class Field:
         array = table(places.reshape(1, 3) if single else places, "points")
         values = np.empty(array.rows, dtype=np.float32)
         with self.handle.workspace:
-            call("psk_field_values", self.handle.pointer, ctypes.byref(array.c_array()),
+            call("psk_field_values", self.handle, ctypes.byref(array.c_array()),
                  values.ctypes.data_as(ctypes.POINTER(ctypes.c_float)))
         result: NumpyArray = values[0] if single else values
         return result
@@ -212,7 +212,7 @@ class Field:
         given = _named({"isovalue": isovalue, "trim": trim, **options}, EXTRACT, "extract")
         memory = _c.PSK_DEVICE if self._on_gpu else _c.PSK_HOST
         with self.handle.workspace as workspace:
-            return Mesh._of(make("psk_field_extract", self.handle.pointer, run_options(given).pointer, memory), workspace, self.report)
+            return Mesh._of(make("psk_field_extract", self.handle, run_options(given), memory), workspace, self.report)
 
     def __repr__(self) -> str:
         return f"<pointskin.Field, isovalue {self.isovalue:.4g}>"
@@ -233,10 +233,10 @@ def solve(points: Any, normals: Any = None, *, attributes: Optional[Mapping[str,
         filled = run_options(given, watch)
         on_gpu = run.arrays is not None and run.arrays.gpu >= 0
         if run.arrays is not None:
-            pointer = make("psk_solve_points", workspace.reconstructor, run.arrays.pointer, filled.pointer)
+            pointer = make("psk_solve_points", workspace.reconstructor, run.arrays, filled)
         else:
             assert run.cloud is not None
-            pointer = make("psk_solve", workspace.reconstructor, run.cloud.handle.pointer, filled.pointer)
+            pointer = make("psk_solve", workspace.reconstructor, run.cloud.handle, filled)
         return Field(pointer, workspace, on_gpu, _reported(workspace, chose_depth))
 
 
@@ -245,7 +245,7 @@ def suggest_depth(cloud: Any, *, device: Device = "auto", threads: int = 0, **op
     workspace = workspace_for(device, threads)
     found = struct(_c.psk_depth_suggestion)
     with workspace:
-        call("psk_suggest_depth", workspace.pointer, cloud_of(cloud).handle.pointer, run_options(options).pointer, ctypes.byref(found))
+        call("psk_suggest_depth", workspace.pointer, cloud_of(cloud).handle, run_options(options), ctypes.byref(found))
     return as_dict(found)
 
 
@@ -253,7 +253,7 @@ def estimate_bytes(cloud: Any, *, threads: int = 0, **options: Any) -> int:
     """Bytes that reconstruct() takes on its device, within 15 %."""
     found = ctypes.c_int64()
     given = run_options(_named(options, SOLVE + EXTRACT, "estimate_bytes"))
-    call("psk_estimate_device_bytes", cloud_of(cloud).handle.pointer, given.pointer, threads, ctypes.byref(found))
+    call("psk_estimate_device_bytes", cloud_of(cloud).handle, given, threads, ctypes.byref(found))
     return found.value
 
 

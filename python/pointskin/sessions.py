@@ -86,7 +86,7 @@ class EditSession:
         inner = filled.keep(run_options(_named(options, SOLVE + EXTRACT, "EditSession"), self._watch))
         filled.value.reconstruction = ctypes.pointer(inner.value)
         with workspace, self._watch:
-            pointer = make("psk_edit_create", workspace.pointer, cloud_of(base, normals).handle.pointer, filled.pointer)
+            pointer = make("psk_edit_create", workspace.pointer, cloud_of(base, normals).handle, filled)
         self.handle = _EditHandle(pointer, workspace, self._watch)
 
     def operation(self, kind: str, camera: Optional[Camera] = None, *, stroke: Any = None, area: Any = None,
@@ -111,14 +111,14 @@ class EditSession:
         Raises UsageError, EmptyResultError, OverLimitError; the session then stays as it was."""
         report = struct(_c.psk_step_report)
         with self.handle.workspace, self._watch:
-            call("psk_edit_apply", self.handle.pointer, operation.pointer, ctypes.byref(report))
+            call("psk_edit_apply", self.handle, operation, ctypes.byref(report))
         return as_dict(report)
 
     def preview(self, operation: Filled) -> Tuple[Cloud, Cloud]:
         """The points that it would add, and those that it would remove."""
         added, removed = ctypes.c_void_p(), ctypes.c_void_p()
         with self.handle.workspace:
-            call("psk_edit_preview", self.handle.pointer, operation.pointer, ctypes.byref(added), ctypes.byref(removed))
+            call("psk_edit_preview", self.handle, operation, ctypes.byref(added), ctypes.byref(removed))
         return Cloud._of(added.value or 0), Cloud._of(removed.value or 0)
 
     def guide(self, camera: Camera, stroke: Any = None, *, area: Any = None, **options: Any) -> Dict[str, Any]:
@@ -142,7 +142,7 @@ class EditSession:
     def _step(self, name: str) -> bool:
         done = ctypes.c_int32()
         with self.handle.workspace, self._watch:
-            call(name, self.handle.pointer, ctypes.byref(done))
+            call(name, self.handle, ctypes.byref(done))
         return bool(done.value)
 
     def undo(self) -> bool:
@@ -157,13 +157,13 @@ class EditSession:
     def mesh(self) -> Mesh:
         """A copy of the present surface."""
         with self.handle.workspace:
-            return Mesh._of(make("psk_edit_mesh", self.handle.pointer))
+            return Mesh._of(make("psk_edit_mesh", self.handle))
 
     @property
     def cloud(self) -> Cloud:
         """A copy of the present points, with the attribute "added": 0 original, 1 guide, 2 inserted."""
         with self.handle.workspace:
-            return Cloud._of(make("psk_edit_cloud", self.handle.pointer))
+            return Cloud._of(make("psk_edit_cloud", self.handle))
 
 
 def handle(region: str, *, angle: float = 0.0, axis: Any = (0, 0, 1), axis_point: Any = (0, 0, 0), translation: Any = (0, 0, 0),
@@ -218,32 +218,32 @@ class Deformer:
         workspace = workspace_for(device, threads)
         filled = run_options(_named(options, SOLVE + EXTRACT, "Deformer"))
         with workspace:
-            pointer = make("psk_deformer_create", workspace.pointer, cloud_of(rest, normals).handle.pointer, filled.pointer)
+            pointer = make("psk_deformer_create", workspace.pointer, cloud_of(rest, normals).handle, filled)
         self.handle = _DeformerHandle(pointer, workspace)
 
     def deform(self, handles: Sequence[Filled] = (), lattices: Sequence[Filled] = (), share: float = 1.0) -> None:
         """Moves the rest cloud: first the handles, then the lattices. share: 0 is the rest pose, 1 all of it."""
         first, second = list(handles), list(lattices)
         with self.handle.workspace:
-            call("psk_deformer_deform", self.handle.pointer, _row(_c.psk_handle, first), len(first), _row(_c.psk_lattice, second),
+            call("psk_deformer_deform", self.handle, _row(_c.psk_handle, first), len(first), _row(_c.psk_lattice, second),
                  len(second), share)
 
     def mesh(self) -> Mesh:
         """The surface of the deformed cloud. Costs a reconstruction."""
         with self.handle.workspace:
-            return Mesh._of(make("psk_deformer_mesh", self.handle.pointer))
+            return Mesh._of(make("psk_deformer_mesh", self.handle))
 
     @property
     def cloud(self) -> Cloud:
         """A copy of the deformed points."""
         with self.handle.workspace:
-            return Cloud._of(make("psk_deformer_cloud", self.handle.pointer))
+            return Cloud._of(make("psk_deformer_cloud", self.handle))
 
     @property
     def report(self) -> Dict[str, Any]:
         """Points, inserted, thinned, and times of the last deformation."""
         found = struct(_c.psk_deform_report)
-        call("psk_deformer_report", self.handle.pointer, ctypes.byref(found))
+        call("psk_deformer_report", self.handle, ctypes.byref(found))
         return as_dict(found)
 
 
@@ -279,10 +279,10 @@ class Fluid:
         owner = self._handle(workspace)
         with workspace:
             if arrays is not None and arrays.gpu >= 0:
-                pointer = make("psk_fluid_surface_points", owner.pointer, arrays.pointer, self._options.pointer, _c.PSK_DEVICE)
+                pointer = make("psk_fluid_surface_points", owner.pointer, arrays, self._options, _c.PSK_DEVICE)
             else:
                 cloud = cloud_of(particles, None, attributes if arrays is not None else None)
-                pointer = make("psk_fluid_surface", owner.pointer, cloud.handle.pointer, self._options.pointer)
+                pointer = make("psk_fluid_surface", owner.pointer, cloud.handle, self._options)
             found = struct(_c.psk_fluid_report)
             call("psk_fluid_get_report", owner.pointer, ctypes.byref(found))
             self.report = as_dict(found)

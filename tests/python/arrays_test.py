@@ -46,6 +46,20 @@ class Inputs(Case):
         order = np.random.default_rng(7).permutation(3000)
         self.gives_the_same(self.points[order], self.normals[order])
 
+    def test_arrays_live_as_long_as_they_are_read(self):
+        """A Cloud that is made on the way from arrays is freed after the call, not before."""
+        points, normals = sphere(4000)
+        cloud = ps.Cloud(points, normals)
+        self.assertEqual(ps.estimate_bytes(points, depth=6), ps.estimate_bytes(ps.Cloud(points), depth=6))
+        self.assertEqual(ps.suggest_depth(points), ps.suggest_depth(ps.Cloud(points)))
+        camera = ps.camera(cloud)
+        for session in (ps.EditSession(points, normals, depth=5), ps.EditSession(cloud, depth=5)):
+            session.remove(camera, [[(0, 0), (300, 0), (300, 300), (0, 300)]])
+            self.assertEqual(bytes_of(session.mesh), bytes_of(ps.reconstruct(session.cloud, depth=5)))
+        parts = [ps.handle("points", points=np.arange(50), translation=(0, 0, 0.1)), ps.handle("half_space", normal=(0, 0, 1))]
+        deformed = [bytes_of(ps.Deformer(*rest).mesh(parts)) for rest in ((points, normals), (cloud,))]
+        self.assertEqual(*deformed)
+
     def test_shapes_that_do_not_fit_are_named(self):
         for points, normals, words in ((np.zeros((5, 2)), None, r"points must have the shape \(n, 3\)"),
                                        (self.points, self.normals[:-1], "normals must be as many"),

@@ -11,12 +11,17 @@ export function decode(png) {
 
 const distance = (a, b) => Math.max(...a.map((value, i) => Math.abs(value - b[i])));
 
-/** The box around all pixels of `picture` that differ from those of `before` by more than `least`, or null. */
-export function changedBox(picture, before, least = 12) {
+/**
+ * The box around all pixels of `picture` that differ from those of `before` by more than `least`, or null. Only those
+ * that are in the picture `like` what they are in `picture`, if it is given.
+ */
+export function changedBox(picture, before, { least = 12, like = picture } = {}) {
+  const changed = (x, y) => distance(picture.at(x, y), before.at(x, y)) > least
+    && distance(picture.at(x, y), like.at(x, y)) <= least;
   const box = { left: Infinity, top: Infinity, right: -1, bottom: -1, pixels: 0 };
   for (let y = 0; y < picture.height; y += 1)
     for (let x = 0; x < picture.width; x += 1)
-      if (distance(picture.at(x, y), before.at(x, y)) > least) {
+      if (changed(x, y)) {
         box.left = Math.min(box.left, x);
         box.right = Math.max(box.right, x);
         box.top = Math.min(box.top, y);

@@ -22,14 +22,17 @@ export async function frontView(studio, box) {
     canvas.y + middle[1] - scale * (place[1] - centre[1])];
 }
 
-/** The box of the pixels that the mesh covers: what changes when it is hidden (key H). */
+/**
+ * The box of the pixels that the mesh covers: what changes when it is hidden (key H) and comes back with it. A message
+ * over the canvas that goes meanwhile does not come back.
+ */
 async function silhouette(studio) {
   const shown = await studio.picture();
   await studio.page.keyboard.press('h');
   const hidden = await studio.picture();
   await studio.page.keyboard.press('h');
-  await studio.picture();
-  const box = changedBox(shown, hidden);
+  const again = await studio.picture();
+  const box = changedBox(shown, hidden, { like: again });
   if (!box) throw new Error('the canvas shows no mesh');
   return box;
 }

@@ -88,6 +88,7 @@ class EditSession:
         with workspace, self._watch:
             pointer = make("psk_edit_create", workspace.pointer, cloud_of(base, normals).handle, filled)
         self.handle = _EditHandle(pointer, workspace, self._watch)
+        self._options = filled  # an envelope is read again with every surface
 
     def operation(self, kind: str, camera: Optional[Camera] = None, *, stroke: Any = None, area: Any = None,
                   part: Optional[Cloud] = None, **more: Any) -> Filled:
@@ -216,9 +217,9 @@ class Deformer:
 
     def __init__(self, rest: Any, normals: Any = None, *, device: Device = "auto", threads: int = 0, **options: Any):
         workspace = workspace_for(device, threads)
-        filled = run_options(_named(options, SOLVE + EXTRACT, "Deformer"))
+        self._options = run_options(_named(options, SOLVE + EXTRACT, "Deformer"))
         with workspace:
-            pointer = make("psk_deformer_create", workspace.pointer, cloud_of(rest, normals).handle, filled)
+            pointer = make("psk_deformer_create", workspace.pointer, cloud_of(rest, normals).handle, self._options)
         self.handle = _DeformerHandle(pointer, workspace)
 
     def deform(self, handles: Sequence[Filled] = (), lattices: Sequence[Filled] = (), share: float = 1.0) -> None:

@@ -57,8 +57,10 @@ class Inputs(Case):
             session.remove(camera, [[(0, 0), (300, 0), (300, 300), (0, 300)]])
             self.assertEqual(bytes_of(session.mesh), bytes_of(ps.reconstruct(session.cloud, depth=5)))
         parts = [ps.handle("points", points=np.arange(50), translation=(0, 0, 0.1)), ps.handle("half_space", normal=(0, 0, 1))]
-        deformed = [bytes_of(ps.Deformer(*rest).mesh(parts)) for rest in ((points, normals), (cloud,))]
-        self.assertEqual(*deformed)
+        deformers = [ps.Deformer(points, normals), ps.Deformer(cloud)]
+        for deformer in deformers:
+            deformer.deform(parts)
+        self.assertEqual(*[bytes_of(deformer.mesh()) for deformer in deformers])
 
     def test_shapes_that_do_not_fit_are_named(self):
         for points, normals, words in ((np.zeros((5, 2)), None, r"points must have the shape \(n, 3\)"),

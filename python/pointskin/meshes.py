@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from typing import Any, Dict, Mapping, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from ._options import as_dict, read_options, write_options
 from ._workspaces import Workspace
 from .clouds import Attributes, Cloud, Points
 from .errors import UsageError
+
+#: A report, or what makes it when it is asked for.
+Report = Union[Dict[str, Any], Callable[[], Dict[str, Any]]]
 
 Array = Union[NumpyArray, DeviceArray]
 
@@ -55,17 +58,23 @@ class Mesh:
         triangles.triangles = corners.c_array()
         self._take(make("psk_mesh_create", ctypes.byref(triangles), read_options(shift, threads)), None, {})
 
-    def _take(self, pointer: int, workspace: Optional[Workspace], report: Dict[str, Any]) -> None:
+    def _take(self, pointer: int, workspace: Optional[Workspace], report: Report) -> None:
         self.handle = MeshHandle(pointer, workspace)
-        #: What the run that made the mesh did and cost; empty for meshes that were not made by one.
-        self.report: Dict[str, Any] = report
+        self._report: Report = report
         self._world: Optional[NumpyArray] = None
 
     @classmethod
-    def _of(cls, pointer: int, workspace: Optional[Workspace] = None, report: Optional[Dict[str, Any]] = None) -> "Mesh":
+    def _of(cls, pointer: int, workspace: Optional[Workspace] = None, report: Optional[Report] = None) -> "Mesh":
         mesh = cls.__new__(cls)
         mesh._take(pointer, workspace, report or {})
         return mesh
+
+    @property
+    def report(self) -> Dict[str, Any]:
+        """What the run that made the mesh did and cost; empty for meshes that were not made by one."""
+        if not isinstance(self._report, dict):
+            self._report = self._report()
+        return self._report
 
     # ---- arrays
 
@@ -127,7 +136,7 @@ class Mesh:
         if self.gpu < 0:
             return self
         with self._busy():
-            return Mesh._of(make("psk_mesh_to_host", self.handle), None, self.report)
+            return Mesh._of(make("psk_mesh_to_host", self.handle), None, self._report)
 
     def _busy(self) -> Any:
         import contextlib
@@ -136,7 +145,7 @@ class Mesh:
     def copy(self) -> "Mesh":
         """A copy on the host."""
         with self._busy():
-            return Mesh._of(make("psk_mesh_to_host", self.handle), None, self.report)
+            return Mesh._of(make("psk_mesh_to_host", self.handle), None, self._report)
 
     def save(self, path: "os.PathLike[str] | str", **options: Any) -> None:
         """Writes a file; the format follows the extension. Options: ascii, threads. Raises OutputNotWrittenError."""
@@ -238,7 +247,7 @@ class Mesh:
     def __setstate__(self, state: Tuple[Any, ...]) -> None:
         vertices, faces, normals, attributes, origin, report = state
         Mesh.__init__(self, vertices, faces, normals, attributes, origin=origin)
-        self.report = report
+        self._report = report
 
     def __len__(self) -> int:
         return int(library().psk_mesh_triangle_count(self.handle))

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import ctypes
 import warnings
-from typing import Any, Dict, Mapping, Optional, Union
+from typing import Any, Callable, Dict, Mapping, Optional, Union
 
 import numpy as np
 
@@ -66,25 +66,30 @@ def _is_usable(points: Points, options: Mapping[str, Any]) -> bool:
     return bool(points.value.normals.data) and bool(np.any(points.inputs[1].owner, axis=1).all())
 
 
-def _report(workspace: Workspace) -> Dict[str, Any]:
+def _copy_of(rows: Any, count: int) -> Any:
+    """An array of structs that is not the library's."""
+    kind = rows._type_ * count
+    return kind.from_buffer_copy(ctypes.string_at(rows, ctypes.sizeof(kind))) if count else kind()
+
+
+def _reported(workspace: Workspace, chose_depth: bool) -> Callable[[], Dict[str, Any]]:
+    """The report of the last run, whose warnings are passed on: made when it is asked for, as it costs a tenth of a fast
+    run on a GPU."""
     raw = struct(_c.psk_run_report)
     call("psk_reconstructor_report", workspace.reconstructor, ctypes.byref(raw))
-    report = as_dict(raw, ("size", "warnings", "levels", "warning_count", "level_count", "normals_done"))
-    report["normals_done"] = raw.normals_done.decode()
-    report["ms"] = {name[:-3]: report.pop(name) for name in list(report) if name.endswith("_ms") and name != "offset_ms"}
-    report["warnings"] = [{"kind": raw.warnings[i].kind.decode(), "text": raw.warnings[i].text.decode(),
-                           "share": raw.warnings[i].share} for i in range(raw.warning_count)]
-    report["levels"] = [as_dict(raw.levels[i]) for i in range(raw.level_count)]
-    report["device"] = workspace.name
-    return report
-
-
-def _reported(workspace: Workspace, chose_depth: bool) -> Dict[str, Any]:
-    """The report of the last run, whose warnings are passed on."""
-    report = _report(workspace)
-    for warning in report["warnings"]:
+    told = [{"kind": raw.warnings[i].kind.decode(), "text": raw.warnings[i].text.decode(), "share": raw.warnings[i].share}
+            for i in range(raw.warning_count)]
+    for warning in told:
         if warning["kind"] != "coarse_depth" or not chose_depth:
             warn(warning["text"], 4)
+    levels, normals_done, device = _copy_of(raw.levels, raw.level_count), raw.normals_done, workspace.name
+
+    def report() -> Dict[str, Any]:
+        found = as_dict(raw, ("size", "warnings", "levels", "warning_count", "level_count", "normals_done"))
+        found["ms"] = {name[:-3]: found.pop(name) for name in list(found) if name.endswith("_ms") and name != "offset_ms"}
+        found.update(normals_done=normals_done.decode(), warnings=told, levels=[as_dict(level) for level in levels], device=device)
+        return found
+
     return report
 
 
@@ -237,7 +242,7 @@ def solve(points: Any, normals: Any = None, *, attributes: Optional[Mapping[str,
         else:
             assert run.cloud is not None
             pointer = make("psk_solve", workspace.reconstructor, run.cloud.handle, filled)
-        return Field(pointer, workspace, on_gpu, _reported(workspace, chose_depth))
+        return Field(pointer, workspace, on_gpu, _reported(workspace, chose_depth)())
 
 
 def suggest_depth(cloud: Any, *, device: Device = "auto", threads: int = 0, **options: Any) -> Dict[str, Any]:

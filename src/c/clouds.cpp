@@ -1,5 +1,6 @@
 #include <pointskin/merge.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>

@@ -1,6 +1,7 @@
 #include "c/convert.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <utility>
 

@@ -4,6 +4,7 @@
 #include <pointskin/c.h>
 #include <pointskin/pointskin.hpp>
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>

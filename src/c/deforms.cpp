@@ -1,6 +1,7 @@
 #include <pointskin/deform.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "c/convert.hpp"
 #include "c/defaults.hpp"

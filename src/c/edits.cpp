@@ -1,6 +1,7 @@
 #include <pointskin/edit.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <utility>
 

@@ -1,6 +1,7 @@
 #include <pointskin/c.h>
 #include <pointskin/formats.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 

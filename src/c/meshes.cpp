@@ -2,6 +2,7 @@
 #include <pointskin/merge.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "c/convert.hpp"

@@ -2,6 +2,7 @@
 #include <pointskin/render.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "c/convert.hpp"
 #include "c/defaults.hpp"

@@ -1,6 +1,7 @@
 #include <pointskin/problems.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "c/convert.hpp"
 #include "c/defaults.hpp"

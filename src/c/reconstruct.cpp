@@ -1,5 +1,6 @@
 #include <pointskin/reconstruct.hpp>
 
+#include <cstdint>
 #include <vector>
 
 #include "c/convert.hpp"

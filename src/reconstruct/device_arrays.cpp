@@ -2,6 +2,7 @@
 #include <pointskin/arrays.hpp>
 #include <pointskin/error.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>

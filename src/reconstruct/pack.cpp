@@ -1,6 +1,7 @@
 #include "reconstruct/pack.hpp"
 
 #include <cstddef>
+#include <cstdint>
 
 #include "core/vec3.hpp"
 #include "exec/this_space.hpp"

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/libraries.hpp"
+#include "io/npy.hpp"
 #include "io/ply_header.hpp"
 #include "io/readers.hpp"
 #include "io/writers.hpp"
@@ -22,6 +23,7 @@ bool has_extension(const FormatInfo& format, const std::string& extension) {
 }
 
 constexpr char kJson[] = "nlohmann-json";
+constexpr char kMinizip[] = "minizip";
 
 FormatFunctions gltf_functions() {
   FormatFunctions run;
@@ -39,6 +41,17 @@ FormatFunctions glb_functions() {
     run.has_magic = is_glb;
     run.write_cloud = format_glb_cloud;
     run.write_mesh = format_glb_mesh;
+  }
+  return run;
+}
+
+FormatFunctions npz_functions() {
+  FormatFunctions run;
+  if constexpr (kHasMinizip) {
+    run.read_cloud = parse_npz_cloud;
+    run.read_mesh = parse_npz_mesh;
+    run.write_cloud = format_npz_cloud;
+    run.write_mesh = format_npz_mesh;
   }
   return run;
 }
@@ -75,6 +88,16 @@ std::vector<Format> make_table() {
         .built = kHasJson},
        glb_functions()},
       {{.name = "glTF", .extensions = {".gltf"}, .library = kJson, .built = kHasJson}, gltf_functions()},
+      {{.name = "PCD", .extensions = {".pcd"}}, {.has_magic = is_pcd, .read_cloud = parse_pcd}},
+      {{.name = "NPY", .extensions = {".npy"}}, {.has_magic = is_npy, .read_cloud = parse_npy_cloud}},
+      {{.name = "NPZ",
+        .extensions = {".npz"},
+        .attributes = all,
+        .coding = binary,
+        .library = kMinizip,
+        .built = kHasMinizip},
+       npz_functions()},
+      {{.name = "BNPTS", .extensions = {".bnpts"}}, {.read_cloud = parse_bnpts}},
   };
 }
 

@@ -18,6 +18,12 @@ namespace pointskin::io {
 Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_pcd(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_bnpts(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_binary_xyz(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_npy_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_npz_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Mesh parse_npz_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_ply_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_ply_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_obj(exec::Cpu& ex, const Source& source, const ReadOptions& options);
@@ -31,6 +37,12 @@ bool is_glb(std::string_view start);
 
 /// False if the start of the JSON tells of points and lines alone.
 bool gltf_announces_faces(std::string_view start);
+
+/// True if the file starts as PCD does.
+bool is_pcd(std::string_view start);
+
+/// True if the file holds characters that no text has, and could be floats, three a point.
+bool is_binary_xyz(const Source& source);
 
 /// True if the file starts with "# vtk DataFile".
 inline bool is_vtk(std::string_view start) { return start.starts_with("# vtk DataFile"); }

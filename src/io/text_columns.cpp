@@ -53,25 +53,6 @@ bool has_name(const std::vector<std::string>& names, const char* name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Names that mean something are written as PLY writes them.
-std::vector<std::string> canonical(std::vector<std::string> names) {
-  std::vector<std::string> lowered;
-  lowered.reserve(names.size());
-  for (const std::string& name : names) lowered.push_back(lower(name));
-  const bool short_colours = has_name(lowered, "r") && has_name(lowered, "g") && has_name(lowered, "b");
-  constexpr std::array kKnown{"x",        "y",        "z",   "nx",    "ny",   "nz",   "normal_x",
-                              "normal_y", "normal_z", "red", "green", "blue", "alpha"};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (std::find(kKnown.begin(), kKnown.end(), lowered[i]) != kKnown.end()) names[i] = lowered[i];
-    if (!short_colours) continue;
-    if (lowered[i] == "r") names[i] = "red";
-    if (lowered[i] == "g") names[i] = "green";
-    if (lowered[i] == "b") names[i] = "blue";
-    if (lowered[i] == "a") names[i] = "alpha";
-  }
-  return names;
-}
-
 /// "1,5 2,5" and "1,5;2,5" would silently become four values.
 void check_separators(const Source& source, const Line& line) {
   const std::string_view text = line.text.substr(0, line.text.find('#'));
@@ -94,7 +75,7 @@ void check_separators(const Source& source, const Line& line) {
 std::vector<std::string> names_in_comment(std::string_view comment) {
   while (!comment.empty() && (comment.front() == '#' || comment.front() == '/' || is_blank(comment.front())))
     comment.remove_prefix(1);
-  std::vector<std::string> names = canonical(split_names(comment));
+  std::vector<std::string> names = canonical_names(split_names(comment));
   const bool names_points = has_name(names, "x") && has_name(names, "y") && has_name(names, "z");
   return names_points ? names : std::vector<std::string>{};
 }
@@ -109,7 +90,7 @@ bool starts_with_number(const Source& source, const Line& line) {
 /// Takes one row of the file's beginning. @returns true if it is the first point
 bool take_row(const Source& source, const Line& line, TextLayout& layout) {
   if (layout.names.empty() && !starts_with_number(source, line)) {
-    layout.names = canonical(split_names(line.text));
+    layout.names = canonical_names(split_names(line.text));
     ++layout.header_rows;
     return false;
   }
@@ -129,6 +110,24 @@ bool take_row(const Source& source, const Line& line, TextLayout& layout) {
 }
 
 }  // namespace
+
+std::vector<std::string> canonical_names(std::vector<std::string> names) {
+  std::vector<std::string> lowered;
+  lowered.reserve(names.size());
+  for (const std::string& name : names) lowered.push_back(lower(name));
+  const bool short_colours = has_name(lowered, "r") && has_name(lowered, "g") && has_name(lowered, "b");
+  constexpr std::array kKnown{"x",        "y",        "z",   "nx",    "ny",   "nz",   "normal_x",
+                              "normal_y", "normal_z", "red", "green", "blue", "alpha"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(kKnown.begin(), kKnown.end(), lowered[i]) != kKnown.end()) names[i] = lowered[i];
+    if (!short_colours) continue;
+    if (lowered[i] == "r") names[i] = "red";
+    if (lowered[i] == "g") names[i] = "green";
+    if (lowered[i] == "b") names[i] = "blue";
+    if (lowered[i] == "a") names[i] = "alpha";
+  }
+  return names;
+}
 
 TextLayout find_layout(const Source& source) {
   TextLayout layout;

@@ -21,6 +21,9 @@ struct TextLayout {
   std::vector<std::string> names;  ///< one per column, or none if the file does not name them
 };
 
+/// Names that mean something as PLY writes them: "X" is "x", and "r", "g", "b" are "red", "green" and "blue".
+std::vector<std::string> canonical_names(std::vector<std::string> names);
+
 /// Looks at the first lines of `source`: a single whole number is the number of points (PTS); words are the names of
 /// the columns, which a comment right before the first point may hold too ("# x y z nx ny nz", "//X,Y,Z").
 /// @throws Error invalid_input if there is no point, or its numbers have decimal commas

@@ -1,4 +1,6 @@
 // XYZ, PTS, ASC, TXT and CSV: one point a line.
+#include <pointskin/formats.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,6 +56,7 @@ std::vector<bool> type_attributes(const NeededTypes& needed, ParsedColumns& pars
 }  // namespace
 
 Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
+  if (extension_of(source.name) == ".xyz" && is_binary_xyz(source)) return parse_binary_xyz(ex, source, options);
   const TextLayout layout = find_layout(source);
   const LineIndex index = index_lines(ex, without_byte_order_mark(source.bytes));
   const std::int64_t rows = index.rows - layout.header_rows;

@@ -60,6 +60,12 @@ Blocks format_off(const Mesh& mesh, const WriteOptions& options);
 Blocks format_glb_mesh(const Mesh& mesh, const WriteOptions& options);
 Blocks format_glb_cloud(const Cloud& cloud, const WriteOptions& options);
 
+/// NumPy's archive of arrays: points or vertices and faces, normals, rgb (if red, green and blue are uint8), and every
+/// other attribute under its name and in its type. Integers of which some are missing are floats with NaN. The archive is
+/// made as a whole, in memory.
+Blocks format_npz_mesh(const Mesh& mesh, const WriteOptions& options);
+Blocks format_npz_cloud(const Cloud& cloud, const WriteOptions& options);
+
 /// Rows of a file that are made alike: append(first, last, bytes) adds the rows [first, last) to `bytes`.
 struct Section {
   std::size_t rows;

@@ -1,0 +1,186 @@
+// Zip archives by minizip, which reads and writes memory here.
+#include "io/zip.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include <minizip/unzip.h>
+#include <minizip/zip.h>
+
+namespace pointskin::io {
+namespace {
+
+constexpr char kAgain[] = "copy or export it again";
+constexpr std::uint64_t kMostDeflated =
+    1032;  ///< times as small: the most that deflate does (zlib's technical details)
+constexpr std::uint64_t kMostEntries = 1 << 16;
+
+/// Memory as minizip's file.
+struct Memory {
+  std::string_view read{};
+  std::string* written = nullptr;
+  std::uint64_t at = 0;
+
+  [[nodiscard]] std::uint64_t size() const { return written != nullptr ? written->size() : read.size(); }
+};
+
+Memory& memory(voidpf of) { return *static_cast<Memory*>(of); }
+
+voidpf open_memory(voidpf all, const void* /*name*/, int /*mode*/) { return all; }
+
+uLong read_memory(voidpf /*all*/, voidpf stream, void* to, uLong count) {
+  Memory& m = memory(stream);
+  const std::uint64_t part = std::min<std::uint64_t>(count, m.size() - std::min(m.at, m.size()));
+  if (part > 0) std::memcpy(to, m.read.data() + m.at, part);
+  m.at += part;
+  return static_cast<uLong>(part);
+}
+
+uLong write_memory(voidpf /*all*/, voidpf stream, const void* from, uLong count) {
+  Memory& m = memory(stream);
+  if (m.written->size() < m.at + count) m.written->resize(m.at + count);
+  std::memcpy(m.written->data() + m.at, from, count);
+  m.at += count;
+  return count;
+}
+
+ZPOS64_T tell_memory(voidpf /*all*/, voidpf stream) { return memory(stream).at; }
+
+long seek_memory(voidpf /*all*/, voidpf stream, ZPOS64_T offset, int origin) {
+  Memory& m = memory(stream);
+  const std::uint64_t base = origin == ZLIB_FILEFUNC_SEEK_CUR ? m.at : origin == ZLIB_FILEFUNC_SEEK_END ? m.size() : 0;
+  if (base + offset > m.size()) return -1;
+  m.at = base + offset;
+  return 0;
+}
+
+int close_memory(voidpf /*all*/, voidpf /*stream*/) { return 0; }
+
+zlib_filefunc64_def functions_on(Memory& memory) {
+  return {open_memory, read_memory, write_memory, tell_memory, seek_memory, close_memory, close_memory, &memory};
+}
+
+[[noreturn]] void fail_broken(const Source& source, const std::string& what) { fail(source, what, kAgain); }
+
+class Reader {
+ public:
+  explicit Reader(const Source& source) : source_(source), memory_{source.bytes} {
+    zlib_filefunc64_def functions = functions_on(memory_);
+    file_.reset(unzOpen2_64("", &functions));
+    if (!file_) fail_broken(source, "is no zip archive, or is cut off");
+  }
+
+  std::vector<ZipEntry> entries() {
+    unz_global_info64 info{};
+    if (unzGetGlobalInfo64(file_.get(), &info) != UNZ_OK || info.number_entry > kMostEntries)
+      fail_broken(source_, "is a broken archive");
+    std::vector<ZipEntry> found;
+    std::uint64_t left = source_.bytes.size();
+    for (std::uint64_t i = 0; i < info.number_entry; ++i) {
+      const int at = i == 0 ? unzGoToFirstFile(file_.get()) : unzGoToNextFile(file_.get());
+      if (at != UNZ_OK) fail_broken(source_, "is a broken archive");
+      found.push_back(entry(left));
+    }
+    return found;
+  }
+
+  std::string unpack(const ZipEntry& entry) {
+    const unz64_file_pos at{entry.place[0], entry.place[1]};
+    if (unzGoToFilePos64(file_.get(), &at) != UNZ_OK || unzOpenCurrentFile(file_.get()) != UNZ_OK)
+      fail_broken(source_, "is a broken archive");
+    std::string bytes(entry.bytes, '\0');
+    std::uint64_t done = 0;
+    while (done < bytes.size()) {
+      const auto part = static_cast<unsigned>(std::min<std::uint64_t>(bytes.size() - done, 1u << 30));
+      const int count = unzReadCurrentFile(file_.get(), bytes.data() + done, part);
+      if (count <= 0) break;
+      done += static_cast<std::uint64_t>(count);
+    }
+    const int closed = unzCloseCurrentFile(file_.get());  // compares the checksum
+    if (done != bytes.size() || closed != UNZ_OK) fail_broken(source_, in_quotes(entry.name) + " in it is broken");
+    return bytes;
+  }
+
+ private:
+  struct Close {
+    void operator()(void* file) const { unzClose(file); }
+  };
+
+  /// The one at which the archive stands. @param left  bytes that compressed files may still have
+  ZipEntry entry(std::uint64_t& left) {
+    unz_file_info64 info{};
+    std::array<char, 512> name{};
+    unz64_file_pos place{};
+    if (unzGetCurrentFileInfo64(file_.get(), &info, name.data(), name.size() - 1, nullptr, 0, nullptr, 0) != UNZ_OK ||
+        unzGetFilePos64(file_.get(), &place) != UNZ_OK)
+      fail_broken(source_, "is a broken archive");
+    ZipEntry entry{name.data(), info.uncompressed_size, {}, {place.pos_in_zip_directory, place.num_of_file}};
+    if (info.flag & 1) fail(source_, in_quotes(entry.name) + " in it is encrypted", "save it without a password");
+    const bool deflated = info.compression_method == Z_DEFLATED;
+    if (!deflated && info.compression_method != 0)
+      fail(source_, in_quotes(entry.name) + " in it is compressed in another way than deflate", "save it with deflate");
+    if (info.compressed_size > left || (!deflated && info.compressed_size != info.uncompressed_size) ||
+        !fits(info.uncompressed_size, 1, kMostDeflated * info.compressed_size))
+      fail_broken(source_, in_quotes(entry.name) + " in it cannot be as long as it says");
+    left -= info.compressed_size;
+    if (!deflated) entry.stored = stored(entry);
+    return entry;
+  }
+
+  std::string_view stored(const ZipEntry& entry) {
+    if (unzOpenCurrentFile(file_.get()) != UNZ_OK) fail_broken(source_, "is a broken archive");
+    const std::uint64_t begin = unzGetCurrentFileZStreamPos64(file_.get());
+    unzCloseCurrentFile(file_.get());
+    if (begin > source_.bytes.size() || entry.bytes > source_.bytes.size() - begin)
+      fail_broken(source_, in_quotes(entry.name) + " in it is cut off");
+    return source_.bytes.substr(begin, entry.bytes);
+  }
+
+  const Source& source_;
+  Memory memory_;
+  std::unique_ptr<void, Close> file_;
+};
+
+void require(bool done) {
+  if (!done) throw Error(ErrorCode::output_not_written, "the zip archive could not be made");
+}
+
+void add_file(zipFile archive, const ZipFile& file, bool deflated) {
+  zip_fileinfo info{};
+  info.dosDate = (1 << 21) | (1 << 16);  // the first day that the format knows: the same bytes at any time
+  const bool large = file.bytes.size() >= 0xFFFFFFFFu;
+  require(zipOpenNewFileInZip64(archive, file.name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr,
+                                deflated ? Z_DEFLATED : 0, deflated ? Z_DEFAULT_COMPRESSION : 0, large) == ZIP_OK);
+  for (std::uint64_t at = 0; at < file.bytes.size();) {
+    const auto part = static_cast<unsigned>(std::min<std::uint64_t>(file.bytes.size() - at, 1u << 30));
+    require(zipWriteInFileInZip(archive, file.bytes.data() + at, part) == ZIP_OK);
+    at += part;
+  }
+  require(zipCloseFileInZip(archive) == ZIP_OK);
+}
+
+}  // namespace
+
+std::vector<ZipEntry> zip_entries(const Source& source) { return Reader(source).entries(); }
+
+std::string unzip(const Source& source, const ZipEntry& entry) { return Reader(source).unpack(entry); }
+
+std::string zip(const std::vector<ZipFile>& files, bool deflated) {
+  std::string bytes;
+  Memory to{{}, &bytes};
+  zlib_filefunc64_def functions = functions_on(to);
+  const zipFile archive = zipOpen2_64("", APPEND_STATUS_CREATE, nullptr, &functions);
+  require(archive != nullptr);
+  for (const ZipFile& file : files) add_file(archive, file, deflated);
+  require(zipClose(archive, nullptr) == ZIP_OK);
+  return bytes;
+}
+
+}  // namespace pointskin::io

@@ -1,0 +1,190 @@
+"""Files of other programs, read back equal, and ours read by them: numpy and Open3D."""
+import struct
+
+from common import Case, has, np, ps, sphere, unittest
+
+
+def noise(count, seed=1):
+    """Points and normals without symmetry, and colours."""
+    random = np.random.default_rng(seed)
+    points = random.normal(size=(count, 3)).astype(np.float32)
+    normals = points / np.linalg.norm(points, axis=1, keepdims=True)
+    return points, normals.astype(np.float32), random.integers(0, 256, (count, 3), dtype=np.uint8)
+
+
+class Numpy(Case):
+    def saved(self, name, array=None, **arrays):
+        path = self.file(name)
+        if array is not None:
+            np.save(path, array)
+        elif arrays.pop("compressed", False):
+            np.savez_compressed(path, **arrays)
+        else:
+            np.savez(path, **arrays)
+        return path
+
+    def test_an_array_of_points(self):
+        points, normals, colours = noise(1000)
+        for made in (points, points.astype(np.float64), np.asfortranarray(points), points.astype(">f4"), points.astype(">f8")):
+            cloud = ps.read(self.saved("a.npy", made))
+            np.testing.assert_array_equal(cloud.local_points + cloud.origin, points)
+            self.assertIsNone(cloud.normals)
+        cloud = ps.read(self.saved("a.npy", np.hstack([points, normals])))
+        np.testing.assert_array_equal(cloud.normals, normals)
+        cloud = ps.read(self.saved("a.npy", np.hstack([points, colours])))
+        np.testing.assert_array_equal(cloud.attributes["rgb"], colours)
+        cloud = ps.read(self.saved("a.npy", np.hstack([points, colours, normals])))
+        np.testing.assert_array_equal(cloud.attributes["rgb"], colours)
+        np.testing.assert_array_equal(cloud.normals, normals)
+
+    def test_a_structured_array(self):
+        points, normals, colours = noise(500)
+        layout = [("X", "<f8"), ("Y", "<f8"), ("Z", "<f8"), ("normal", "<f4", (3,)), ("colour", "u1", (3,)), ("id", ">i8")]
+        made = np.zeros(500, dtype=np.dtype(layout, align=False))
+        for axis, name in enumerate("XYZ"):
+            made[name] = points[:, axis] + 5e5
+        made["normal"], made["colour"], made["id"] = normals, colours, np.arange(500) - 2**60
+        cloud = ps.read(self.saved("a.npy", made))
+        np.testing.assert_allclose(cloud.points, points + 5e5, atol=1e-6)
+        np.testing.assert_array_equal(cloud.normals, normals)
+        np.testing.assert_array_equal(cloud.attributes["rgb"], colours)
+        np.testing.assert_array_equal(cloud.attributes["id"], made["id"])
+        aligned = np.zeros(500, dtype=np.dtype({"names": ["x", "y", "z", "t"], "formats": ["f4", "f4", "f4", "f8"],
+                                                "offsets": [0, 4, 8, 16], "itemsize": 24}))
+        for axis, name in enumerate("xyz"):
+            aligned[name] = points[:, axis]
+        aligned["t"] = np.arange(500) / 7
+        cloud = ps.read(self.saved("a.npy", aligned))
+        np.testing.assert_array_equal(cloud.points, points)
+        np.testing.assert_array_equal(cloud.attributes["t"], aligned["t"])
+        self.assertEqual(list(cloud.attributes), ["t"])
+
+    def test_archives(self):
+        points, normals, colours = noise(700)
+        for compressed in (False, True):
+            path = self.saved("a.npz", compressed=compressed, points=points.astype(np.float64), normals=normals,
+                              colors=colours / 255.0, label=np.arange(700, dtype=np.int32), camera=np.eye(4))
+            cloud = ps.read(path)
+            np.testing.assert_array_equal(cloud.points, points)
+            np.testing.assert_array_equal(cloud.normals, normals)
+            np.testing.assert_array_equal(cloud.attributes["rgb"], colours)
+            np.testing.assert_array_equal(cloud.attributes["label"], np.arange(700))
+            self.assertEqual(sorted(cloud.attributes), ["blue", "green", "label", "red"])
+        cloud = ps.read(self.saved("a.npz", x=points[:, 0], y=points[:, 1], z=points[:, 2]))
+        np.testing.assert_array_equal(cloud.points, points)
+
+    def test_ours_in_numpy(self):
+        points, normals = sphere(3000, centre=(431000.5, 5412000.25, 800), dtype=np.float64)
+        rgb = np.random.default_rng(3).integers(0, 256, (3000, 3), dtype=np.uint8)
+        mesh = ps.reconstruct(points, normals, depth=5, attributes={"rgb": rgb, "label": np.arange(3000, dtype=np.uint32) % 7})
+        path = self.file("m.npz")
+        mesh.save(path)
+        with np.load(path) as arrays:
+            self.assertEqual(sorted(arrays.files), ["faces", "label", "normals", "rgb", "vertices"])
+            self.assertEqual(arrays["vertices"].dtype, np.float64)
+            np.testing.assert_array_equal(arrays["vertices"], mesh.vertices)
+            np.testing.assert_array_equal(arrays["faces"], mesh.faces)
+            np.testing.assert_array_equal(arrays["rgb"], mesh.attributes["rgb"])
+            self.assertEqual(arrays["label"].dtype, np.uint32)
+        again = ps.read(path)
+        self.assertIsInstance(again, ps.Mesh)
+        np.testing.assert_array_equal(again.faces, mesh.faces)
+        np.testing.assert_allclose(again.vertices, mesh.vertices, atol=1e-5)
+        cloud = ps.Cloud(points, normals, {"rgb": rgb})
+        cloud.save(path)
+        with np.load(path) as arrays:
+            self.assertEqual(sorted(arrays.files), ["normals", "points", "rgb"])
+            np.testing.assert_array_equal(arrays["points"], cloud.points)
+
+
+class Floats(Case):
+    def test_of_poissonrecon(self):
+        points, normals, _ = noise(100)
+        path = self.file("a.bnpts")
+        np.hstack([points, normals]).astype("<f4").tofile(path)
+        cloud = ps.read(path)
+        np.testing.assert_array_equal(cloud.points, points)
+        np.testing.assert_array_equal(cloud.normals, normals)
+        with open(path, "ab") as more:
+            more.write(b"\0")
+        with self.assertRaisesRegex(ps.InvalidInputError, "truncated"):
+            ps.read(path)
+
+    def test_of_splashsurf(self):
+        points, _, _ = noise(100)
+        path = self.file("a.xyz")
+        points.astype("<f4").tofile(path)
+        np.testing.assert_array_equal(ps.read(path).points, points)
+        np.savetxt(path, points, fmt="%.9g")
+        np.testing.assert_allclose(ps.read(path).points, points, rtol=1e-7)
+
+
+def pcd(fields, sizes, types, counts, rows, kind, body):
+    """A file as the Point Cloud Library writes it."""
+    head = ["# .PCD v0.7 - Point Cloud Data file format", "VERSION 0.7", f"FIELDS {fields}", f"SIZE {sizes}", f"TYPE {types}",
+            f"COUNT {counts}", f"WIDTH {rows}", "HEIGHT 1", "VIEWPOINT 0 0 0 1 0 0 0", f"POINTS {rows}", f"DATA {kind}", ""]
+    return "\n".join(head).encode() + body
+
+
+class Pcd(Case):
+    def read(self, data):
+        path = self.file("a.pcd")
+        with open(path, "wb") as out:
+            out.write(data)
+        return ps.read(path)
+
+    @unittest.skipUnless(has("open3d"), "needs python3-open3d")
+    def test_of_open3d_in_all_encodings(self):
+        import open3d
+        points, normals, colours = noise(2000)
+        cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
+        cloud.normals = open3d.utility.Vector3dVector(normals)
+        cloud.colors = open3d.utility.Vector3dVector(colours / 255.0)
+        for options in ({"write_ascii": True}, {}, {"compressed": True}):
+            path = self.file("o.pcd")
+            self.assertTrue(open3d.io.write_point_cloud(path, cloud, **options))
+            found = ps.read(path)
+            np.testing.assert_allclose(found.points, points, rtol=1e-6)
+            np.testing.assert_allclose(found.normals, normals, atol=1e-6)
+            np.testing.assert_array_equal(found.attributes["rgb"], colours)
+
+    def test_padding_histograms_and_labels(self):
+        row = struct.pack("<3f4BdI2f", 1.5, -2, 3, 0, 0, 0, 0, 1e9, 77, 0.25, 0.5)
+        cloud = self.read(pcd("x y z _ t label fpfh", "4 4 4 1 8 4 4", "F F F U F U F", "1 1 1 4 1 1 2", 3, "binary", 3 * row))
+        np.testing.assert_array_equal(cloud.points, [[1.5, -2, 3]] * 3)
+        self.assertEqual(sorted(cloud.attributes), ["fpfh_0", "fpfh_1", "label", "t"])
+        np.testing.assert_array_equal(cloud.attributes["label"], [77] * 3)
+        np.testing.assert_array_equal(cloud.attributes["fpfh"], [[0.25, 0.5]] * 3)
+        self.assertEqual(cloud.attributes["t"][0], 1e9)
+
+    def test_organised_scans_have_holes(self):
+        body = b"nan nan nan 4.2108e+06\n1 2 3 2.3418052e-38\n"
+        with self.assertWarnsRegex(ps.PointskinWarning, "1 points were left out"):
+            cloud = self.read(pcd("x y z rgb", "4 4 4 4", "F F F F", "1 1 1 1", 2, "ascii", body))
+        self.assertEqual((len(cloud), cloud.dropped), (1, 1))
+        self.assertEqual(list(cloud.attributes["rgb"][0]), list(np.float32(2.3418052e-38).tobytes()[2::-1]))
+
+    def test_survey_coordinates_in_text_keep_their_digits(self):
+        body = b"431000.123 5412345.678 812.345\n431001.5 5412346.25 812\n"
+        cloud = self.read(pcd("x y z", "4 4 4", "F F F", "1 1 1", 2, "ascii", body))
+        np.testing.assert_allclose(cloud.points[0], [431000.123, 5412345.678, 812.345], atol=1e-6)
+
+    def test_broken_files_are_refused(self):
+        row = struct.pack("<3f", 1, 2, 3)
+        good = ("x y z", "4 4 4", "F F F", "1 1 1", 2, "binary", 2 * row)
+        self.assertEqual(len(self.read(pcd(*good))), 2)
+        data = pcd(*good)
+        for end in range(len(data)):
+            with self.assertRaises(ps.PointskinError, msg=f"cut at {end}"):
+                if len(self.read(data[:end])) > 0:
+                    raise AssertionError(f"{end} of {len(data)} bytes are enough")
+        for change in ((b"SIZE 4 4 4", b"SIZE 4 4 3"), (b"SIZE 4 4 4", b"SIZE 4 4"), (b"TYPE F F F", b"TYPE F F Q"),
+                       (b"POINTS 2", b"POINTS 2000000000"), (b"POINTS 2", b"POINTS -1"), (b"COUNT 1 1 1", b"COUNT 1 1 99999999"),
+                       (b"FIELDS x y z", b"FIELDS x y y"), (b"FIELDS x y z", b"FIELDS a b c"), (b"DATA binary", b"DATA zstd"),
+                       (b"DATA binary", b"DATA binary_compressed"), (b"DATA binary", b"DATA ascii")):
+            with self.assertRaises(ps.InvalidInputError, msg=str(change)):
+                self.read(data.replace(*change))
+
+
+if __name__ == "__main__":
+    unittest.main()

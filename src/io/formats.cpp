@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "io/las/header.hpp"
 #include "io/libraries.hpp"
 #include "io/npy.hpp"
 #include "io/ply_header.hpp"
@@ -88,6 +89,7 @@ std::vector<Format> make_table() {
         .built = kHasJson},
        glb_functions()},
       {{.name = "glTF", .extensions = {".gltf"}, .library = kJson, .built = kHasJson}, gltf_functions()},
+      {{.name = "LAS", .extensions = {".las", ".laz"}}, {.has_magic = is_las, .read_cloud = parse_las}},
       {{.name = "PCD", .extensions = {".pcd"}}, {.has_magic = is_pcd, .read_cloud = parse_pcd}},
       {{.name = "NPY", .extensions = {".npy"}}, {.has_magic = is_npy, .read_cloud = parse_npy_cloud}},
       {{.name = "NPZ",

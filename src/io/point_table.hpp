@@ -30,6 +30,7 @@ struct Column {
 struct PointTable {
   std::int64_t rows = 0;
   std::vector<Column> columns;
+  double resolution = 0;  ///< world units between coordinates that the file tells apart; 0: unknown
 };
 
 /// True for "x", "y" and "z".

@@ -22,11 +22,27 @@ constexpr char kFooter[] =
     "8 output not written, 130 interrupted.\n"
     "Help on a command: pointskin COMMAND --help";
 
-/// How --help looks: one line per option, name and kind of value on the left, meaning and default on the right.
+constexpr std::size_t kHelpColumn = 28, kHelpWidth = 120;
+
+/// `text` in lines that fit to the right of the options' names.
+std::string in_lines(const std::string& text) {
+  constexpr std::size_t kWidth = kHelpWidth - kHelpColumn;
+  std::string lines;
+  std::size_t at = 0;
+  while (text.size() - at > kWidth) {
+    const std::size_t space = text.rfind(' ', at + kWidth);
+    if (space == std::string::npos || space <= at) break;
+    lines += text.substr(at, space - at) + '\n';
+    at = space + 1;
+  }
+  return lines + text.substr(at);
+}
+
+/// How --help looks: name and kind of value on the left, meaning and default on the right.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter() {
-    column_width(28);
+    column_width(kHelpColumn);
     label("Positionals", "Arguments");
     label("Subcommands", "Commands");
     label("SUBCOMMAND", "COMMAND");
@@ -45,7 +61,8 @@ class HelpFormatter : public CLI::Formatter {
   }
   std::string make_option_desc(const CLI::Option* option) const override {
     const std::string fallback = option->get_default_str();
-    return fallback.empty() ? option->get_description() : option->get_description() + " [default " + fallback + "]";
+    return in_lines(fallback.empty() ? option->get_description()
+                                     : option->get_description() + " [default " + fallback + "]");
   }
 };
 

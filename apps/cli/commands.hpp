@@ -50,6 +50,7 @@ Command problems_command();
 Command render_command();
 Command boolean_command();
 Command studio_command();
+Command formats_command();
 Command bench_command();
 
 }  // namespace pointskin::cli

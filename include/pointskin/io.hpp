@@ -25,8 +25,9 @@ struct ReadOptions {
 /// three are whole numbers in 0..255 and some exceed 1; 7: xyz + scalar + rgb; 9: xyz + rgb + normal, or xyz + normal +
 /// rgb where only that fits; any number when a first line or comment names the columns), legacy VTK (ascii and binary;
 /// the points of POLYDATA and UNSTRUCTURED_GRID; the components of a vector v are v_x, v_y and v_z), JSON ([[x, y, z],
-/// ...]), and the vertices of OBJ, STL, OFF, GLB and GLTF (below). The format is taken from the content ("ply" and VTK magic), else from
-/// the extension, else (no extension) from the content again. `path` "-" reads stdin. Coordinates are read as double;
+/// ...]), LAS 1.0 to 1.4 and LAZ, PCD (ascii, binary, binary_compressed), NPY, NPZ, BNPTS and XYZ of bare floats, and the
+/// vertices of OBJ, STL, OFF, GLB, GLTF and NPZ (below); docs/formats.md has the table. The format is taken from the
+/// content where it begins with a magic number, else from the extension, else (no extension) from the content again. `path` "-" reads stdin. Coordinates are read as double;
 /// points with a coordinate that is not finite or larger than 1e38 are dropped and counted in Cloud::dropped; a
 /// non-finite normal becomes a zero normal. Every extra scalar property travels by name and in the type of the file,
 /// all integers of VTK with 64 bits included; VTK's color_scalars are uint8 red, green, blue and alpha. Colours of OBJ
@@ -41,7 +42,7 @@ struct ReadOptions {
 Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
 /// Reads a triangle mesh: PLY (as above, polygons are fanned), OBJ, STL (binary and ascii, equal corners merged), OFF,
-/// GLB and GLTF (all triangles of the scene, where its nodes put them; COLOR_0 is red, green and blue; attributes of
+/// NPZ (vertices and faces), GLB and GLTF (all triangles of the scene, where its nodes put them; COLOR_0 is red, green and blue; attributes of
 /// applications lose the underscore; buffers as data: URIs or files in the same folder; no compression).
 /// Normals get unit length; those of OBJ are taken if every corner names the normal with the number of its vertex.
 /// Attributes have the types that read_cloud gives them.
@@ -57,7 +58,8 @@ struct WriteOptions {
 
 /// Writes `mesh`; the format follows the extension: .ply (binary little endian, `list uchar int vertex_indices`), .obj,
 /// .stl (binary), .off (text, with normals and uint8 colours), .glb (glTF 2.0, the origin as the node's translation, all
-/// attributes; integers of 32 and 64 bits as floats). `path` "-" writes PLY to stdout. Vertices are float, or double when mesh.origin is not zero. PLY
+/// attributes; integers of 32 and 64 bits as floats), .npz (NumPy's arrays vertices, faces, normals, rgb and every
+/// attribute in its type). `path` "-" writes PLY to stdout. Vertices are float, or double when mesh.origin is not zero. PLY
 /// holds every attribute in its type, bit for bit, but: integers of 64 bits are int or uint if those hold all of them,
 /// else double, which rounds beyond 2^53; labels (is_label) of which some are missing are float or double with NaN, and
 /// where other integers are missing there is 0. The file appears by atomic rename from a temporary file in the same

@@ -60,5 +60,15 @@ TEST(FormatsInHelp, DocumentsNameThemAll) {
     }
 }
 
+TEST(FormatsCommand, PrintsTheTableOfTheDocument) {
+  const std::string table = pointskin_run({"formats", "--markdown"}).out;
+  EXPECT_NE(document("docs/formats.md").find(table), std::string::npos) << table;
+}
+
+TEST(FormatsCommand, ListsThemAllOnATerminal) {
+  const std::string list = pointskin_run({"formats"}).out;
+  for (const FormatInfo& format : file_formats()) EXPECT_NE(list.find("\n" + format.name + " "), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pointskin::test

@@ -186,5 +186,45 @@ class Pcd(Case):
                 self.read(data.replace(*change))
 
 
+@unittest.skipUnless(has("open3d"), "needs python3-open3d")
+class Meshes(Case):
+    """Triangle meshes in Open3D: ours read there, its own read here."""
+
+    def mesh(self):
+        points, normals = sphere(2000)
+        rgb = np.random.default_rng(2).integers(0, 256, (2000, 3), dtype=np.uint8)
+        return ps.reconstruct(points, normals, depth=4, attributes={"rgb": rgb})
+
+    def test_ours_in_open3d(self):
+        import open3d
+        mesh = self.mesh()
+        for name, has_colours in (("a.ply", True), ("a.obj", True), ("a.off", True), ("a.glb", True), ("a.stl", False)):
+            mesh.save(self.file(name))
+            found = open3d.io.read_triangle_mesh(self.file(name))
+            corners = np.asarray(found.vertices)[np.asarray(found.triangles)]
+            np.testing.assert_allclose(corners, mesh.vertices[mesh.faces], rtol=1e-6, atol=1e-6, err_msg=name)
+            if has_colours:
+                colours = np.round(255 * np.asarray(found.vertex_colors))[np.asarray(found.triangles)]
+                np.testing.assert_allclose(colours, mesh.attributes["rgb"][mesh.faces], atol=0.5, err_msg=name)
+
+    def test_open3ds_here(self):
+        import open3d
+        made = open3d.geometry.TriangleMesh.create_torus(1.0, 0.4, 20, 12)
+        made.compute_vertex_normals()
+        vertices, faces = np.asarray(made.vertices), np.asarray(made.triangles)
+        made.vertex_colors = open3d.utility.Vector3dVector(np.linspace(0, 1, 3 * len(vertices)).reshape(-1, 3))
+        names = [("a.ply", {}), ("a.ply", {"write_ascii": True}), ("a.obj", {}), ("a.off", {}), ("a.stl", {}), ("a.gltf", {}), ("a.glb", {})]
+        for name, options in names:
+            self.assertTrue(open3d.io.write_triangle_mesh(self.file(name), made, **options), name)
+            found = ps.read(self.file(name))
+            np.testing.assert_allclose(found.vertices[found.faces], vertices[faces], atol=1e-5, err_msg=name)
+            self.assertEqual(found.measure()["boundary_edges"], 0, name)
+            if name in ("a.ply", "a.glb"):
+                colours = np.asarray(made.vertex_colors)[faces]
+                rgb = found.attributes["rgb"][found.faces]
+                whole = 255.0 if rgb.dtype == np.uint8 else 1.0  # Open3D's GLB has floats
+                np.testing.assert_allclose(rgb / whole, colours, atol=0.01, err_msg=name)
+
+
 if __name__ == "__main__":
     unittest.main()

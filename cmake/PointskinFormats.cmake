@@ -25,6 +25,7 @@ macro(pointskin_format_library package constant target debian)
 endmacro()
 
 pointskin_format_library(pugixml kHasPugixml pugixml::pugixml libpugixml-dev)
+pointskin_format_library(ZLIB kHasZlib ZLIB::ZLIB zlib1g-dev)
 pointskin_format_library(liblzf kHasLzf liblzf::liblzf liblzf-dev)
 pointskin_format_library(minizip kHasMinizip minizip::minizip libminizip-dev)
 pointskin_format_library(meshoptimizer kHasMeshoptimizer meshoptimizer::meshoptimizer libmeshoptimizer-dev)

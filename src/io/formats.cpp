@@ -25,6 +25,7 @@ bool has_extension(const FormatInfo& format, const std::string& extension) {
 
 constexpr char kJson[] = "nlohmann-json";
 constexpr char kMinizip[] = "minizip";
+constexpr char kVtkXml[] = "pugixml, zlib";
 
 FormatFunctions gltf_functions() {
   FormatFunctions run;
@@ -54,6 +55,24 @@ FormatFunctions npz_functions() {
     run.write_cloud = format_npz_cloud;
     run.write_mesh = format_npz_mesh;
   }
+  return run;
+}
+
+FormatFunctions functions_of_3mf() {
+  FormatFunctions run;
+  if constexpr (kHasMinizip) run.write_mesh = format_3mf;
+  return run;
+}
+
+FormatFunctions vtk_xml_functions(bool is_grid) {
+  FormatFunctions run;
+  if constexpr (kHasPugixml) {
+    run.read_cloud = parse_vtk_xml_cloud;
+    run.read_mesh = parse_vtk_xml_mesh;
+    if (!is_grid) run.has_magic = is_vtk_xml;  // one reader for both
+  }
+  run.write_cloud = is_grid ? format_vtu_cloud : format_vtp_cloud;
+  run.write_mesh = is_grid ? format_vtu_mesh : format_vtp_mesh;
   return run;
 }
 
@@ -130,6 +149,37 @@ std::vector<Format> make_table() {
         .tested_against = "Open3D",
         .built = kHasJson},
        gltf_functions()},
+      {{.name = "VTP",
+        .extensions = {".vtp"},
+        .attributes = all,
+        .coding = binary,
+        .read = "VTK's XML of PolyData: all pieces, polygons and strips, all point data; text, base64 or appended, "
+                "zlib or not",
+        .written = "points or triangles, normals, every attribute in its type; appended, not compressed",
+        .library = kVtkXml,
+        .tested_against = "VTK",
+        .built = kHasPugixml},
+       vtk_xml_functions(false)},
+      {{.name = "VTU",
+        .extensions = {".vtu"},
+        .attributes = all,
+        .coding = binary,
+        .read =
+            "VTK's XML of UnstructuredGrid: its points, and its triangles, strips, polygons, pixels and quads; as VTP",
+        .written = "as VTP",
+        .library = kVtkXml,
+        .tested_against = "VTK",
+        .built = kHasPugixml},
+       vtk_xml_functions(true)},
+      {{.name = "3MF",
+        .extensions = {".3mf"},
+        .attributes = colours,
+        .coding = text,
+        .written = "vertices in millimetres, triangles, colours",
+        .library = kMinizip,
+        .tested_against = "Open3D",
+        .built = kHasMinizip},
+       functions_of_3mf()},
       {{.name = "LAS",
         .extensions = {".las", ".laz"},
         .read =
@@ -158,6 +208,11 @@ std::vector<Format> make_table() {
         .tested_against = "numpy",
         .built = kHasMinizip},
        npz_functions()},
+      {{.name = "BGEO",
+        .extensions = {".bgeo"},
+        .read = "version 5: points with all float and integer attributes; N as normals, Cd as colours",
+        .tested_against = "Partio"},
+       {.has_magic = is_bgeo, .read_cloud = parse_bgeo}},
       {{.name = "BNPTS",
         .extensions = {".bnpts"},
         .read = "positions and normals as bare floats, as PoissonRecon has them",

@@ -20,6 +20,9 @@ Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options)
 Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_las(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_pcd(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_vtk_xml_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Mesh parse_vtk_xml_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_bgeo(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_bnpts(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_binary_xyz(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_npy_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
@@ -39,11 +42,15 @@ bool is_glb(std::string_view start);
 /// False if the start of the JSON tells of points and lines alone.
 bool gltf_announces_faces(std::string_view start);
 
-/// True if the file starts as PCD does.
+/// True if the file starts as PCD does, or as BGEO.
 bool is_pcd(std::string_view start);
+bool is_bgeo(std::string_view start);
 
 /// True if the file holds characters that no text has, and could be floats, three a point.
 bool is_binary_xyz(const Source& source);
+
+/// True if an element VTKFile is at the start.
+bool is_vtk_xml(std::string_view start);
 
 /// True if the file starts with "# vtk DataFile".
 inline bool is_vtk(std::string_view start) { return start.starts_with("# vtk DataFile"); }

@@ -60,6 +60,18 @@ Blocks format_off(const Mesh& mesh, const WriteOptions& options);
 Blocks format_glb_mesh(const Mesh& mesh, const WriteOptions& options);
 Blocks format_glb_cloud(const Cloud& cloud, const WriteOptions& options);
 
+/// 3MF: an archive of XML, in millimetres, with colours if red, green and blue are uint8 attributes. A mesh that is not
+/// closed is an object of the type "surface". The archive is made as a whole, in memory.
+Blocks format_3mf(const Mesh& mesh, const WriteOptions& options);
+
+/// VTK's XML files: polygons, or an unstructured grid; of a cloud, a vertex for every point. Arrays in binary behind the XML;
+/// points in double if there is an origin. Integers of which some are missing are floats with NaN; red, green and blue of
+/// uint8 are one array, RGB.
+Blocks format_vtp_mesh(const Mesh& mesh, const WriteOptions& options);
+Blocks format_vtp_cloud(const Cloud& cloud, const WriteOptions& options);
+Blocks format_vtu_mesh(const Mesh& mesh, const WriteOptions& options);
+Blocks format_vtu_cloud(const Cloud& cloud, const WriteOptions& options);
+
 /// NumPy's archive of arrays: points or vertices and faces, normals, rgb (if red, green and blue are uint8), and every
 /// other attribute under its name and in its type. Integers of which some are missing are floats with NaN. The archive is
 /// made as a whole, in memory.

@@ -1,7 +1,14 @@
 """Files of other programs, read back equal, and ours read by them: numpy and Open3D."""
+import pathlib
+import shutil
 import struct
+import subprocess
+import xml.etree.ElementTree
+import zipfile
 
 from common import Case, has, np, ps, sphere, unittest
+
+FILES = pathlib.Path(__file__).resolve().parents[1] / "data" / "formats"
 
 
 def noise(count, seed=1):
@@ -184,6 +191,193 @@ class Pcd(Case):
                        (b"DATA binary", b"DATA binary_compressed"), (b"DATA binary", b"DATA ascii")):
             with self.assertRaises(ps.InvalidInputError, msg=str(change)):
                 self.read(data.replace(*change))
+
+
+@unittest.skipUnless(has("vtkmodules") or has("vtk"), "needs python3-vtk9")
+class Vtk(Case):
+    """VTK's XML files: all that VTK writes is read, and ours is read by it."""
+
+    def data(self, grid):
+        """A sphere with normals, colours, a label and a time; of a grid, triangles, a quad, a pixel and a strip as well."""
+        import vtk
+        from vtk.util.numpy_support import numpy_to_vtk
+        source = vtk.vtkSphereSource()
+        source.SetThetaResolution(24)
+        source.SetPhiResolution(16)
+        source.Update()
+        made = source.GetOutput()
+        count = made.GetNumberOfPoints()
+        random = np.random.default_rng(4)
+        for name, values in (("RGB", random.integers(0, 256, (count, 3), dtype=np.uint8)), ("time", random.random(count)),
+                             ("label", np.arange(count, dtype=np.int64) - 2**40), ("velocity", random.random((count, 3)).astype("f4"))):
+            array = numpy_to_vtk(values, deep=True)
+            array.SetName(name)
+            made.GetPointData().AddArray(array)
+        if not grid:
+            return made
+        append = vtk.vtkAppendFilter()
+        append.AddInputData(made)
+        append.Update()
+        return append.GetOutput()
+
+    def check(self, path, made, name):
+        from vtk.util.numpy_support import vtk_to_numpy
+        mesh = ps.read(path)
+        points = vtk_to_numpy(made.GetPoints().GetData())
+        corners = []
+        for cell in range(made.GetNumberOfCells()):
+            ids = made.GetCell(cell).GetPointIds()
+            corners.append([ids.GetId(i) for i in range(3)])
+        np.testing.assert_allclose(mesh.vertices, points, atol=1e-6, err_msg=name)
+        np.testing.assert_array_equal(mesh.faces, corners, err_msg=name)
+        data = made.GetPointData()
+        np.testing.assert_allclose(mesh.normals, vtk_to_numpy(data.GetArray("Normals")), atol=1e-6, err_msg=name)
+        np.testing.assert_array_equal(mesh.attributes["rgb"], vtk_to_numpy(data.GetArray("RGB")), err_msg=name)
+        np.testing.assert_array_equal(mesh.attributes["label"], vtk_to_numpy(data.GetArray("label")), err_msg=name)
+        np.testing.assert_allclose(mesh.attributes["time"], vtk_to_numpy(data.GetArray("time")), atol=1e-7, err_msg=name)
+        for axis in range(3):
+            np.testing.assert_allclose(mesh.attributes["velocity_" + "xyz"[axis]], vtk_to_numpy(data.GetArray("velocity"))[:, axis],
+                                       atol=1e-6, err_msg=name)
+
+    def test_vtks_in_every_coding(self):
+        import vtk
+        for grid, writer, extension in ((False, vtk.vtkXMLPolyDataWriter(), "vtp"), (True, vtk.vtkXMLUnstructuredGridWriter(), "vtu")):
+            made = self.data(grid)
+            writer.SetInputData(made)
+            for mode in ("Ascii", "Binary", "Appended"):
+                for compressor in ("None", "ZLib"):
+                    for wide in (False, True):
+                        for encoded in (False, True):
+                            getattr(writer, f"SetDataModeTo{mode}")()
+                            getattr(writer, f"SetCompressorTypeTo{compressor}")()
+                            (writer.SetHeaderTypeToUInt64 if wide else writer.SetHeaderTypeToUInt32)()
+                            writer.SetByteOrder(0 if wide else 1)
+                            writer.SetEncodeAppendedData(encoded)
+                            writer.SetBlockSize(4096)
+                            writer.SetFileName(self.file(f"a.{extension}"))
+                            self.assertEqual(writer.Write(), 1)
+                            self.check(self.file(f"a.{extension}"), made, f"{extension} {mode} {compressor} {wide} {encoded}")
+
+    def test_other_cells(self):
+        import vtk
+        grid = vtk.vtkUnstructuredGrid()
+        points = vtk.vtkPoints()
+        for x, y in ((0, 0), (1, 0), (0, 1), (1, 1), (0, 2), (1, 2)):
+            points.InsertNextPoint(x, y, 0)
+        grid.SetPoints(points)
+        grid.InsertNextCell(vtk.VTK_PIXEL, 4, [0, 1, 2, 3])
+        grid.InsertNextCell(vtk.VTK_TRIANGLE_STRIP, 4, [2, 3, 4, 5])
+        grid.InsertNextCell(vtk.VTK_QUAD, 4, [0, 1, 3, 2])
+        grid.InsertNextCell(vtk.VTK_VERTEX, 1, [5])
+        writer = vtk.vtkXMLUnstructuredGridWriter()
+        writer.SetInputData(grid)
+        writer.SetFileName(self.file("a.vtu"))
+        writer.Write()
+        faces = ps.read(self.file("a.vtu")).faces
+        np.testing.assert_array_equal(faces, [[0, 1, 3], [0, 3, 2], [2, 3, 4], [4, 3, 5], [0, 1, 3], [0, 3, 2]])
+
+    def test_ours_in_vtk(self):
+        import vtk
+        from vtk.util.numpy_support import vtk_to_numpy
+        points, normals = sphere(2000, centre=(500000, 4649000, 100), dtype=np.float64)
+        rgb = np.random.default_rng(2).integers(0, 256, (2000, 3), dtype=np.uint8)
+        mesh = ps.reconstruct(points, normals, depth=4, attributes={"rgb": rgb, "a<b": np.arange(2000, dtype=np.int16)})
+        cloud = ps.Cloud(points, normals, {"rgb": rgb})
+        for reader, extension in ((vtk.vtkXMLPolyDataReader(), "vtp"), (vtk.vtkXMLUnstructuredGridReader(), "vtu")):
+            for ours in (mesh, cloud):
+                ours.save(self.file(f"a.{extension}"))
+                reader.SetFileName(self.file(f"a.{extension}"))
+                reader.Modified()
+                reader.Update()
+                found = reader.GetOutput()
+                places = mesh.vertices if ours is mesh else cloud.points
+                np.testing.assert_array_equal(vtk_to_numpy(found.GetPoints().GetData()), places)
+                np.testing.assert_array_equal(vtk_to_numpy(found.GetPointData().GetArray("RGB")), ours.attributes["rgb"])
+                np.testing.assert_array_equal(vtk_to_numpy(found.GetPointData().GetNormals()), ours.normals)
+                self.assertEqual(found.GetNumberOfCells(), len(mesh.faces) if ours is mesh else len(points))
+                again = ps.read(self.file(f"a.{extension}"))
+                np.testing.assert_allclose(again.vertices if ours is mesh else again.points, places, atol=1e-6)
+                if ours is mesh:
+                    np.testing.assert_array_equal(again.faces, mesh.faces)
+                    np.testing.assert_array_equal(again.attributes["a<b"], mesh.attributes["a<b"])
+
+    def test_broken_files_are_refused(self):
+        points, normals = sphere(300)
+        for extension in ("vtp", "vtu"):
+            path = self.file(f"a.{extension}")
+            ps.reconstruct(points, normals, depth=3).save(path)
+            with open(path, "rb") as file:
+                data = file.read()
+            random = np.random.default_rng(6)
+            for trial in range(400):
+                wrong = bytearray(data if trial % 2 else data[:random.integers(0, len(data) - 40)])
+                for place in random.integers(0, max(1, len(wrong)), 2 if trial % 2 else 0):
+                    wrong[place] = random.integers(0, 256)
+                with open(path, "wb") as file:
+                    file.write(wrong)
+                try:
+                    ps.read(path)
+                    self.assertEqual(trial % 2, 1, f"{len(wrong)} of {len(data)} bytes are enough")
+                except ps.InvalidInputError:
+                    pass
+
+
+@unittest.skipUnless(shutil.which("assimp"), "needs assimp-utils")
+class Printing(Case):
+    def test_3mf_in_assimp(self):
+        points, normals = sphere(2000)
+        rgb = np.random.default_rng(2).integers(0, 256, (2000, 3), dtype=np.uint8)
+        mesh = ps.reconstruct(points, normals, depth=4, attributes={"rgb": rgb})
+        mesh.save(self.file("a.3mf"))
+        subprocess.run(["assimp", "export", self.file("a.3mf"), self.file("a.ply")], check=True, stdout=subprocess.DEVNULL)
+        found = ps.read(self.file("a.ply"))
+        corners = lambda m: np.sort(m.vertices[m.faces].reshape(-1, 9), axis=0)
+        np.testing.assert_allclose(corners(found), corners(mesh), atol=1e-5)
+
+    def test_3mf_has_colours_and_says_what_is_closed(self):
+        points, normals = sphere(2000)
+        rgb = np.random.default_rng(2).integers(0, 256, (2000, 3), dtype=np.uint8)
+        names = {"": "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
+                 "m": "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"}
+        for keep, kind in ((slice(None), "model"), (slice(1, None), "surface")):
+            mesh = ps.reconstruct(points, normals, depth=4, attributes={"rgb": rgb})
+            mesh = ps.Mesh(mesh.vertices, mesh.faces[keep], attributes={"rgb": mesh.attributes["rgb"]})
+            mesh.save(self.file("a.3mf"))
+            with zipfile.ZipFile(self.file("a.3mf")) as archive:
+                self.assertIsNone(archive.testzip())
+                root = xml.etree.ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+            self.assertEqual(root.find(".//{*}object").get("type"), kind)
+            palette = [color.get("color") for color in root.findall(".//m:color", names)]
+            triangles = root.findall(".//{*}triangle")
+            self.assertEqual(len(triangles), len(mesh.faces))
+            for triangle, face in list(zip(triangles, mesh.faces))[::17]:
+                for corner, vertex in zip(("p1", "p2", "p3"), face):
+                    red, green, blue = mesh.attributes["rgb"][vertex]
+                    self.assertEqual(palette[int(triangle.get(corner))], f"#{red:02X}{green:02X}{blue:02X}FF")
+
+
+class Bgeo(Case):
+    def test_of_partio(self):
+        cloud = ps.read(FILES / "partio.bgeo")
+        np.testing.assert_allclose(cloud.local_points, [[0, 0.1, 0.2], [0.1, 0.2, 0.3], [0.2, 0.3, 0.4], [0.3, 0.4, 0.5], [0.4, 0.5, 0.6]], rtol=1e-6)
+        np.testing.assert_array_equal(cloud.attributes["id"], range(5))
+        np.testing.assert_allclose(cloud.attributes["life"], [[life, 10] for life in (-1.2, -0.2, 0.8, 1.8, 2.8)], rtol=1e-6)
+
+    def test_broken_files_are_refused(self):
+        data = (FILES / "partio.bgeo").read_bytes()
+        path = self.file("a.bgeo")
+        random = np.random.default_rng(8)
+        for trial in range(300):
+            wrong = bytearray(data[:random.integers(0, 215)] if trial % 2 else data)
+            if trial % 2 == 0:
+                wrong[random.integers(0, 78)] = random.integers(0, 256)
+            with open(path, "wb") as out:
+                out.write(wrong)
+            try:
+                ps.read(path)
+                self.assertEqual(trial % 2, 0, f"{len(wrong)} bytes are enough")
+            except ps.InvalidInputError:
+                pass
 
 
 @unittest.skipUnless(has("open3d"), "needs python3-open3d")

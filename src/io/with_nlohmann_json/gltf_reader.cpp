@@ -15,7 +15,7 @@
 
 #include "core/vec3.hpp"
 #include "io/gltf.hpp"
-#include "io/point_table.hpp"
+#include "io/pieces.hpp"
 #include "io/readers.hpp"
 #include "io/with_nlohmann_json/gltf_document.hpp"
 
@@ -243,25 +243,20 @@ std::vector<std::int64_t> corners_of(const GltfDocument& document, const Json& p
 }
 
 /// The triangles of a list, a strip or a fan; none of lines and points.
-void add_triangles(const std::vector<std::int64_t>& corners, std::int64_t mode, bool mirrored, std::int64_t first,
+void add_triangles(const std::vector<std::int64_t>& corners, std::int64_t mode, bool mirrored,
                    std::vector<Triangle>& triangles) {
   const std::size_t step = mode == 4 ? 3 : 1;
   for (std::size_t i = 0; (mode == 4 || mode == 5 || mode == 6) && i + 2 < corners.size(); i += step) {
     std::array<std::int64_t, 3> ids{mode == 6 ? corners[0] : corners[i], corners[i + 1], corners[i + 2]};
     if ((mode == 5 && i % 2 == 1) != mirrored) std::swap(ids[1], ids[2]);
-    triangles.push_back({static_cast<std::int32_t>(first + ids[0]), static_cast<std::int32_t>(first + ids[1]),
-                         static_cast<std::int32_t>(first + ids[2])});
+    triangles.push_back(
+        {static_cast<std::int32_t>(ids[0]), static_cast<std::int32_t>(ids[1]), static_cast<std::int32_t>(ids[2])});
   }
 }
 
-struct Scene {
-  Cloud vertices;
-  std::vector<Triangle> triangles;
-};
-
-Scene read_scene(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
+Pieces read_pieces(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
   const GltfDocument document(source);
-  Scene scene;
+  Pieces pieces(ex, source, options);
   for (const Use& use : uses_of(document)) {
     const Json& mesh = document.item("meshes", use.mesh);
     const auto primitives = mesh.find("primitives");
@@ -270,18 +265,14 @@ Scene read_scene(exec::Cpu& ex, const Source& source, const ReadOptions& options
       if (!primitive.is_object()) document.fail_here("a primitive is no object");
       const Columns columns = columns_of(document, primitive, use.transform);
       if (columns.table.rows == 0) continue;
-      const std::int64_t first = scene.vertices.size();
-      if (first + columns.table.rows > std::numeric_limits<std::int32_t>::max())
-        throw Error(ErrorCode::over_limit, printable(source.name) + ": more than 2147483647 vertices; split the mesh");
+      check_vertex_count(source, columns.table.rows);
+      std::vector<Triangle> triangles;
       add_triangles(corners_of(document, primitive, columns.table.rows), document.whole(primitive, "mode", 4),
-                    determinant(use.transform) < 0, first, scene.triangles);
-      Cloud part = assemble(ex, source, columns.table, options.shift);
-      if (part.dropped > 0 && !scene.triangles.empty())
-        fail(source, "has a vertex that is not finite", "export the mesh again");
-      merge_into(scene.vertices, std::move(part));
+                    determinant(use.transform) < 0, triangles);
+      pieces.add(columns.table, triangles);
     }
   }
-  return scene;
+  return pieces;
 }
 
 }  // namespace
@@ -300,17 +291,11 @@ bool gltf_announces_faces(std::string_view start) {
 }
 
 Mesh parse_gltf_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
-  Scene scene = read_scene(ex, source, options);
-  for (Vec3f& n : scene.vertices.normals) {
-    const double size = std::sqrt(squared_length(to_double(n)));
-    if (size > 0 && std::abs(size - 1) > 1e-6) n = to_float(to_double(n) / size);
-  }
-  Cloud& v = scene.vertices;
-  return {v.origin, std::move(v.positions), std::move(v.normals), std::move(v.attributes), std::move(scene.triangles)};
+  return read_pieces(ex, source, options).take_mesh();
 }
 
 Cloud parse_gltf_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
-  return read_scene(ex, source, options).vertices;
+  return read_pieces(ex, source, options).take_cloud();
 }
 
 }  // namespace pointskin::io

@@ -25,12 +25,12 @@ struct ConvertArgs {
   std::string input, output;
   std::string shift = "auto";
   int threads = 0;
-  bool ascii = false, overwrite = false, quiet = false;
+  bool ascii = false, wide = false, overwrite = false, quiet = false;
   GivenOptions given;
 };
 
 std::string write(const ConvertArgs& args, const Mesh& mesh) {
-  write_mesh(args.output, mesh, {.ascii = args.ascii, .threads = args.threads});
+  write_mesh(args.output, mesh, {.ascii = args.ascii, .threads = args.threads, .double_coordinates = args.wide});
   if (args.quiet) return "";
   return fmt::format("{} vertices, {} triangles, {}", mesh.vertices.size(), mesh.triangles.size(),
                      shape_words(mesh, args.threads));
@@ -39,7 +39,7 @@ std::string write(const ConvertArgs& args, const Mesh& mesh) {
 std::string write(const ConvertArgs& args, const Cloud& cloud) {
   check_cloud_name(args.output, "{} holds a cloud, and clouds are written as {} only", args.input);
   warn_about_dropped(cloud.dropped);
-  write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads});
+  write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads, .double_coordinates = args.wide});
   return fmt::format("{} points", cloud.size());
 }
 
@@ -68,7 +68,10 @@ OptionTable convert_options(ConvertArgs& args) {
                        "; cloud: " + extension_list(&FormatInfo::writes_clouds) + "; - is stdout",
                    &args.output, {}, {.required = true}),
             shift_row(args.shift)}},
-          {"Files", {ascii_row(args.ascii), overwrite_row(args.overwrite)}},
+          {"Files",
+           {ascii_row(args.ascii),
+            option("--double", "write coordinates of PLY as double also where float holds them", &args.wide),
+            overwrite_row(args.overwrite)}},
           {"Limits", {threads_row(args.threads)}},
           quiet_option(args.quiet)};
 }

@@ -245,8 +245,9 @@ PSK_C_API psk_code psk_cloud_keep(psk_cloud* cloud, const uint8_t* keep, int64_t
 
 typedef struct psk_write_options {
   size_t size;
-  int32_t ascii;   /* 1: PLY as text */
-  int32_t threads; /* 0: all */
+  int32_t ascii;              /* 1: PLY as text */
+  int32_t threads;            /* 0: all */
+  int32_t double_coordinates; /* 1: PLY with coordinates as double also where the origin is zero */
 } psk_write_options;
 
 /* Writes a cloud; the format follows the extension (docs/formats.md). The file appears whole or not at all. */

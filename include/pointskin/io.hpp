@@ -52,9 +52,11 @@ Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 Mesh read_mesh(const std::string& path, const ReadOptions& options = {});
 
 struct WriteOptions {
-  bool ascii =
-      false;        ///< PLY as text, numbers in the fewest digits that read back equal; OBJ is text always, STL never
+  /// PLY as text, numbers in the fewest digits that read back equal; OBJ is text always, STL never.
+  bool ascii = false;
   int threads = 0;  ///< CPU threads, 0: all
+  /// PLY with coordinates as double also where the origin is zero, for programs that expect them so.
+  bool double_coordinates = false;
 };
 
 /// Writes `mesh`; the format follows the extension: .ply (binary little endian, `list uchar int vertex_indices`), .obj,

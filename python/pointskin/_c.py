@@ -151,6 +151,7 @@ class psk_write_options(Structure):
         ("size", c_size_t),
         ("ascii", c_int32),
         ("threads", c_int32),
+        ("double_coordinates", c_int32),
     )
 
 

@@ -204,7 +204,8 @@ class Cloud:
                           lambda i: library().psk_cloud_attribute(pointer, i), lambda array: host_view(self.handle, array, 1))
 
     def save(self, path: "os.PathLike[str] | str", **options: Any) -> None:
-        """Writes a file; the format follows the extension. Options: ascii, threads. Raises OutputNotWrittenError."""
+        """Writes a file; the format follows the extension. Options: ascii, double_coordinates (PLY), threads.
+        Raises OutputNotWrittenError."""
         call("psk_cloud_write", self.handle, encoded(path), write_options(options))
 
     def copy(self) -> "Cloud":

@@ -51,7 +51,7 @@ AttributeType stored_type(const Attribute& attribute) {
 }
 
 std::string vertex_header(const VertexArrays& v, const std::vector<AttributeType>& types, const char* encoding) {
-  const char* type = is_zero(v.origin) ? "float" : "double";
+  const char* type = v.is_wide() ? "double" : "float";
   std::string header = fmt::format("ply\nformat {} 1.0\nelement vertex {}\n", encoding, v.positions.size());
   std::unordered_set<std::string> names;
   const auto add = [&](const char* property_type, const std::string& name) {
@@ -77,7 +77,7 @@ void check_shapes(const VertexArrays& v) {
 }
 
 std::size_t row_bytes_of(const VertexArrays& v, const std::vector<AttributeType>& types) {
-  std::size_t bytes = is_zero(v.origin) ? 3 * sizeof(float) : 3 * sizeof(double);
+  std::size_t bytes = v.is_wide() ? 3 * sizeof(double) : 3 * sizeof(float);
   if (!v.normals.empty()) bytes += sizeof(Vec3f);
   for (const AttributeType type : types) bytes += size_of(type);
   return bytes;
@@ -105,7 +105,7 @@ void store_values(const AttributeValues& values, AttributeType type, const RowRa
 
 /// Writes rows, the first one to `out`, column by column.
 void store_rows(const VertexArrays& v, const std::vector<AttributeType>& types, const RowRange& rows, char* out) {
-  if (is_zero(v.origin)) {
+  if (!v.is_wide()) {
     rows.for_each(out, [&](char* to, std::size_t i) { store(to, v.positions[i]); });
     out += sizeof(Vec3f);
   } else {
@@ -146,12 +146,13 @@ std::vector<AttributeType> stored_types(const VertexArrays& vertices) {
 
 Blocks format_ply_cloud(const Cloud& cloud, const WriteOptions& options) {
   const auto format = options.ascii ? format_ply_ascii : format_ply;
-  return format({cloud.origin, cloud.positions, cloud.normals, cloud.attributes}, nullptr);
+  return format({cloud.origin, cloud.positions, cloud.normals, cloud.attributes, options.double_coordinates}, nullptr);
 }
 
 Blocks format_ply_mesh(const Mesh& mesh, const WriteOptions& options) {
   const auto format = options.ascii ? format_ply_ascii : format_ply;
-  return format({mesh.origin, mesh.vertices, mesh.normals, mesh.attributes}, &mesh.triangles);
+  return format({mesh.origin, mesh.vertices, mesh.normals, mesh.attributes, options.double_coordinates},
+                &mesh.triangles);
 }
 
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {

@@ -17,7 +17,7 @@ void append_number(std::string& bytes, Number value) {
 
 void append_position(std::string& bytes, const VertexArrays& v, std::size_t i) {
   const Vec3f& p = v.positions[i];
-  if (is_zero(v.origin)) {
+  if (!v.is_wide()) {
     for (const float x : {p.x, p.y, p.z}) append_number(bytes, x);
     return;
   }

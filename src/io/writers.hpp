@@ -21,6 +21,10 @@ struct VertexArrays {
   const std::vector<Vec3f>& positions;
   const std::vector<Vec3f>& normals;
   const std::vector<Attribute>& attributes;
+  bool asks_for_double = false;
+
+  /// True if coordinates are written as double.
+  [[nodiscard]] bool is_wide() const { return asks_for_double || origin[0] != 0 || origin[1] != 0 || origin[2] != 0; }
 };
 
 /// PLY, binary or ascii as `options` want it. @throws Error as format_ply

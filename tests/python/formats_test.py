@@ -401,6 +401,17 @@ class Meshes(Case):
                 colours = np.round(255 * np.asarray(found.vertex_colors))[np.asarray(found.triangles)]
                 np.testing.assert_allclose(colours, mesh.attributes["rgb"][mesh.faces], atol=0.5, err_msg=name)
 
+    def test_coordinates_in_double_on_request(self):
+        mesh = self.mesh()
+        for ascii in (False, True):
+            mesh.save(self.file("f.ply"), ascii=ascii)
+            mesh.save(self.file("d.ply"), double_coordinates=True, ascii=ascii)
+            self.program("convert", self.file("f.ply"), self.file("c.ply"), "--double", *(["--ascii"] if ascii else []))
+            for name, kind in (("f.ply", b"float x"), ("d.ply", b"double x"), ("c.ply", b"double x")):
+                with open(self.file(name), "rb") as file:
+                    self.assertIn(b"property " + kind, file.read(400), name)
+                np.testing.assert_array_equal(ps.read(self.file(name)).vertices, mesh.vertices, name)
+
     def test_open3ds_here(self):
         import open3d
         made = open3d.geometry.TriangleMesh.create_torus(1.0, 0.4, 20, 12)

@@ -163,6 +163,11 @@ std::vector<Format> make_table() {
         .read = "positions and normals as bare floats, as PoissonRecon has them",
         .tested_against = "numpy"},
        {.read_cloud = parse_bnpts}},
+      {{.name = "PTX",
+        .extensions = {".ptx"},
+        .read = "points of all scans in world coordinates, intensity, colours, where the scanner stood",
+        .tested_against = "CloudCompare reads the same points"},
+       {.read_cloud = parse_ptx}},
   };
 }
 

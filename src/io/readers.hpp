@@ -19,6 +19,7 @@ Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options
 Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_las(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_ptx(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_pcd(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_bnpts(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_binary_xyz(exec::Cpu& ex, const Source& source, const ReadOptions& options);

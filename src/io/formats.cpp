@@ -25,6 +25,7 @@ bool has_extension(const FormatInfo& format, const std::string& extension) {
 
 constexpr char kJson[] = "nlohmann-json";
 constexpr char kMinizip[] = "minizip";
+constexpr char kPugixml[] = "pugixml";
 
 FormatFunctions gltf_functions() {
   FormatFunctions run;
@@ -42,6 +43,15 @@ FormatFunctions glb_functions() {
     run.has_magic = is_glb;
     run.write_cloud = format_glb_cloud;
     run.write_mesh = format_glb_mesh;
+  }
+  return run;
+}
+
+FormatFunctions e57_functions() {
+  FormatFunctions run;
+  if constexpr (kHasPugixml) {
+    run.has_magic = is_e57;
+    run.read_cloud = parse_e57;
   }
   return run;
 }
@@ -168,6 +178,14 @@ std::vector<Format> make_table() {
         .read = "points of all scans in world coordinates, intensity, colours, where the scanner stood",
         .tested_against = "CloudCompare reads the same points"},
        {.read_cloud = parse_ptx}},
+      {{.name = "E57",
+        .extensions = {".e57"},
+        .read = "points of all scans in world coordinates, normals, intensity, colours, all scalars, where the scanner "
+                "stood",
+        .library = kPugixml,
+        .tested_against = "files of libE57Format",
+        .built = kHasPugixml},
+       e57_functions()},
   };
 }
 

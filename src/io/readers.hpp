@@ -20,6 +20,7 @@ Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options)
 Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_las(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_ptx(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_e57(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_pcd(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_bnpts(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_binary_xyz(exec::Cpu& ex, const Source& source, const ReadOptions& options);
@@ -39,6 +40,9 @@ bool is_glb(std::string_view start);
 
 /// False if the start of the JSON tells of points and lines alone.
 bool gltf_announces_faces(std::string_view start);
+
+/// True if the file starts as E57 does.
+bool is_e57(std::string_view start);
 
 /// True if the file starts as PCD does.
 bool is_pcd(std::string_view start);

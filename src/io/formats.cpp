@@ -26,6 +26,7 @@ bool has_extension(const FormatInfo& format, const std::string& extension) {
 constexpr char kJson[] = "nlohmann-json";
 constexpr char kMinizip[] = "minizip";
 constexpr char kVtkXml[] = "pugixml, zlib";
+constexpr char kPugixml[] = "pugixml";
 
 FormatFunctions gltf_functions() {
   FormatFunctions run;
@@ -43,6 +44,15 @@ FormatFunctions glb_functions() {
     run.has_magic = is_glb;
     run.write_cloud = format_glb_cloud;
     run.write_mesh = format_glb_mesh;
+  }
+  return run;
+}
+
+FormatFunctions e57_functions() {
+  FormatFunctions run;
+  if constexpr (kHasPugixml) {
+    run.has_magic = is_e57;
+    run.read_cloud = parse_e57;
   }
   return run;
 }
@@ -218,6 +228,19 @@ std::vector<Format> make_table() {
         .read = "positions and normals as bare floats, as PoissonRecon has them",
         .tested_against = "numpy"},
        {.read_cloud = parse_bnpts}},
+      {{.name = "PTX",
+        .extensions = {".ptx"},
+        .read = "points of all scans in world coordinates, intensity, colours, where the scanner stood",
+        .tested_against = "CloudCompare"},
+       {.read_cloud = parse_ptx}},
+      {{.name = "E57",
+        .extensions = {".e57"},
+        .read = "points of all scans in world coordinates, normals, intensity, colours, all scalars, where the scanner "
+                "stood",
+        .library = kPugixml,
+        .tested_against = "libE57Format",
+        .built = kHasPugixml},
+       e57_functions()},
   };
 }
 

@@ -19,6 +19,8 @@ Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options
 Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_las(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_ptx(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_e57(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_pcd(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_vtk_xml_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Mesh parse_vtk_xml_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options);
@@ -43,6 +45,10 @@ bool is_glb(std::string_view start);
 bool gltf_announces_faces(std::string_view start);
 
 /// True if the file starts as PCD does, or as BGEO.
+/// True if the file starts as E57 does.
+bool is_e57(std::string_view start);
+
+/// True if the file starts as PCD does.
 bool is_pcd(std::string_view start);
 bool is_bgeo(std::string_view start);
 

@@ -44,11 +44,8 @@ bool is_glb(std::string_view start);
 /// False if the start of the JSON tells of points and lines alone.
 bool gltf_announces_faces(std::string_view start);
 
-/// True if the file starts as PCD does, or as BGEO.
-/// True if the file starts as E57 does.
+/// True if the file starts as files of the format do.
 bool is_e57(std::string_view start);
-
-/// True if the file starts as PCD does.
 bool is_pcd(std::string_view start);
 bool is_bgeo(std::string_view start);
 

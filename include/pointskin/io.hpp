@@ -25,19 +25,19 @@ struct ReadOptions {
 /// three are whole numbers in 0..255 and some exceed 1; 7: xyz + scalar + rgb; 9: xyz + rgb + normal, or xyz + normal +
 /// rgb where only that fits; any number when a first line or comment names the columns), legacy VTK (ascii and binary;
 /// the points of POLYDATA and UNSTRUCTURED_GRID; the components of a vector v are v_x, v_y and v_z), JSON ([[x, y, z],
-/// ...]), LAS 1.0 to 1.4 and LAZ, PCD (ascii, binary, binary_compressed), NPY, NPZ, BNPTS, BGEO and XYZ of bare floats,
-/// and the vertices of OBJ, STL, OFF, GLB, GLTF, VTP, VTU and NPZ (below); docs/formats.md has the table. The format is
-/// taken from the content where it begins with a magic number, else from the extension, else (no extension) from the
-/// content again. `path` "-" reads stdin. Coordinates are read as double; points with a coordinate that is not finite
-/// or larger than 1e38 are dropped and counted in Cloud::dropped; a non-finite normal becomes a zero normal. Every
-/// extra scalar property travels by name and in the type of the file, all integers of VTK with 64 bits included; VTK's
-/// color_scalars are uint8 red, green, blue and alpha. Colours of OBJ vertices (`v x y z r g b`, all of them) are uint8
-/// red, green and blue if they are shares of 1 or whole numbers in 0..255, else float32. Text has no types: whole
-/// numbers in 0..255 named red, green, blue or alpha are uint8; whole numbers under a name that sounds like a label's
-/// are int32 if they fit; all else is float32 if the shortest decimals of the floats are the numbers that are written,
-/// else float64. O(n); memory: the cloud plus the mapped file, for text also what its columns need (double for
-/// coordinates and for what float32 does not hold). Deterministic for any thread count. The file must not be shortened
-/// while it is read.
+/// ...]), LAS 1.0 to 1.4 and LAZ, PCD (ascii, binary, binary_compressed), NPY, NPZ, PTX, E57, BNPTS, BGEO and XYZ of
+/// bare floats, and the vertices of OBJ, STL, OFF, GLB, GLTF, VTP, VTU and NPZ (below); docs/formats.md has the table.
+/// The format is taken from the content where it begins with a magic number, else from the extension, else (no
+/// extension) from the content again. `path` "-" reads stdin. Coordinates are read as double; points with a coordinate
+/// that is not finite or larger than 1e38 are dropped and counted in Cloud::dropped; a non-finite normal becomes a zero
+/// normal. Every extra scalar property travels by name and in the type of the file, all integers of VTK with 64 bits
+/// included; VTK's color_scalars are uint8 red, green, blue and alpha. Colours of OBJ vertices (`v x y z r g b`, all of
+/// them) are uint8 red, green and blue if they are shares of 1 or whole numbers in 0..255, else float32. Text has no
+/// types: whole numbers in 0..255 named red, green, blue or alpha are uint8; whole numbers under a name that sounds
+/// like a label's are int32 if they fit; all else is float32 if the shortest decimals of the floats are the numbers
+/// that are written, else float64. O(n); memory: the cloud plus the mapped file, for text also what its columns need
+/// (double for coordinates and for what float32 does not hold). Deterministic for any thread count. The file must not
+/// be shortened while it is read.
 /// @throws Error invalid_input with file and line or byte, when the file is missing, empty, truncated or garbled.
 ///         Counts are compared with the file's size before memory is taken.
 Cloud read_cloud(const std::string& path, const ReadOptions& options = {});

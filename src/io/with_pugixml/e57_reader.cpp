@@ -66,6 +66,7 @@ class E57Points {
       : source_(source), pages_(pages), scans_(std::move(scans)) {}
 
   Cloud read(exec::Cpu& ex, const ReadOptions& options) {
+    check_records();
     const auto count = static_cast<std::int64_t>(scans_.size());
     streams_.resize(scans_.size());
     run_in_order(ex, count, [&](std::int64_t s) {
@@ -82,6 +83,16 @@ class E57Points {
   }
 
  private:
+  /// Many scans of a small file must not name the same bytes again and again.
+  void check_records() const {
+    std::uint64_t left = pages_.bytes.size();
+    for (const E57Scan& scan : scans_) {
+      if (scan.records > left)
+        fail(source_, "its scans promise more points than it has bytes", "copy or export it again");
+      left -= scan.records;
+    }
+  }
+
   /// Makes the columns, which have a row for each point of each scan.
   void lay_out(exec::Cpu& ex) {
     TypedNames types;

@@ -68,7 +68,7 @@ OptionTable formats_options(FormatsArgs& args) {
 }  // namespace
 
 Command formats_command() {
-  return make_command<FormatsArgs>({"formats", "List the file formats that are read and written."}, formats_options,
+  return make_command({"formats", "List the file formats that are read and written."}, formats_options,
                                    run_formats);
 }
 

@@ -61,7 +61,7 @@ struct WriteOptions {
 
 /// Writes `mesh`; the format follows the extension: .ply (binary little endian, `list uchar int vertex_indices`), .obj,
 /// .stl (binary), .off (text, with normals and uint8 colours), .glb (glTF 2.0, the origin as the node's translation,
-/// all attributes; integers of 32 and 64 bits as floats), .vtp and .vtu (VTK's XML, all attributes), .3mf (with uint8
+/// all attributes; integers of 32 and 64 bits as floats), .vtp and .vtu (VTK's XML, all attributes), .3mf (3MF; uint8
 /// colours), .npz (NumPy's arrays vertices, faces, normals, rgb and every attribute in its type). `path` "-" writes PLY
 /// to stdout. Vertices are float, or double when mesh.origin is not zero. PLY holds every attribute in its type, bit
 /// for bit, but: integers of 64 bits are int or uint if those hold all of them, else double, which rounds beyond 2^53;

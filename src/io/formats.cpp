@@ -274,6 +274,9 @@ const Format& detect(Formats table, const Source& source, bool want_mesh) {
   const Format* format = find_magic(table, source.bytes);
   if (format == nullptr)
     format = extension.empty() ? guess(table, source.bytes, want_mesh) : find_extension(table, extension);
+  if (format != nullptr && format->info.built && !format->info.reads_clouds)
+    fail(source, "is " + format->info.name + ", which is written, but not read",
+         "use " + extension_list(want_mesh ? &FormatInfo::reads_meshes : &FormatInfo::reads_clouds, infos_of(table)));
   if (format != nullptr && format->info.built) return *format;
   if (format != nullptr)
     fail(source, "is " + format->info.name + ", which this build was made without",

@@ -55,7 +55,8 @@ class LasTable {
   template <class T, class F>
   void add_made(std::string name, const F& f) {
     constexpr std::int64_t kBlockRows = 1 << 14;
-    AttributeValues& own = made_.emplace_back(type_of<T>(), static_cast<std::size_t>(table_.rows));
+    made_.push_back(AttributeValues(type_of<T>(), static_cast<std::size_t>(table_.rows)));
+    AttributeValues& own = made_.back();
     T* const values = own.edit<T>().data();
     ex_.run_blocks((table_.rows + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {
       for (std::int64_t row = b * kBlockRows; row < std::min(table_.rows, (b + 1) * kBlockRows); ++row)

@@ -24,7 +24,8 @@ TEST(Formats, HaveNamesAndExtensionsOfTheirOwn) {
       EXPECT_EQ(extension_of("some/file" + extension), extension);
       EXPECT_EQ(format_of("some/file" + extension), &format);
     }
-    EXPECT_TRUE(format.reads_clouds) << format.name << ": a mesh is read as a cloud, too";
+    EXPECT_TRUE(format.reads_clouds || !format.reads_meshes) << format.name << ": a mesh is read as a cloud, too";
+    EXPECT_TRUE(format.reads_clouds || format.writes_meshes) << format.name << ": nothing is done with it";
   }
 }
 
@@ -66,6 +67,12 @@ TEST(Formats, MeshesThatAreWrittenHoldFacesAndAreReadAgain) {
     }
     ++written;
     write_mesh(path, box);
+    if (!format.reads_clouds) {
+      const std::string story = story_of(ErrorCode::invalid_input, [&] { read_cloud(path); });
+      EXPECT_NE(story.find("is " + format.name + ", which is written, but not read"), std::string::npos) << story;
+      EXPECT_NE(story_of(ErrorCode::invalid_input, [&] { read_mesh(path); }), "") << format.name;
+      continue;
+    }
     EXPECT_TRUE(may_hold_faces(path)) << format.name;
     const Mesh again = read_mesh(path);
     EXPECT_EQ(again.triangles.size(), box.triangles.size()) << format.name;
@@ -77,7 +84,7 @@ TEST(Formats, MeshesThatAreWrittenHoldFacesAndAreReadAgain) {
 
 TEST(Formats, MeshesOfPointsAreRefusedByName) {
   for (const io::Format& format : io::formats())
-    if (!format.info.reads_meshes) {
+    if (!format.info.reads_meshes && format.info.reads_clouds) {
       const std::string story = story_of(ErrorCode::invalid_input, [&] {
         io::parse_mesh({"a" + format.info.extensions.front(), "1 2 3\n"}, {});
       });

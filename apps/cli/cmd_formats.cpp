@@ -68,8 +68,7 @@ OptionTable formats_options(FormatsArgs& args) {
 }  // namespace
 
 Command formats_command() {
-  return make_command({"formats", "List the file formats that are read and written."}, formats_options,
-                                   run_formats);
+  return make_command({"formats", "List the file formats that are read and written."}, formats_options, run_formats);
 }
 
 }  // namespace pointskin::cli

@@ -25,7 +25,8 @@ test('every format, cloud and session are saved', { skip: noBrowser(), timeout: 
       const size = statSync(file).size;
       assert.ok(said.replace(/\D/g, '').includes(String(size)), `${said}: ${size}`);
       const check = runProgram('check', file);
-      assert.ok([0, 1].includes(check.status), `${name}: ${check.stderr}`);
+      const isRead = !/which is written, but not read/.test(check.stderr);
+      assert.ok(!isRead || [0, 1].includes(check.status), `${name}: ${check.stderr}`);
     }
     const ply = readFileSync(join(studio.program.folder, 'torus.ply'));
     assert.equal(createHash('sha256').update(ply).digest('hex'), await studio.client.digest());

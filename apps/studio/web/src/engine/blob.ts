@@ -160,10 +160,19 @@ function edgeNumber(a: number, b: number): number {
 export function signedVolume(positions: Uint16Array, index: Uint32Array): number {
   let six = 0;
   for (let i = 0; i < index.length; i += 3) {
-    const [a, b, c] = [index[i]! * 4, index[i + 1]! * 4, index[i + 2]! * 4];
-    const [ax, ay, az] = [positions[a]!, positions[a + 1]!, positions[a + 2]!];
-    const [bx, by, bz] = [positions[b]! - ax, positions[b + 1]! - ay, positions[b + 2]! - az];
-    const [cx, cy, cz] = [positions[c]! - ax, positions[c + 1]! - ay, positions[c + 2]! - az];
+    // No arrays: the loop runs for every surface that is drawn.
+    const a = index[i]! * 4;
+    const b = index[i + 1]! * 4;
+    const c = index[i + 2]! * 4;
+    const ax = positions[a]!;
+    const ay = positions[a + 1]!;
+    const az = positions[a + 2]!;
+    const bx = positions[b]! - ax;
+    const by = positions[b + 1]! - ay;
+    const bz = positions[b + 2]! - az;
+    const cx = positions[c]! - ax;
+    const cy = positions[c + 1]! - ay;
+    const cz = positions[c + 2]! - az;
     six += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
   }
   return six / 6;

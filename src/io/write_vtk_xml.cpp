@@ -1,7 +1,5 @@
 // VTK's XML files, .vtp and .vtu: one piece, whose arrays follow the XML as they are.
 // Source: Kitware, "VTK XML formats", docs.vtk.org.
-#include <pointskin/error.hpp>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -115,23 +113,13 @@ void add_points(const VertexArrays& vertices, Arrays& to) {
   to.close("Points");
 }
 
-/// Red, green and blue of bytes as one array, which other programs show.
-std::vector<const Attribute*> colour_channels(const std::vector<Attribute>& attributes) {
-  std::vector<const Attribute*> channels;
-  for (const char* name : {"red", "green", "blue"})
-    for (const Attribute& attribute : attributes)
-      if (attribute.name == name && attribute.type() == AttributeType::uint8 && !attribute.values.has_mask())
-        channels.push_back(&attribute);
-  return channels.size() == 3 ? channels : std::vector<const Attribute*>();
-}
-
 void add_point_data(const VertexArrays& vertices, Arrays& to) {
   const std::size_t rows = vertices.positions.size();
   to.open(vertices.normals.empty() ? "PointData" : "PointData Normals=\"Normals\"");
   if (!vertices.normals.empty())
     to.add("Normals", AttributeType::float32, 3, rows,
            [vertices](std::size_t i, char* out) { put(out, 0, vertices.normals[i]); });
-  const std::vector<const Attribute*> colour = colour_channels(vertices.attributes);
+  const std::vector<const Attribute*> colour = byte_colours(vertices.attributes, false);
   if (!colour.empty())
     to.add("RGB", AttributeType::uint8, 3, rows, [colour](std::size_t i, char* out) {
       for (std::size_t c = 0; c < 3; ++c) put(out, c, colour[c]->values.as<std::uint8_t>()[i]);
@@ -169,10 +157,7 @@ void add_cells(const char* element, std::size_t cells, std::size_t corners, cons
 
 Blocks format_vtk_xml(Kind kind, const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
   const std::size_t points = vertices.positions.size();
-  for (const Attribute& attribute : vertices.attributes)
-    if (attribute.values.size() != points)
-      throw Error(ErrorCode::usage, fmt::format("the attribute {} has {} values for {} vertices", attribute.name,
-                                                attribute.values.size(), points));
+  check_attributes(vertices);
   if (triangles != nullptr && triangles->empty()) triangles = nullptr;
   const std::size_t cells = triangles != nullptr ? triangles->size() : points;
   const std::string type = kind == Kind::polygons ? "PolyData" : "UnstructuredGrid";

@@ -27,6 +27,13 @@ struct VertexArrays {
   [[nodiscard]] bool is_wide() const { return asks_for_double || origin[0] != 0 || origin[1] != 0 || origin[2] != 0; }
 };
 
+/// @throws Error usage if an attribute has not as many values as there are vertices
+void check_attributes(const VertexArrays& vertices);
+
+/// The attributes red, green and blue, and alpha where it is wanted and there, if they are uint8 and nothing is missing in
+/// them; else none. For formats that have colours as one array.
+std::vector<const Attribute*> byte_colours(const std::vector<Attribute>& attributes, bool with_alpha);
+
 /// PLY, binary or ascii as `options` want it. @throws Error as format_ply
 Blocks format_ply_cloud(const Cloud& cloud, const WriteOptions& options);
 Blocks format_ply_mesh(const Mesh& mesh, const WriteOptions& options);

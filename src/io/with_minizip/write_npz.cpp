@@ -1,6 +1,4 @@
 // NumPy's archives of arrays, as numpy.savez writes them: not compressed.
-#include <pointskin/error.hpp>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -8,8 +6,6 @@
 #include <unordered_set>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "io/npy.hpp"
 #include "io/writers.hpp"
@@ -41,7 +37,7 @@ class Arrays {
   }
 
   void add_attributes() {
-    const std::vector<const Attribute*> colour = colour_channels();
+    const std::vector<const Attribute*> colour = byte_colours(vertices_.attributes, true);
     if (!colour.empty()) add_colour(colour);
     for (const Attribute& attribute : vertices_.attributes)
       if (std::find(colour.begin(), colour.end(), &attribute) == colour.end()) add_attribute(attribute);
@@ -64,16 +60,6 @@ class Arrays {
 
   void add_vectors(const std::string& name, const std::vector<Vec3f>& vectors) {
     add(name, AttributeType::float32, vectors.size(), 3, vectors.data(), vectors.size() * sizeof(Vec3f));
-  }
-
-  /// Red, green and blue of type uint8, and alpha if it is there; none if they are not.
-  [[nodiscard]] std::vector<const Attribute*> colour_channels() const {
-    std::vector<const Attribute*> channels;
-    for (const char* name : {"red", "green", "blue", "alpha"})
-      for (const Attribute& attribute : vertices_.attributes)
-        if (attribute.name == name && attribute.type() == AttributeType::uint8 && !attribute.values.has_mask())
-          channels.push_back(&attribute);
-    return channels.size() < 3 || channels[2]->name != "blue" ? std::vector<const Attribute*>() : channels;
   }
 
   void add_colour(const std::vector<const Attribute*>& channels) {
@@ -101,10 +87,7 @@ class Arrays {
 };
 
 Blocks format_npz(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
-  for (const Attribute& attribute : vertices.attributes)
-    if (attribute.values.size() != vertices.positions.size())
-      throw Error(ErrorCode::usage, fmt::format("the attribute {} has {} values for {} vertices", attribute.name,
-                                                attribute.values.size(), vertices.positions.size()));
+  check_attributes(vertices);
   Arrays arrays(vertices);
   arrays.add_positions(triangles != nullptr ? "vertices" : "points");
   if (triangles != nullptr) arrays.add_triangles(*triangles);

@@ -14,12 +14,12 @@
 #include <minizip/unzip.h>
 #include <minizip/zip.h>
 
+#include "io/inflate.hpp"
+
 namespace pointskin::io {
 namespace {
 
 constexpr char kAgain[] = "copy or export it again";
-constexpr std::uint64_t kMostDeflated =
-    1032;  ///< times as small: the most that deflate does (zlib's technical details)
 constexpr std::uint64_t kMostEntries = 1 << 16;
 
 /// Memory as minizip's file.

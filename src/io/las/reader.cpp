@@ -30,14 +30,14 @@ class LasTable {
 
   PointTable make() {
     add_coordinates();
-    add_lie("intensity", AttributeType::uint16, 12);
+    add_stored("intensity", AttributeType::uint16, 12);
     if (format_.is_extended)
       add_extended();
     else
       add_classic();
-    if (format_.time) add_lie("gps_time", AttributeType::float64, *format_.time);
+    if (format_.time) add_stored("gps_time", AttributeType::float64, *format_.time);
     if (format_.colour) add_colours();
-    if (format_.infrared) add_lie("infrared", AttributeType::uint16, *format_.infrared);
+    if (format_.infrared) add_stored("infrared", AttributeType::uint16, *format_.infrared);
     for (const LasExtra& extra : header_.extras) add_extra(extra);
     return std::move(table_);
   }
@@ -47,7 +47,7 @@ class LasTable {
   [[nodiscard]] std::int64_t stride() const { return static_cast<std::int64_t>(header_.point_bytes); }
 
   /// A column that lies in the points as it is.
-  void add_lie(std::string name, AttributeType type, std::size_t offset) {
+  void add_stored(std::string name, AttributeType type, std::size_t offset) {
     table_.columns.push_back({std::move(name), type, type, points_ + offset, stride()});
   }
 
@@ -86,20 +86,20 @@ class LasTable {
     add_bits("return_number", 14, 0, 3);
     add_bits("number_of_returns", 14, 3, 3);
     add_bits("classification", 15, 0, 5);
-    add_lie("scan_angle", AttributeType::int8, 16);
-    add_lie("user_data", AttributeType::uint8, 17);
-    add_lie("point_source_id", AttributeType::uint16, 18);
+    add_stored("scan_angle", AttributeType::int8, 16);
+    add_stored("user_data", AttributeType::uint8, 17);
+    add_stored("point_source_id", AttributeType::uint16, 18);
   }
 
   /// Formats 6 to 10.
   void add_extended() {
     add_bits("return_number", 14, 0, 4);
     add_bits("number_of_returns", 14, 4, 4);
-    add_lie("classification", AttributeType::uint8, 16);
+    add_stored("classification", AttributeType::uint8, 16);
     constexpr double kDegrees = 0.006;
     add_made<float>("scan_angle", [](const char* p) { return kDegrees * load<std::int16_t>(p + 18, false); });
-    add_lie("user_data", AttributeType::uint8, 17);
-    add_lie("point_source_id", AttributeType::uint16, 20);
+    add_stored("user_data", AttributeType::uint8, 17);
+    add_stored("point_source_id", AttributeType::uint16, 20);
   }
 
   /// The standard wants the whole range of 16 bits. Many files have bytes, as they are or 256 or 257 times as large: then
@@ -110,7 +110,7 @@ class LasTable {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t offset = *format_.colour + 2 * c;
       if (factor == 0)
-        add_lie(kNames[c], AttributeType::uint16, offset);
+        add_stored(kNames[c], AttributeType::uint16, offset);
       else
         add_made<std::uint8_t>(
             kNames[c], [offset, factor](const char* p) { return load<std::uint16_t>(p + offset, false) / factor; });
@@ -133,7 +133,7 @@ class LasTable {
   void add_extra(const LasExtra& extra) {
     const auto is_taken = [&](const Column& c) { return c.name == extra.name; };
     if (std::any_of(table_.columns.begin(), table_.columns.end(), is_taken)) return;
-    if (!extra.is_scaled()) return add_lie(extra.name, extra.type, extra.offset);
+    if (!extra.is_scaled()) return add_stored(extra.name, extra.type, extra.offset);
     add_made<double>(extra.name, [&extra](const char* p) {
       return extra.shift + extra.scale * visit_type(extra.type, [&](auto tag) {
                              return static_cast<double>(load<decltype(tag)>(p + extra.offset, false));

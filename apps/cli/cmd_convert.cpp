@@ -25,12 +25,16 @@ struct ConvertArgs {
   std::string input, output;
   std::string shift = "auto";
   int threads = 0;
-  bool ascii = false, wide = false, overwrite = false, quiet = false;
+  bool ascii = false, wide = false, compress = false, overwrite = false, quiet = false;
   GivenOptions given;
 };
 
+WriteOptions write_options(const ConvertArgs& args) {
+  return {.ascii = args.ascii, .threads = args.threads, .double_coordinates = args.wide, .compress = args.compress};
+}
+
 std::string write(const ConvertArgs& args, const Mesh& mesh) {
-  write_mesh(args.output, mesh, {.ascii = args.ascii, .threads = args.threads, .double_coordinates = args.wide});
+  write_mesh(args.output, mesh, write_options(args));
   if (args.quiet) return "";
   return fmt::format("{} vertices, {} triangles, {}", mesh.vertices.size(), mesh.triangles.size(),
                      shape_words(mesh, args.threads));
@@ -39,7 +43,7 @@ std::string write(const ConvertArgs& args, const Mesh& mesh) {
 std::string write(const ConvertArgs& args, const Cloud& cloud) {
   check_cloud_name(args.output, "{} holds a cloud, and clouds are written as {} only", args.input);
   warn_about_dropped(cloud.dropped);
-  write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads, .double_coordinates = args.wide});
+  write_cloud(args.output, cloud, write_options(args));
   return fmt::format("{} points", cloud.size());
 }
 
@@ -51,6 +55,8 @@ int run(const ConvertArgs& args) {
   if (format == nullptr || !format->writes_clouds) check_mesh_output(args.output);
   check_result(args.output);
   warn_about_ascii(args.given, args.output);
+  if (format != nullptr && format->name != "PLY") warn_unused(args.given, {"--double"}, "in files other than PLY");
+  if (format != nullptr && format->name != "GLB") warn_unused(args.given, {"--compress"}, "in files other than GLB");
   const std::variant<Cloud, Mesh> content = read_cloud_or_mesh(args.input, options);
   on_interrupt(OnInterrupt::remember);
   throw_if_interrupted();
@@ -71,6 +77,8 @@ OptionTable convert_options(ConvertArgs& args) {
           {"Files",
            {ascii_row(args.ascii),
             option("--double", "write coordinates of PLY as double also where float holds them", &args.wide),
+            option("--compress", "write GLB a quarter as large, with positions of 16 bits and normals of 12",
+                   &args.compress),
             overwrite_row(args.overwrite)}},
           {"Limits", {threads_row(args.threads)}},
           quiet_option(args.quiet)};

@@ -69,7 +69,7 @@ std::variant<Cloud, Mesh> read_cloud_or_mesh(const std::string& path, const Read
   if (path == "-") make_stdin_seekable();
   if (!may_hold_faces(path)) return read_cloud(path, options);
   Mesh mesh = read_mesh(path, options);
-  if (mesh.triangles.empty()) return cloud_of_vertices(std::move(mesh));
+  if (mesh.triangles.empty()) return read_cloud(path, options);  // which counts the points that it leaves out
   return mesh;
 }
 

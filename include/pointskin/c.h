@@ -248,6 +248,7 @@ typedef struct psk_write_options {
   int32_t ascii;              /* 1: PLY as text */
   int32_t threads;            /* 0: all */
   int32_t double_coordinates; /* 1: PLY with coordinates as double also where the origin is zero */
+  int32_t compress;           /* 1: GLB with quantised values and meshoptimizer's coding */
 } psk_write_options;
 
 /* Writes a cloud; the format follows the extension (docs/formats.md). The file appears whole or not at all. */

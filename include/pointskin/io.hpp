@@ -43,9 +43,10 @@ struct ReadOptions {
 Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
 /// Reads a triangle mesh: PLY (as above, polygons are fanned), OBJ, STL (binary and ascii, equal corners merged), OFF,
-/// NPZ (vertices and faces), VTP, VTU, GLB and GLTF (all triangles of the scene, where its nodes put them; COLOR_0 is
-/// red, green and blue; attributes of applications lose the underscore; buffers as data: URIs or files in the same
-/// folder; no compression). Normals get unit length; those of OBJ are taken if every corner names the normal with the
+/// legacy VTK (polygons, strips, and cells of a grid that are made of triangles), NPZ (vertices and faces), VTP, VTU, GLB
+/// and GLTF (all triangles of the scene, where its nodes put them; COLOR_0 is red, green and blue; attributes of
+/// applications lose the underscore; buffers as data: URIs or files in the same folder; quantised values and
+/// meshoptimizer's coding are understood, Draco's is not). Normals get unit length; those of OBJ are taken if every corner names the normal with the
 /// number of its vertex. Attributes have the types that read_cloud gives them.
 /// @throws Error invalid_input as read_cloud, also for an index out of range or a vertex that is not finite;
 ///         over_limit for more than 2^31 - 1 vertices
@@ -57,6 +58,10 @@ struct WriteOptions {
   int threads = 0;  ///< CPU threads, 0: all
   /// PLY with coordinates as double also where the origin is zero, for programs that expect them so.
   bool double_coordinates = false;
+  /// GLB a quarter as large: positions of 16 bits (a 65,535th of the longest side of the box), normals of 12, and
+  /// meshoptimizer's coding (KHR_mesh_quantization, EXT_meshopt_compression). Vertices and triangles keep their order. Other
+  /// formats are written as ever.
+  bool compress = false;
 };
 
 /// Writes `mesh`; the format follows the extension: .ply (binary little endian, `list uchar int vertex_indices`), .obj,

@@ -152,6 +152,7 @@ class psk_write_options(Structure):
         ("ascii", c_int32),
         ("threads", c_int32),
         ("double_coordinates", c_int32),
+        ("compress", c_int32),
     )
 
 

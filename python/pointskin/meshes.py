@@ -148,7 +148,7 @@ class Mesh:
             return Mesh._of(make("psk_mesh_to_host", self.handle), None, self._report)
 
     def save(self, path: "os.PathLike[str] | str", **options: Any) -> None:
-        """Writes a file; the format follows the extension. Options: ascii, double_coordinates (PLY), threads.
+        """Writes a file; the format follows the extension. Options: ascii, double_coordinates (PLY), compress (GLB), threads.
         Raises OutputNotWrittenError."""
         with self._busy():
             call("psk_mesh_write", self.handle, encoded(path), write_options(options))

@@ -104,6 +104,7 @@ WriteOptions write_options_of(const psk_write_options* given) {
   WriteOptions to;
   to.ascii = from.ascii != 0;
   to.double_coordinates = from.double_coordinates != 0;
+  to.compress = from.compress != 0;
   to.threads = from.threads;
   return to;
 }

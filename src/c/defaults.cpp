@@ -67,6 +67,7 @@ void set_defaults(psk_read_options& options) { options.threads = ReadOptions{}.t
 void set_defaults(psk_write_options& options) {
   options.ascii = WriteOptions{}.ascii;
   options.double_coordinates = WriteOptions{}.double_coordinates;
+  options.compress = WriteOptions{}.compress;
   options.threads = WriteOptions{}.threads;
 }
 

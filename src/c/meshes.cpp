@@ -67,8 +67,6 @@ psk_code psk_read(const char* path, const psk_read_options* options, psk_cloud**
         *mesh = new_mesh(std::move(read));
         return;
       }
-      *cloud = new_cloud(cloud_of_vertices(std::move(read)));
-      return;
     }
     *cloud = new_cloud(read_cloud(name, read_options_of(options)));
   });

@@ -1,6 +1,7 @@
 // BGEO, the particles of Houdini up to version 11 and of programs that write its files since (SPlisHSPlasH, Partio),
 // version 5. Numbers are big endian. Source: "Geometry file formats", SideFX, and Partio's description of it.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "io/inflate.hpp"
+#include "io/libraries.hpp"
 #include "io/readers.hpp"
 
 namespace pointskin::io {
@@ -127,7 +130,14 @@ class Parser {
 bool is_bgeo(std::string_view start) { return start.starts_with(kMagic); }
 
 Cloud parse_bgeo(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
-  return assemble(ex, source, Parser(source).parse(), options.shift);
+  if (!is_gzip(source.bytes)) return assemble(ex, source, Parser(source).parse(), options.shift);
+  if constexpr (!kHasZlib)
+    fail(source, "is packed by gzip, and this build was made without zlib", "unpack it by gunzip");
+  std::optional<std::string> unpacked;
+  if constexpr (kHasZlib) unpacked = gunzip(source.bytes);
+  if (!unpacked) fail(source, "is packed by gzip, and broken", kAgain);
+  const Source inner{source.name, *unpacked};
+  return assemble(ex, inner, Parser(inner).parse(), options.shift);
 }
 
 }  // namespace pointskin::io

@@ -111,9 +111,11 @@ std::vector<Format> make_table() {
        {.looks_like = [](std::string_view, bool) { return true; }, .read_cloud = parse_text}},
       {{.name = "VTK",
         .extensions = {".vtk"},
-        .read = "legacy files up to 5.1, ascii and binary: points, normals, all point data",
-        .tested_against = "splashsurf's files"},
-       {.has_magic = is_vtk, .read_cloud = parse_vtk}},
+        .read =
+            "legacy files up to 5.1, ascii and binary: points, normals, all point data; polygons, strips, and a grid's "
+            "triangles, pixels and quads",
+        .tested_against = "VTK"},
+       {.has_magic = is_vtk, .read_cloud = parse_vtk_cloud, .read_mesh = parse_vtk_mesh}},
       {{.name = "JSON", .extensions = {".json"}, .read = "a list of [x, y, z], as splashsurf writes it"},
        {.looks_like = looks_like_json, .read_cloud = parse_json_points}},
       {{.name = "OBJ",
@@ -147,9 +149,11 @@ std::vector<Format> make_table() {
         .attributes = all,
         .coding = binary,
         .read = "all primitives of the scene where its nodes put them; normals, colours, attributes of applications",
-        .written = "the origin as the node's translation; normals, colours, every attribute; 32-bit integers as floats",
+        .written =
+            "the origin as the node's translation; normals, colours, every attribute; 32-bit integers as floats; if "
+            "asked for, quantised and compressed",
         .library = kJson,
-        .tested_against = "Open3D",
+        .tested_against = "Open3D, three.js",
         .built = kHasJson},
        glb_functions()},
       {{.name = "glTF",
@@ -220,7 +224,8 @@ std::vector<Format> make_table() {
        npz_functions()},
       {{.name = "BGEO",
         .extensions = {".bgeo"},
-        .read = "version 5: points with all float and integer attributes; N as normals, Cd as colours",
+        .read = "version 5, packed by gzip or not: points with all float and integer attributes; N as normals, Cd as "
+                "colours",
         .tested_against = "Partio"},
        {.has_magic = is_bgeo, .read_cloud = parse_bgeo}},
       {{.name = "BNPTS",

@@ -16,7 +16,8 @@ namespace pointskin::io {
 
 /// Parse `source`. @throws Error invalid_input
 Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options);
-Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Cloud parse_vtk_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options);
+Mesh parse_vtk_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_las(exec::Cpu& ex, const Source& source, const ReadOptions& options);
 Cloud parse_ptx(exec::Cpu& ex, const Source& source, const ReadOptions& options);

@@ -1,5 +1,5 @@
-// Legacy VTK files: the points of POLYDATA and UNSTRUCTURED_GRID with their scalars, vectors, normals and field arrays,
-// ascii and binary. Cells and their data are passed over.
+// Legacy VTK files: the points of POLYDATA and UNSTRUCTURED_GRID with their scalars, vectors, normals and field arrays, and
+// the triangles of their cells; ascii and binary. Data of cells are passed over.
 // Source: "VTK file formats", The VTK User's Guide, section "Simple legacy formats", up to version 5.1.
 #include <fmt/format.h>
 
@@ -16,7 +16,9 @@
 #include <utility>
 
 #include "io/number.hpp"
+#include "io/pieces.hpp"
 #include "io/readers.hpp"
+#include "io/vtk.hpp"
 
 namespace pointskin::io {
 namespace {
@@ -78,9 +80,18 @@ std::string property_name(std::string_view name) {
   return out;
 }
 
+/// Cells of one keyword.
+struct VtkCells {
+  VtkCell type = VtkCell::polygon;  ///< of all of them; those of a grid have types of their own
+  bool of_grid = false;
+  std::vector<std::int64_t> ends;  ///< of each cell, in `ids`
+  std::vector<std::int64_t> ids;
+};
+
 class VtkParser {
  public:
-  explicit VtkParser(const Source& source) : source_(source), text_(source.bytes) {}
+  /// @param with_cells  false: they are passed over
+  VtkParser(const Source& source, bool with_cells) : source_(source), text_(source.bytes), with_cells_(with_cells) {}
 
   PointTable parse() {
     read_head();
@@ -92,7 +103,33 @@ class VtkParser {
     return table;
   }
 
+  /// Triangles of what parse() has passed. @throws Error invalid_input
+  [[nodiscard]] std::vector<Triangle> triangles() const {
+    std::vector<Triangle> triangles;
+    std::vector<std::int32_t> corners;
+    for (const VtkCells& cells : cells_) {
+      if (cells.of_grid && cell_types_.size() != cells.ends.size())
+        fail(source_, fmt::format("has {} cells, and types of {}", cells.ends.size(), cell_types_.size()),
+             kExportAgain);
+      if (!cells.ends.empty() && cells.ends.back() > static_cast<std::int64_t>(cells.ids.size()))
+        fail(source_, "has cells without their points", kExportAgain);
+      std::int64_t at = 0;
+      for (std::size_t cell = 0; cell < cells.ends.size(); ++cell) {
+        corners.clear();
+        for (; at < cells.ends[cell]; ++at) corners.push_back(checked_id(cells.ids[static_cast<std::size_t>(at)]));
+        append_cell(cells.of_grid ? VtkCell{cell_types_[cell]} : cells.type, corners, triangles);
+      }
+    }
+    return triangles;
+  }
+
  private:
+  [[nodiscard]] std::int32_t checked_id(std::int64_t id) const {
+    if (id < 0 || id >= rows_)
+      fail(source_, fmt::format("has a cell that names point {} of {}", id, rows_), kExportAgain);
+    return static_cast<std::int32_t>(id);
+  }
+
   // ---- Text
 
   [[noreturn]] void fail_here(const std::string& what) const { fail_at_byte(source_, what, at_, kExportAgain); }
@@ -154,12 +191,12 @@ class VtkParser {
     const std::string_view keyword = word(rest);
     if (keyword == "DATASET") return check_dataset(word(rest));
     if (keyword == "POINTS") return read_points(rest);
-    if (keyword == "CELL_TYPES") return skip_values(count(rest, "cells"), 1, {AttributeType::int32});
+    if (keyword == "CELL_TYPES") return read_cell_types(rest);
     if (keyword == "CELLS" || keyword == "VERTICES" || keyword == "LINES" || keyword == "POLYGONS" ||
         keyword == "TRIANGLE_STRIPS")
-      return skip_cells(rest);
-    if (keyword == "OFFSETS" || keyword == "CONNECTIVITY")
-      return skip_values(keyword == "OFFSETS" ? offsets_ : connectivity_, 1, type(rest));
+      return read_cells(keyword, rest);
+    if (keyword == "OFFSETS") return read_offsets(type(rest));
+    if (keyword == "CONNECTIVITY") return read_connectivity(type(rest));
     if (keyword == "POINT_DATA") return begin_data(count(rest, "points"), true);
     if (keyword == "CELL_DATA") return begin_data(count(rest, "cells"), false);
     if (keyword == "METADATA") return skip_metadata();
@@ -236,7 +273,8 @@ class VtkParser {
     constexpr std::int64_t kMostComponents = 64;
     const bool kept = in_point_data_ && tuples == rows_ && components >= 1 && components <= kMostComponents;
     if (!kept) return skip_values(tuples, components, of);
-    const bool colours = of.is_colour && (components == 3 || components == 4) && !has_column("red");
+    const bool of_colours = of.is_colour || (of.type == AttributeType::uint8 && vtk_names_colours(name));
+    const bool colours = of_colours && (components == 3 || components == 4) && !has_column("red");
     constexpr std::array kColours{"red", "green", "blue", "alpha"};
     std::vector<std::string> names;
     for (std::int64_t c = 0; c < components; ++c) {
@@ -256,14 +294,74 @@ class VtkParser {
     return std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
   }
 
-  void skip_cells(std::string_view& rest) {
+  // ---- Cells
+
+  void read_cells(std::string_view keyword, std::string_view& rest) {
+    keeps_cells_ = with_cells_ && keyword != "VERTICES" && keyword != "LINES";
+    if (keeps_cells_)
+      cells_.push_back({keyword == "TRIANGLE_STRIPS" ? VtkCell::strip : VtkCell::polygon, keyword == "CELLS", {}, {}});
     offsets_ = count(rest, "cells");
     connectivity_ = count(rest, "indices");
     const std::size_t before = at_;
     skip_blank();
     if (text_.substr(at_).starts_with("OFFSETS")) return;  // version 5: two arrays follow, cells are one fewer
     at_ = before;
+    if (keeps_cells_) return read_counted_cells(cells_.back());
     skip_values(connectivity_, 1, {AttributeType::int32});
+  }
+
+  /// Before version 5 every cell is the number of its corners, and these.
+  void read_counted_cells(VtkCells& cells) {
+    const std::vector<std::int64_t> words = integers(connectivity_, {AttributeType::int32});
+    for (std::size_t at = 0; at < words.size();) {
+      const std::int64_t corners = words[at++];
+      if (corners < 0 || static_cast<std::uint64_t>(corners) > words.size() - at)
+        fail_here(fmt::format("a cell promises {} corners", corners));
+      cells.ids.insert(cells.ids.end(), words.begin() + static_cast<std::ptrdiff_t>(at),
+                       words.begin() + static_cast<std::ptrdiff_t>(at) + corners);
+      cells.ends.push_back(static_cast<std::int64_t>(cells.ids.size()));
+      at += static_cast<std::size_t>(corners);
+    }
+    if (static_cast<std::int64_t>(cells.ends.size()) != offsets_)
+      fail_here(fmt::format("{} cells are promised, and there are {}", offsets_, cells.ends.size()));
+  }
+
+  void read_offsets(const VtkType& of) {
+    if (!keeps_cells_) return skip_values(offsets_, 1, of);
+    std::vector<std::int64_t> ends = integers(offsets_, of);
+    if (!ends.empty() && ends[0] != 0) fail_here("the first cell does not begin at the first index");
+    if (!ends.empty()) ends.erase(ends.begin());
+    for (std::size_t cell = 0; cell < ends.size(); ++cell)
+      if (ends[cell] < (cell == 0 ? 0 : ends[cell - 1]) || ends[cell] > connectivity_)
+        fail_here(fmt::format("cell {} ends at index {} of {}", cell, ends[cell], connectivity_));
+    cells_.back().ends = std::move(ends);
+  }
+
+  void read_connectivity(const VtkType& of) {
+    if (!keeps_cells_) return skip_values(connectivity_, 1, of);
+    cells_.back().ids = integers(connectivity_, of);
+  }
+
+  void read_cell_types(std::string_view& rest) {
+    const std::int64_t cells = count(rest, "cells");
+    if (!with_cells_) return skip_values(cells, 1, {AttributeType::int32});
+    cell_types_ = integers(cells, {AttributeType::int32});
+  }
+
+  std::vector<std::int64_t> integers(std::int64_t count, const VtkType& of) {
+    if (of.is_bit || !is_integer(of.type)) fail_here("the indices of cells are no whole numbers");
+    std::vector<std::int64_t> values(static_cast<std::size_t>(check_room(count, 1, of)));
+    if (!binary_) {
+      for (std::int64_t& v : values) v = value<std::int64_t>();
+      return values;
+    }
+    visit_type(of.type, [&](auto tag) {
+      for (std::int64_t& v : values) {
+        v = static_cast<std::int64_t>(load<decltype(tag)>(text_.data() + at_, true));
+        at_ += sizeof(tag);
+      }
+    });
+    return values;
   }
 
   void skip_metadata() {
@@ -377,10 +475,12 @@ class VtkParser {
   const Source& source_;
   std::string_view text_;
   std::size_t at_ = 0;
-  bool binary_ = false, has_points_ = false, in_point_data_ = false;
+  bool with_cells_ = false, keeps_cells_ = false, binary_ = false, has_points_ = false, in_point_data_ = false;
   std::int64_t rows_ = 0, tuples_ = 0, offsets_ = 0, connectivity_ = 0;
   std::vector<Column> columns_;
   std::deque<AttributeValues> values_;  // those of columns that do not lie in the file
+  std::vector<VtkCells> cells_;
+  std::vector<std::int64_t> cell_types_;
 
  public:
   /// What the columns of parse() point into is kept here.
@@ -390,9 +490,18 @@ class VtkParser {
 
 }  // namespace
 
-Cloud parse_vtk(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
-  VtkParser parser(source);
+Cloud parse_vtk_cloud(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
+  VtkParser parser(source, false);
   return assemble(ex, source, parser.parse(), options.shift);
+}
+
+Mesh parse_vtk_mesh(exec::Cpu& ex, const Source& source, const ReadOptions& options) {
+  VtkParser parser(source, true);
+  const PointTable table = parser.parse();
+  check_vertex_count(source, table.rows);
+  Pieces pieces(ex, source, options);
+  pieces.add(table, parser.triangles());
+  return pieces.take_mesh();
 }
 
 }  // namespace pointskin::io

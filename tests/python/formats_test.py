@@ -1,4 +1,5 @@
 """Files of other programs, read back equal, and ours read by them: numpy and Open3D."""
+import gzip
 import pathlib
 import shutil
 import struct
@@ -258,6 +259,19 @@ class Vtk(Case):
                             self.assertEqual(writer.Write(), 1)
                             self.check(self.file(f"a.{extension}"), made, f"{extension} {mode} {compressor} {wide} {encoded}")
 
+    def test_legacy_files_in_every_coding(self):
+        import vtk
+        for grid, writer in ((False, vtk.vtkPolyDataWriter()), (True, vtk.vtkUnstructuredGridWriter())):
+            made = self.data(grid)
+            writer.SetInputData(made)
+            writer.SetFileName(self.file("a.vtk"))
+            for version in (42, 51):
+                for coding in ("ASCII", "Binary"):
+                    writer.SetFileVersion(version)
+                    getattr(writer, f"SetFileTypeTo{coding}")()
+                    self.assertEqual(writer.Write(), 1)
+                    self.check(self.file("a.vtk"), made, f"{grid} {version} {coding}")
+
     def test_other_cells(self):
         import vtk
         grid = vtk.vtkUnstructuredGrid()
@@ -269,12 +283,30 @@ class Vtk(Case):
         grid.InsertNextCell(vtk.VTK_TRIANGLE_STRIP, 4, [2, 3, 4, 5])
         grid.InsertNextCell(vtk.VTK_QUAD, 4, [0, 1, 3, 2])
         grid.InsertNextCell(vtk.VTK_VERTEX, 1, [5])
-        writer = vtk.vtkXMLUnstructuredGridWriter()
-        writer.SetInputData(grid)
-        writer.SetFileName(self.file("a.vtu"))
-        writer.Write()
-        faces = ps.read(self.file("a.vtu")).faces
-        np.testing.assert_array_equal(faces, [[0, 1, 3], [0, 3, 2], [2, 3, 4], [4, 3, 5], [0, 1, 3], [0, 3, 2]])
+        for writer, name in ((vtk.vtkXMLUnstructuredGridWriter(), "a.vtu"), (vtk.vtkUnstructuredGridWriter(), "a.vtk")):
+            writer.SetInputData(grid)
+            writer.SetFileName(self.file(name))
+            writer.Write()
+            faces = ps.read(self.file(name)).faces
+            np.testing.assert_array_equal(faces, [[0, 1, 3], [0, 3, 2], [2, 3, 4], [4, 3, 5], [0, 1, 3], [0, 3, 2]])
+
+    def test_strips_of_polygons(self):
+        import vtk
+        source = vtk.vtkSphereSource()
+        stripper = vtk.vtkStripper()
+        stripper.SetInputConnection(source.GetOutputPort())
+        stripper.Update()
+        triangles = vtk.vtkTriangleFilter()
+        triangles.SetInputConnection(stripper.GetOutputPort())
+        triangles.Update()
+        expected = [[triangles.GetOutput().GetCell(i).GetPointId(c) for c in range(3)]
+                    for i in range(triangles.GetOutput().GetNumberOfCells())]
+        around = lambda faces: sorted(tuple(np.roll(face, -int(np.argmin(face)))) for face in faces)  # noqa: E731
+        for writer, name in ((vtk.vtkXMLPolyDataWriter(), "a.vtp"), (vtk.vtkPolyDataWriter(), "a.vtk")):
+            writer.SetInputConnection(stripper.GetOutputPort())
+            writer.SetFileName(self.file(name))
+            writer.Write()
+            self.assertEqual(around(ps.read(self.file(name)).faces), around(expected), name)
 
     def test_ours_in_vtk(self):
         import vtk
@@ -302,10 +334,17 @@ class Vtk(Case):
                     np.testing.assert_array_equal(again.attributes["a<b"], mesh.attributes["a<b"])
 
     def test_broken_files_are_refused(self):
+        import vtk
         points, normals = sphere(300)
-        for extension in ("vtp", "vtu"):
+        for extension in ("vtp", "vtu", "vtk"):
             path = self.file(f"a.{extension}")
-            ps.reconstruct(points, normals, depth=3).save(path)
+            if extension == "vtk":
+                writer = vtk.vtkUnstructuredGridWriter()
+                writer.SetInputData(self.data(True))
+                writer.SetFileName(path)
+                writer.Write()
+            else:
+                ps.reconstruct(points, normals, depth=3).save(path)
             with open(path, "rb") as file:
                 data = file.read()
             random = np.random.default_rng(6)
@@ -362,6 +401,17 @@ class Bgeo(Case):
         np.testing.assert_allclose(cloud.local_points, [[0, 0.1, 0.2], [0.1, 0.2, 0.3], [0.2, 0.3, 0.4], [0.3, 0.4, 0.5], [0.4, 0.5, 0.6]], rtol=1e-6)
         np.testing.assert_array_equal(cloud.attributes["id"], range(5))
         np.testing.assert_allclose(cloud.attributes["life"], [[life, 10] for life in (-1.2, -0.2, 0.8, 1.8, 2.8)], rtol=1e-6)
+
+    def test_packed_by_gzip(self):
+        data = (FILES / "partio.bgeo").read_bytes()
+        path = self.file("a.bgeo")
+        packed = gzip.compress(data)
+        for cut in (0, 1, 9, 40):
+            pathlib.Path(path).write_bytes(packed[:len(packed) - cut])
+            if cut:
+                self.assertRaises(ps.InvalidInputError, ps.read, path)
+            else:
+                np.testing.assert_array_equal(ps.read(path).points, ps.read(FILES / "partio.bgeo").points)
 
     def test_broken_files_are_refused(self):
         data = (FILES / "partio.bgeo").read_bytes()

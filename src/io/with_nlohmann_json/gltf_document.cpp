@@ -10,11 +10,14 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "io/base64.hpp"
 #include "io/gltf.hpp"
+#include "io/libraries.hpp"
+#include "io/meshopt.hpp"
 #include "io/scalar.hpp"
 
 namespace pointskin::io {
@@ -49,6 +52,37 @@ std::size_t components_of(const std::string& type) {
   if (type == "VEC3") return 3;
   return type == "VEC4" ? 4 : 0;
 }
+
+constexpr std::array<std::pair<std::string_view, MeshoptMode>, 3> kModes{{{"ATTRIBUTES", MeshoptMode::attributes},
+                                                                          {"TRIANGLES", MeshoptMode::triangles},
+                                                                          {"INDICES", MeshoptMode::indices}}};
+constexpr std::array<std::pair<std::string_view, MeshoptFilter>, 4> kFilters{
+    {{"NONE", MeshoptFilter::none},
+     {"OCTAHEDRAL", MeshoptFilter::octahedral},
+     {"QUATERNION", MeshoptFilter::quaternion},
+     {"EXPONENTIAL", MeshoptFilter::exponential}}};
+
+/// What the value of `key` stands for, the first choice where there is none; nothing for an unknown one.
+template <class Choice, std::size_t N>
+std::optional<Choice> choice_of(const Json& object, const char* key,
+                                const std::array<std::pair<std::string_view, Choice>, N>& choices) {
+  const auto at = object.find(key);
+  if (at == object.end()) return choices[0].second;
+  for (const auto& [word, choice] : choices)
+    if (*at == word) return choice;
+  return std::nullopt;
+}
+
+/// What a view or buffer says of meshoptimizer's coding, or null.
+const Json* packing_of(const Json& object) {
+  const auto extensions = object.find("extensions");
+  if (extensions == object.end() || !extensions->is_object()) return nullptr;
+  const auto found = extensions->find(kMeshoptExtension);
+  return found != extensions->end() && found->is_object() ? &*found : nullptr;
+}
+
+/// True for a buffer without bytes, of the length that unpacked views would have.
+bool is_stand_in(const Json& buffer) { return buffer.is_object() && !buffer.contains("uri") && packing_of(buffer); }
 
 }  // namespace
 
@@ -99,7 +133,7 @@ void GltfDocument::read_json(std::string_view text) {
   if (!json_.is_object()) fail_here("holds no JSON that can be read");
   const Json& required = json_.value("extensionsRequired", Json::array());
   for (const Json& extension : required)
-    if (extension != "KHR_mesh_quantization")
+    if (extension != kQuantizationExtension && !(kHasMeshoptimizer && extension == kMeshoptExtension))
       fail(source_,
            "needs the extension " + in_quotes(extension.is_string() ? extension.get<std::string>() : "?") +
                ", which cannot be read",
@@ -126,6 +160,10 @@ void GltfDocument::read_buffers(std::string_view binary) {
   if (!list.is_array()) fail_here("its buffers are no list");
   owned_.reserve(list.size());  // views refer to them
   for (const Json& buffer : list) {
+    if (is_stand_in(buffer)) {
+      buffers_.emplace_back();
+      continue;
+    }
     std::string_view bytes = binary;
     if (buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string())
       bytes = owned_.emplace_back(load_uri(buffer["uri"].get<std::string>()));
@@ -152,15 +190,35 @@ const Json& GltfDocument::item(const char* list, std::int64_t index) const {
   return (*at)[static_cast<std::size_t>(index)];
 }
 
-std::string_view GltfDocument::view_bytes(std::int64_t index) const {
+std::string_view GltfDocument::view_bytes(std::int64_t index, std::string& room) const {
   const Json& view = item("bufferViews", index);
+  const Json* const packing = kHasMeshoptimizer ? packing_of(view) : nullptr;
+  if (packing == nullptr) return buffer_bytes(view);
+  return room = unpacked(*packing);
+}
+
+std::string GltfDocument::unpacked(const Json& packing) const {
+  if constexpr (kHasMeshoptimizer) {
+    const std::int64_t count = whole(packing, "count", -1), stride = whole(packing, "byteStride", -1);
+    const auto mode = choice_of(packing, "mode", kModes);
+    const auto filter = choice_of(packing, "filter", kFilters);
+    if (count >= 0 && stride > 0 && mode && filter)
+      if (std::optional<std::string> values =
+              decode_rows(buffer_bytes(packing),
+                          {static_cast<std::size_t>(count), static_cast<std::size_t>(stride), *mode, *filter}))
+        return *std::move(values);
+  }
+  fail_here("has a compressed view that cannot be unpacked");
+}
+
+std::string_view GltfDocument::buffer_bytes(const Json& view) const {
   const std::int64_t buffer = whole(view, "buffer", -1);
   if (buffer < 0 || buffer >= static_cast<std::int64_t>(buffers_.size())) fail_here("names a buffer that there is not");
   const std::string_view bytes = buffers_[static_cast<std::size_t>(buffer)];
   const std::int64_t offset = whole(view, "byteOffset", 0), length = whole(view, "byteLength", -1);
   if (offset < 0 || length < 0 || static_cast<std::uint64_t>(offset) > bytes.size() ||
       static_cast<std::uint64_t>(length) > bytes.size() - static_cast<std::uint64_t>(offset))
-    fail_here(fmt::format("view {} reaches beyond its buffer", index));
+    fail_here("a view reaches beyond its buffer");
   return bytes.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
 
@@ -169,7 +227,8 @@ void GltfDocument::copy_elements(const Json& accessor, GltfArray& array) const {
   const std::size_t row = array.components * size_of(array.type);
   const std::int64_t offset = whole(accessor, "byteOffset", 0);
   const std::int64_t given = whole(item("bufferViews", view), "byteStride", 0);
-  const std::string_view bytes = view_bytes(view);
+  std::string room;
+  const std::string_view bytes = view_bytes(view, room);
   if (offset < 0 || static_cast<std::uint64_t>(offset) > bytes.size() || given < 0 || given > 252)
     fail_here("an accessor reaches beyond its view");
   const std::size_t stride = given == 0 ? row : static_cast<std::size_t>(given);

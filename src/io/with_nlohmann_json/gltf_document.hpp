@@ -53,8 +53,10 @@ class GltfDocument {
   void read_json(std::string_view text);
   void read_buffers(std::string_view binary);
   std::string load_uri(const std::string& uri) const;
-  /// Bytes of a view, from `offset` on.
-  [[nodiscard]] std::string_view view_bytes(std::int64_t view) const;
+  /// Bytes of a view; those of a compressed one are unpacked into `room`.
+  [[nodiscard]] std::string_view view_bytes(std::int64_t view, std::string& room) const;
+  [[nodiscard]] std::string_view buffer_bytes(const nlohmann::ordered_json& view) const;
+  [[nodiscard]] std::string unpacked(const nlohmann::ordered_json& packing) const;
   void copy_elements(const nlohmann::ordered_json& accessor, GltfArray& array) const;
   void apply_sparse(const nlohmann::ordered_json& sparse, GltfArray& array) const;
 

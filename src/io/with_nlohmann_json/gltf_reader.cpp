@@ -47,11 +47,13 @@ double determinant(const Matrix& m) {
   return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]);
 }
 
-/// By the inverse transpose, up to a positive factor.
+/// A normal by the inverse transpose, as long as it was.
 Vec3d turned(const Matrix& m, const Vec3d& n) {
   const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
   const Vec3d t = cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z;
-  return determinant(m) < 0 ? -t : t;
+  const double size = std::sqrt(squared_length(t));
+  const double factor = size > 0 ? std::sqrt(squared_length(n)) / size : 1;
+  return t * (determinant(m) < 0 ? -factor : factor);
 }
 
 std::vector<double> numbers(const GltfDocument& document, const Json& node, const char* key, std::size_t count) {

@@ -8,17 +8,14 @@
 
 #include "io/numpy_table.hpp"
 #include "io/pieces.hpp"
-#include "io/polygon.hpp"
 #include "io/readers.hpp"
+#include "io/vtk.hpp"
 #include "io/with_pugixml/vtk_xml_document.hpp"
 
 namespace pointskin::io {
 namespace {
 
 constexpr std::int64_t kMostComponents = 64;  ///< of an array that becomes attributes
-
-/// Types of cells that are made of triangles, as vtkCellType.h numbers them.
-enum CellType { triangle = 5, strip = 6, polygon = 7, pixel = 8, quad = 9 };
 
 Column column(const VtkArray& array, std::int64_t component, std::string name) {
   return {std::move(name), array.declared, array.type, array.at(component), array.stride(), array.swapped};
@@ -65,25 +62,16 @@ class Piece {
     const pugi::xml_node cells = node_.child("Cells");
     const VtkArray types = document_.array(cells.find_child_by_attribute("DataArray", "Name", "types"), count);
     for_cells(cells, count, [&](std::int64_t cell, std::vector<std::int32_t>& corners) {
-      const std::int64_t type = types.integer(cell);
-      if (type == pixel && corners.size() == 4) std::swap(corners[2], corners[3]);
-      if (type == strip) append_strip(corners, triangles);
-      if (type == triangle || type == polygon || type == pixel || type == quad) append_fan(corners, triangles);
+      append_cell(VtkCell{types.integer(cell)}, corners, triangles);
     });
     return triangles;
   }
 
  private:
-  static void append_strip(const std::vector<std::int32_t>& corners, std::vector<Triangle>& triangles) {
-    for (std::size_t i = 2; i < corners.size(); ++i)
-      triangles.push_back(i % 2 == 0 ? Triangle{corners[i - 2], corners[i - 1], corners[i]}
-                                     : Triangle{corners[i - 1], corners[i - 2], corners[i]});
-  }
-
   void add(const VtkArray& array, bool is_normal, PointTable& table) const {
     constexpr std::array kColours{"red", "green", "blue", "alpha"};
     const bool is_colour = array.declared == AttributeType::uint8 && (array.components == 3 || array.components == 4) &&
-                           (names_colours(array.name) || array.name == "RGB" || array.name == "RGBA");
+                           vtk_names_colours(array.name);
     for (std::int64_t c = 0; c < array.components && array.components <= kMostComponents; ++c) {
       const auto axis = static_cast<std::size_t>(c);
       std::string name = fmt::format("{}_{}", array.name, c);

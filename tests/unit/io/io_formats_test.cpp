@@ -114,9 +114,9 @@ TEST(MayHoldFaces, AsksTheHeaderOfAPly) {
 
 TEST(MayHoldFaces, GoesByTheNameElsewhere) {
   for (const char* path : {"a.obj", "a.stl", "b/A.OFF"}) EXPECT_TRUE(io::may_hold_faces(path, "")) << path;
-  for (const char* path : {"a.xyz", "a.vtk", "a.json", "a", "a.step", "-"})
+  for (const char* path : {"a.xyz", "a.pcd", "a.json", "a", "a.step", "-"})
     EXPECT_FALSE(io::may_hold_faces(path, "1 2 3")) << path;
-  EXPECT_FALSE(io::may_hold_faces("a.obj", "# vtk DataFile Version 3.0\n")) << "VTK by its first bytes";
+  EXPECT_FALSE(io::may_hold_faces("a.obj", "ASTM-E57")) << "E57 by its first bytes";
   EXPECT_FALSE(may_hold_faces("/no/such/file.ply"));
 }
 

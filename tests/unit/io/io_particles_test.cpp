@@ -80,6 +80,45 @@ TEST(VtkReader, PassesOverTheCellsOfVersionFive) {
   EXPECT_EQ(attributes_of(cloud).at("m"), (std::vector<float>{3, 4}));
 }
 
+const std::string kPolygons =
+    "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET POLYDATA\nPOINTS 5 float\n0 0 0 1 0 0 1 1 0 0 1 0 2 2 0\n"
+    "VERTICES 1 2\n1 4\nPOLYGONS 2 9\n4 0 1 2 3\n3 2 1 4\nTRIANGLE_STRIPS 1 5\n4 0 1 3 2\n"
+    "POINT_DATA 5\nSCALARS id int 1\nLOOKUP_TABLE default\n1 2 3 4 5\n";
+
+/// Cells as version 5 has them.
+const std::string kCells =
+    "# vtk DataFile Version 5.1\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\n"
+    "CELLS 4 9\nOFFSETS vtktypeint64\n0 4 5 9\nCONNECTIVITY vtktypeint64\n0 1 2 3 2 0 1 3 2\nCELL_TYPES 3\n8\n1\n9\n";
+
+TEST(VtkReader, ReadsPolygonsStripsAndCells) {
+  const Mesh mesh = test::mesh_of("a.vtk", kPolygons);
+  EXPECT_EQ(mesh.vertices.size(), 5U);
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {2, 1, 4}, {0, 1, 3}, {3, 1, 2}}));
+  ASSERT_EQ(mesh.attributes.size(), 1U);
+  EXPECT_EQ(mesh.attributes[0].values, (std::vector<std::int32_t>{1, 2, 3, 4, 5}));
+  EXPECT_EQ(test::mesh_of("a.vtk", kCells).triangles,
+            (std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}, {0, 1, 3}, {0, 3, 2}}));
+  EXPECT_TRUE(test::mesh_of("a.vtk", kAscii).triangles.empty()) << "particles";
+}
+
+TEST(VtkReader, RefusesCellsThatDoNotFit) {
+  const auto refused = [](std::string text, const std::string& part, const std::string& instead) {
+    text.replace(text.find(part), part.size(), instead);
+    return !story_of(ErrorCode::invalid_input, [&] { test::mesh_of("a.vtk", text); }).empty();
+  };
+  EXPECT_TRUE(refused(kPolygons, "3 2 1 4", "3 2 1 5")) << "a point that there is not";
+  EXPECT_TRUE(refused(kPolygons, "3 2 1 4", "3 2 1 -1"));
+  EXPECT_TRUE(refused(kPolygons, "3 2 1 4", "4 2 1 4")) << "a corner beyond the end";
+  EXPECT_TRUE(refused(kPolygons, "POLYGONS 2 9", "POLYGONS 3 9")) << "a polygon less than promised";
+  EXPECT_TRUE(refused(kPolygons, "POLYGONS 2 9", "POLYGONS 2 99999999999"));
+  EXPECT_TRUE(refused(kCells, "0 4 5 9", "0 4 5 10"));
+  EXPECT_TRUE(refused(kCells, "0 4 5 9", "0 5 4 9"));
+  EXPECT_TRUE(refused(kCells, "0 4 5 9", "1 4 5 9"));
+  EXPECT_TRUE(refused(kCells, "CONNECTIVITY vtktypeint64\n0 1 2 3 2 0 1 3 2\n", "")) << "cells without points";
+  EXPECT_TRUE(refused(kCells, "CELL_TYPES 3\n8\n1\n9\n", "")) << "cells without types";
+  EXPECT_TRUE(refused(kCells, "CONNECTIVITY vtktypeint64", "CONNECTIVITY float")) << "ids that are no whole numbers";
+}
+
 TEST(VtkReader, IsRecognisedByItsContent) {
   EXPECT_EQ(cloud_of("particles", kAscii).size(), 3);
   EXPECT_EQ(cloud_of("a.xyz", kAscii).size(), 3);
@@ -116,6 +155,8 @@ TEST(VtkReader, RefusesWhatIsNotThere) {
 TEST(VtkReader, SurvivesDamage) {
   test::damage(kAscii, [](const std::string& bytes) { cloud_of("a.vtk", bytes); });
   test::damage(binary_file(), [](const std::string& bytes) { cloud_of("a.vtk", bytes); });
+  for (const std::string& text : {kPolygons, kCells, binary_file()})
+    test::damage(text, [](const std::string& bytes) { test::mesh_of("a.vtk", bytes); });
 }
 
 TEST(JsonReader, ReadsAListOfPoints) {

@@ -20,6 +20,15 @@ _TYPES = {"i1": _c.PSK_INT8, "u1": _c.PSK_UINT8, "i2": _c.PSK_INT16, "u2": _c.PS
 _NAMES = {number: name for name, number in _TYPES.items()}
 
 
+def _packed(shape: Tuple[int, ...], size: int) -> Tuple[int, ...]:
+    """Strides in bytes of an array whose last index runs fastest."""
+    strides = []
+    for extent in reversed(shape):
+        strides.append(size)
+        size *= extent
+    return tuple(reversed(strides))
+
+
 class Input:
     """An array that was passed in: where it is, its shape and strides, and what keeps it alive."""
 
@@ -27,10 +36,7 @@ class Input:
                  gpu: int = -1, stream: Optional[int] = None):
         self.owner, self.pointer, self.shape, self.gpu, self.stream = owner, pointer, shape, gpu, stream
         self.type = typestr[1:]
-        size = int(typestr[2:])
-        if strides is None:
-            strides = tuple(size * int(np.prod(shape[i + 1:], dtype=np.int64)) for i in range(len(shape)))
-        self.strides = strides
+        self.strides = _packed(shape, int(typestr[2:])) if strides is None else strides
 
     @property
     def rows(self) -> int:

@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+import functools
+from typing import Any, Dict, FrozenSet, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -34,6 +35,11 @@ def choice(name: str, value: Any) -> int:
     return words.index(value)
 
 
+@functools.lru_cache(maxsize=None)
+def _members(kind: Any) -> FrozenSet[str]:
+    return frozenset(field[0] for field in kind._fields_) - {"size", "progress", "user"}
+
+
 class Filled:
     """A struct of C with what its pointers point to. Given to a function as it is, all of it lives until the call returns."""
 
@@ -47,7 +53,7 @@ class Filled:
 
     def set(self, given: Dict[str, Any], what: str) -> "Filled":
         """Sets members by their names. Raises UsageError for a name that there is not, or a value of a wrong type."""
-        names = {field[0] for field in self.value._fields_} - {"size", "progress", "user"}
+        names = _members(type(self.value))
         for name, value in given.items():
             if name not in names:
                 raise UsageError(f"{what} has no option {name!r}; there are {', '.join(sorted(names))}")

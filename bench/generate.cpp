@@ -17,7 +17,7 @@ constexpr const char* kUsage =
     "                          [--threads 0] [--area]\n"
     "\n"
     "Writes points drawn area-uniformly from a shape of radius about 1, with outward normals, as binary PLY.\n"
-    "  SHAPE           gyroid, sphere, torus, knot, plate, slab, nested or hand\n"
+    "  SHAPE           gyroid, sphere, torus, knot, plate, slab, nested or hand; NAME@1 and NAME@2 are turned\n"
     "  --noise         sigma of the Gaussian noise on each coordinate, in world units\n"
     "  --normal-noise  sigma of the Gaussian noise on each component of the unit normal\n"
     "  --threads       CPU threads; 0: all\n"

@@ -13,6 +13,7 @@
 
 #include "hand.hpp"
 #include "random.hpp"
+#include "rotated.hpp"
 #include "smooth.hpp"
 
 namespace pointskin::bench {
@@ -222,6 +223,12 @@ SurfacePoint Shape::draw(Random& /*random*/) const {
 }
 
 std::unique_ptr<Shape> make_shape(const std::string& name) {
+  if (const std::size_t sign = name.find('@'); sign != std::string::npos) {
+    const std::string rotation = name.substr(sign + 1);
+    if (rotation != "1" && rotation != "2")
+      throw Error(ErrorCode::usage, "'" + name + "': there are the rotations @1 and @2");
+    return make_rotated(make_shape(name.substr(0, sign)), rotation[0] - '0');
+  }
   if (name == "gyroid") return std::make_unique<Gyroid>();
   if (name == "sphere") return std::make_unique<Sphere>();
   if (name == "torus") return std::make_unique<Torus>();

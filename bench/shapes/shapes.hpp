@@ -89,6 +89,7 @@ inline constexpr std::array<const char*, 8> kShapeNames = {"gyroid", "sphere", "
 ///   hand    palm and five fingers along y, of blended capsules. Index and middle finger are 0.035 apart near their
 ///           tips and not seen where they face each other, |x - 0.235| < 0.07 above y = 0.5: reconstructed from its
 ///           samples at depth 7 or 8, they grow together (genus 1) until strokes part them
+/// NAME@1 and NAME@2 are such shapes turned by one of two fixed rotations (rotated.hpp).
 /// @throws Error usage for any other name
 std::unique_ptr<Shape> make_shape(const std::string& name);
 

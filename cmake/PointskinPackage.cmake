@@ -18,10 +18,28 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
+# Documents that Debian wants in every package; the dates are those of the commit, so that the bytes are the same.
+file(READ ${PROJECT_SOURCE_DIR}/LICENSE license)
+string(REGEX MATCH "Copyright [^\n]*" holder "${license}")
+string(REGEX REPLACE "^Copyright *(\\(c\\) *)?" "" holder "${holder}")
+string(REGEX REPLACE "^.*\n\n(Permission)" "\\1" license "${license}")
+string(STRIP "${license}" license)
+string(REGEX REPLACE "\n\n" "\n.\n" license "${license}")
+string(REPLACE "\n" "\n " license "${license}")
+set(CPACK_POINTSKIN_COPYRIGHT ${PROJECT_BINARY_DIR}/packaging/copyright)
+file(WRITE ${CPACK_POINTSKIN_COPYRIGHT}
+  "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\nUpstream-Name: Pointskin\n\n"
+  "Files: *\nCopyright: ${holder}\nLicense: Expat\n ${license}\n")
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # of SOURCE_DATE_EPOCH where that is set
+set(CPACK_POINTSKIN_CHANGELOG ${PROJECT_BINARY_DIR}/packaging/changelog)
+file(WRITE ${CPACK_POINTSKIN_CHANGELOG}
+  "pointskin (${PROJECT_VERSION}) unstable; urgency=medium\n\n  * See CHANGELOG.md of the sources.\n\n"
+  " -- ${CPACK_PACKAGE_CONTACT}  ${date}\n")
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/PointskinDebianFiles.cmake)
+
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME pointskin${suffix})
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "oriented points in, watertight triangle mesh out
- The program pointskin: surface reconstruction, editing in a browser, Boolean
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "The program pointskin: surface reconstruction, editing in a browser, Boolean
  operations, deformation and fluids, on any number of CPU threads.")
 
 set(CPACK_DEBIAN_LIB_PACKAGE_NAME libpointskin0${suffix})

@@ -6,4 +6,8 @@ if [ "${POINTSKIN_TEST_PACKAGES:-0}" != 1 ]; then
   exit 77
 fi
 POINTSKIN_PACKAGE_CUDA=0 ./package deb wheel
+# Debian's own check of packages. There is no address of a maintainer yet.
+if command -v lintian >/dev/null; then
+  lintian --allow-root --fail-on error --suppress-tags bogus-mail-host,bogus-mail-host-in-debian-changelog dist/*.deb
+fi
 exec tests/packaging/fresh_debian.sh dist "$1"

@@ -172,6 +172,7 @@ def main(words):
     options = parse(words)
     known = list(cases.shape_cases(options.bin, options.points, options.seed))
     known += cases.scanned_shape_cases(options.bin, options.seed)
+    known += cases.spoiled_cases(options.bin, options.seed)
     if options.data:
         known += cases.file_cases(options.bin, options.data.resolve(), options.seed)
     chosen = cases.choose(known, options.cases)

@@ -109,13 +109,14 @@ class Cases(unittest.TestCase):
                                ("b.ply", head + "end_header\n"), ("b_gt.ply", head), ("c.ply", head)):
                 (folder / name).write_text(text, encoding="latin-1")
             names = [case.name for case in cases.file_cases(pathlib.Path("bin"), folder, 1)]
-            self.assertEqual(names, ["a", "a-scan", "a-roughscan", "b-scan", "b-roughscan"])
+            self.assertEqual(names, ["a", "a-scan", "a-roughscan", "a@1-scan", "a@1-roughscan", "a@2-scan", "a@2-roughscan",
+                                     "b-scan", "b-roughscan", "b@1-scan", "b@1-roughscan", "b@2-scan", "b@2-roughscan"])
             self.assertEqual(cases.point_count(folder / "a.ply"), 3)
 
     def test_are_chosen_by_patterns(self):
         known = list(cases.shape_cases(pathlib.Path("bin"), None, 1))
         names = [case.name for case in cases.choose(known, "gyroid-*,s*-noisy")]
-        self.assertEqual(names, ["gyroid-clean", "gyroid-noisy", "sphere-noisy", "slab-noisy"])
+        self.assertEqual(names, ["gyroid-clean", "gyroid-noisy", "sphere-noisy", "slab@1-noisy", "slab@2-noisy"])
 
 
 class Accuracy(unittest.TestCase):
@@ -271,6 +272,19 @@ class WithTheProgramsThemselves(unittest.TestCase):
         self.assertEqual(rows["nested-noisy", 0]["components"], 3)
         self.assertEqual(rows["torus-scan", 0]["genus"], 1)
         self.assertLess(rows["sphere-clean", 0]["mean"], rows["sphere-clean", 1]["mean"])  # screening helps
+
+    def test_measures_spoilt_shapes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "out.json"
+            words = ["--bin", str(PROGRAMS), "--cases", "torus-1000,torus-lines,slab@2-flipped1", "--depths", "5",
+                     "--samples", "20000", "--json", str(path)]
+            result = subprocess.run([sys.executable, str(HERE / "accuracy.py"), *words], capture_output=True, text=True,
+                                    check=False)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            rows = {entry["case"]: entry["row"] for entry in json.loads(path.read_text())["entries"]}
+        self.assertEqual(sorted(rows), ["slab@2-flipped1", "torus-1000", "torus-lines"])
+        for case, found in rows.items():
+            self.assertLess(found["mean"], 2, case)
 
 
 if __name__ == "__main__":

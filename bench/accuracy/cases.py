@@ -4,16 +4,34 @@ import fnmatch
 import pathlib
 
 # Points per generated cloud: about 0.5 to 1.3 finest cells apart at depth 8.
-SHAPE_POINTS = {"gyroid": 500_000, "sphere": 100_000, "torus": 100_000, "knot": 200_000, "plate": 100_000,
-                "slab": 100_000, "nested": 200_000}
+# Flat shapes are turned against the axes by two fixed rotations: along the axes a grid is better than elsewhere.
+SHAPE_POINTS = {"gyroid": 500_000, "sphere": 100_000, "torus": 100_000, "knot": 200_000, "plate@1": 100_000,
+                "plate@2": 100_000, "slab@1": 100_000, "slab@2": 100_000, "nested": 200_000}
 # The shapes have a radius of about 1.
 KINDS = {"clean": [], "noisy": ["--noise", "0.003", "--normal-noise", "0.1"]}
 
 # Virtual scans, lengths in units of the diagonal. Of the gyroid and the nested spheres no camera sees the inside.
-SCANNED_SHAPES = ("sphere", "torus", "knot", "plate", "slab")
+SCANNED_SHAPES = ("sphere", "torus", "knot", "plate@1", "plate@2", "slab@1", "slab@2")
 SCANS = {"scan": ["--sigma", "0.0005", "--misregistration", "0.0005"],
          "roughscan": ["--views", "10", "--spread", "0.6", "--sigma", "0.0015", "--misregistration", "0.0015",
                        "--window", "2", "--outliers", "0.01"]}
+
+# Faults of real clouds, one at a time, of shapes that are smooth, twisted, thin and sharp. Lengths as above. 1 finest cell
+# of depth 8 is about 0.3 % of the diagonal.
+SPOILED_SHAPES = ("torus", "knot", "plate@1", "slab@2")
+FAULTS = {
+    "outliers0.1": ["--outliers", "0.001"], "outliers1": ["--outliers", "0.01"], "outliers5": ["--outliers", "0.05"],
+    "clusters1": ["--outliers", "0.01", "--clusters", "5"],
+    "noise0.1": ["--sigma", "0.001", "--normal-noise", "0.1"], "noise0.3": ["--sigma", "0.003", "--normal-noise", "0.2"],
+    "noise1": ["--sigma", "0.01", "--normal-noise", "0.3"],
+    "lines": ["--lines", "0.01"], "quantised": ["--quantum", "0.002"],
+    "500": ["--keep", "500"], "1000": ["--keep", "1000"], "5000": ["--keep", "5000"], "10000": ["--keep", "10000"],
+    "5000noisy": ["--keep", "5000", "--sigma", "0.003", "--normal-noise", "0.2"],
+    "density10": ["--density-ratio", "10"], "density100": ["--density-ratio", "100"], "density1000": ["--density-ratio", "1000"],
+    "holes5": ["--holes", "0.05"], "holes15": ["--holes", "0.15"], "holes30": ["--holes", "0.3"],
+    "flipped1": ["--flipped", "0.01"], "flipped10": ["--flipped", "0.1"],
+    "outside": ["--outside"],
+}
 
 
 @dataclasses.dataclass
@@ -68,14 +86,25 @@ def scanned_shape_cases(tools, seed):
         yield from scan_cases(tools, shape, ["--shape", shape], ["--shape", shape], seed)
 
 
+def spoiled_cases(tools, seed):
+    for shape in SPOILED_SHAPES:
+        for fault, words in FAULTS.items():
+            generate = [str(tools / "pointskin_spoil"), "--shape", shape, "-o", "{out}", "--seed", str(seed), *words]
+            yield Case(f"{shape}-{fault}", ["--shape", shape], generate, None)
+
+
 def file_cases(tools, folder, seed):
-    """Every NAME.ply with normals that has its truth beside it, as NAME_gt.ply, and scans of every NAME_gt.ply."""
+    """Every NAME.ply with normals that has its truth beside it, as NAME_gt.ply, and scans of every NAME_gt.ply: along the
+    axes as it is, and turned."""
     for truth in sorted(folder.glob("*_gt.ply")):
         cloud = truth.with_name(truth.name.removesuffix("_gt.ply") + ".ply")
         words = ["--truth", str(truth)]
         if cloud.exists() and has_normals(cloud):
             yield Case(cloud.stem, words, [], cloud)
         yield from scan_cases(tools, cloud.stem, [str(truth)], words, seed)
+        for rotation in ("1", "2"):
+            turned = ["--rotation", rotation]
+            yield from scan_cases(tools, f"{cloud.stem}@{rotation}", [str(truth), *turned], [*words, *turned], seed)
 
 
 def choose(cases, patterns):

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "rotated.hpp"
 #include "scan.hpp"
 
 namespace {
@@ -18,6 +19,7 @@ constexpr const char* kUsage =
     "Takes depth images from several places and writes their points with normals, as binary PLY. Lengths are in units\n"
     "of the diagonal of the surface's box.\n"
     "  --shape            a shape that pointskin_generate knows\n"
+    "  --rotation         turns MESH by one of two fixed rotations, 1 or 2\n"
     "  --views            16    places of the camera, even around the surface\n"
     "  --resolution       300   pixels along each side of a depth image\n"
     "  --distance         1.5   mean distance of the cameras\n"
@@ -36,6 +38,7 @@ int run(const std::vector<std::string>& words) {
   using namespace pointskin;
   bench::ScanOptions options;
   std::string mesh, shape, out;
+  int rotation = 0;
   bench::Arguments arguments(words);
   const auto whole = [&] { return static_cast<int>(arguments.whole_number()); };
   while (const auto word = arguments.next()) {
@@ -44,6 +47,8 @@ int run(const std::vector<std::string>& words) {
       out = arguments.value();
     else if (*word == "--shape")
       shape = arguments.value();
+    else if (*word == "--rotation")
+      rotation = whole();
     else if (*word == "--views")
       options.views = whole();
     else if (*word == "--resolution")
@@ -77,7 +82,10 @@ int run(const std::vector<std::string>& words) {
   }
   if (out.empty() || mesh.empty() == shape.empty()) return std::fputs(kUsage, stderr), 2;
   const auto known = shape.empty() ? nullptr : bench::make_shape(shape);
-  const auto scene = known ? bench::scene_of(*known) : bench::scene_of(read_mesh(mesh));
+  Mesh surface;
+  if (!known) surface = read_mesh(mesh);
+  if (rotation != 0) bench::rotate(surface, rotation);
+  const auto scene = known ? bench::scene_of(*known) : bench::scene_of(surface);
   write_cloud(out, bench::scan(*scene, options), options.threads);
   return 0;
 }

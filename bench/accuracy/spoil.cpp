@@ -162,8 +162,8 @@ class Spoiler {
     constexpr double kLarger = 1.2;
     Vec3d p;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      p[axis] = 0.5 * (lower_[axis] + upper_[axis]) +
-                kLarger * (numbers.uniform() - 0.5) * (upper_[axis] - lower_[axis]);
+      p[axis] =
+          0.5 * (lower_[axis] + upper_[axis]) + kLarger * (numbers.uniform() - 0.5) * (upper_[axis] - lower_[axis]);
     return p;
   }
 

@@ -1,5 +1,8 @@
 #include "rotated.hpp"
 
+#include <pointskin/error.hpp>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -19,8 +22,9 @@ Rows around(double x, double y, double z, double angle) {
 }
 
 const Rows& rows_of(int rotation) {
-  static const std::array<Rows, kRotations> all{around(1 / std::sqrt(14.0), 2 / std::sqrt(14.0), 3 / std::sqrt(14.0), 0.8),
-                                                around(-2.0 / 3, 1.0 / 3, 2.0 / 3, 1.25)};
+  static const std::array<Rows, kRotations> all{
+      around(1 / std::sqrt(14.0), 2 / std::sqrt(14.0), 3 / std::sqrt(14.0), 0.8),
+      around(-2.0 / 3, 1.0 / 3, 2.0 / 3, 1.25)};
   return all[static_cast<std::size_t>(rotation - 1)];
 }
 
@@ -63,6 +67,17 @@ Vec3d rotated(const Vec3d& v, int rotation) {
 Vec3d unrotated(const Vec3d& v, int rotation) {
   const Rows& rows = rows_of(rotation);
   return rows[0] * v.x + rows[1] * v.y + rows[2] * v.z;
+}
+
+void rotate(Mesh& mesh, int rotation) {
+  if (rotation < 1 || rotation > kRotations) throw Error(ErrorCode::usage, "there are the rotations 1 and 2");
+  const auto turn = [rotation](Vec3f& v) {
+    const Vec3d to = rotated({v.x, v.y, v.z}, rotation);
+    v = {static_cast<float>(to.x), static_cast<float>(to.y), static_cast<float>(to.z)};
+  };
+  std::for_each(mesh.vertices.begin(), mesh.vertices.end(), turn);
+  std::for_each(mesh.normals.begin(), mesh.normals.end(), turn);
+  mesh.origin = rotated(mesh.origin, rotation);
 }
 
 std::unique_ptr<Shape> make_rotated(std::unique_ptr<Shape> shape, int rotation) {

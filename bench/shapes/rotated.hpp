@@ -1,6 +1,8 @@
 // A shape that is turned against the axes, along which grids are better than elsewhere.
 #pragma once
 
+#include <pointskin/mesh.hpp>
+
 #include <memory>
 
 #include "shapes.hpp"
@@ -15,6 +17,9 @@ Vec3d rotated(const Vec3d& v, int rotation);
 
 /// The inverse of rotated().
 Vec3d unrotated(const Vec3d& v, int rotation);
+
+/// Turns a mesh around the origin of the world, its normals, too. @throws Error usage for a rotation that there is not
+void rotate(Mesh& mesh, int rotation);
 
 /// `shape`, turned around the origin.
 std::unique_ptr<Shape> make_rotated(std::unique_ptr<Shape> shape, int rotation);

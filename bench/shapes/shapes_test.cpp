@@ -272,19 +272,19 @@ TEST_P(EveryShape, KnowsItsNearestPointsIfItIsADistance) {
 
 INSTANTIATE_TEST_SUITE_P(Bench, EveryShape, testing::ValuesIn(kShapeNames),
                          [](const auto& info) { return std::string(info.param); });
-INSTANTIATE_TEST_SUITE_P(Rotated, EveryShape, testing::Values("torus@1", "slab@2", "hand@2"),
-                         [](const auto& info) {
-                           std::string name = info.param;
-                           std::replace(name.begin(), name.end(), '@', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Rotated, EveryShape, testing::Values("torus@1", "slab@2", "hand@2"), [](const auto& info) {
+  std::string name = info.param;
+  std::replace(name.begin(), name.end(), '@', '_');
+  return name;
+});
 
 TEST(Rotations, AreRotationsAndKeepTheDistance) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   for (int rotation = 1; rotation <= kRotations; ++rotation) {
     const Vec3d a = rotated(x, rotation), b = rotated(y, rotation), c = rotated(z, rotation);
     EXPECT_NEAR(dot(a, b), 0, 1e-15);
-    EXPECT_NEAR(a.x * (b.y * c.z - b.z * c.y) - a.y * (b.x * c.z - b.z * c.x) + a.z * (b.x * c.y - b.y * c.x), 1, 1e-15);
+    EXPECT_NEAR(a.x * (b.y * c.z - b.z * c.y) - a.y * (b.x * c.z - b.z * c.x) + a.z * (b.x * c.y - b.y * c.x), 1,
+                1e-15);
     for (const Vec3d& v : {a, b, c})
       for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_LT(std::abs(v[axis]), 0.92) << "turned well away";
     EXPECT_NEAR(unrotated(a, rotation).x, 1, 1e-15);

@@ -75,7 +75,7 @@ Cloud parse_json_points(exec::Cpu& ex, const Source& source, const ReadOptions& 
   const auto* data = reinterpret_cast<const char*>(coordinates.data());
   for (std::size_t axis = 0; axis < 3; ++axis)
     table.columns.push_back({std::string(1, "xyz"[axis]), AttributeType::float64, AttributeType::float64,
-                             data + axis * sizeof(double), 3 * sizeof(double), false});
+                             behind(data, axis * sizeof(double)), 3 * sizeof(double), false});
   return assemble(ex, source, table, options.shift);
 }
 

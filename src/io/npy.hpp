@@ -7,6 +7,7 @@
 
 #include <pointskin/attribute.hpp>
 
+#include "io/scalar.hpp"
 #include "io/source.hpp"
 
 namespace pointskin::io {
@@ -34,7 +35,9 @@ struct NpyArray {
 
   [[nodiscard]] bool is_structured() const { return !fields.front().name.empty(); }
   /// Where the first value of a column is, and the bytes from row to row.
-  [[nodiscard]] const char* column(std::int64_t c) const { return data + c * item_bytes * (by_column ? rows : 1); }
+  [[nodiscard]] const char* column(std::int64_t c) const {
+    return behind(data, static_cast<std::size_t>(c * item_bytes * (by_column ? rows : 1)));
+  }
   [[nodiscard]] std::int64_t stride() const { return item_bytes * (by_column ? 1 : columns); }
 };
 

@@ -137,7 +137,7 @@ void NumpyTable::add_fields(const NpyArray& array) {
     values.rows = table_.rows;
     values.columns = field.count;
     values.item_bytes = static_cast<std::int64_t>(size_of(field.type));
-    values.data = array.data + field.offset;
+    values.data = behind(array.data, field.offset);
     if ((field.count == 3 || field.count == 4) && names_colours(field.name))
       add_colours(values, 0, field.count);
     else if (field.count == 3 && (names_positions(field.name) || names_normals(field.name)))

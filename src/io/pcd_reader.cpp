@@ -265,7 +265,7 @@ PointTable columns_of(const PcdHeader& header, const PcdBody& body, std::deque<s
   for (const PcdField& field : header.fields) {
     if (!field.is_kept()) continue;
     const std::size_t step = body.by_field ? field.bytes() : header.row_bytes();
-    const char* const data = body.data + (body.by_field ? header.rows * field.offset : field.offset);
+    const char* const data = behind(body.data, body.by_field ? header.rows * field.offset : field.offset);
     if (field.is_packed_colour()) {
       constexpr std::array kChannels{std::pair{"red", 16}, std::pair{"green", 8}, std::pair{"blue", 0},
                                      std::pair{"alpha", 24}};
@@ -280,7 +280,7 @@ PointTable columns_of(const PcdHeader& header, const PcdBody& body, std::deque<s
     }
     for (std::uint64_t i = 0; i < field.count; ++i)
       table.columns.push_back({field.count == 1 ? field.name : fmt::format("{}_{}", field.name, i), field.type,
-                               field.type, data + i * size_of(field.type), static_cast<std::int64_t>(step)});
+                               field.type, behind(data, i * size_of(field.type)), static_cast<std::int64_t>(step)});
   }
   return table;
 }

@@ -25,6 +25,9 @@ T load(const char* from, bool swapped) {
   return std::bit_cast<T>(bytes);
 }
 
+/// `data` + `bytes`; null for null, which is where an empty vector begins.
+inline const char* behind(const char* data, std::size_t bytes) { return data == nullptr ? nullptr : data + bytes; }
+
 /// The integer of type `type` at `from`.
 inline std::int64_t load_integer(AttributeType type, const char* from, bool swapped) {
   return visit_type(type, [&](auto tag) { return static_cast<std::int64_t>(load<decltype(tag)>(from, swapped)); });

@@ -444,7 +444,7 @@ class VtkParser {
     if (binary_) at_ += of.bytes(values);
     const auto bytes = static_cast<std::int64_t>(size_of(stored));
     for (std::size_t c = 0; c < names.size(); ++c)
-      columns_.push_back({names[c], coordinates ? stored : of.type, stored, data + c * size_of(stored),
+      columns_.push_back({names[c], coordinates ? stored : of.type, stored, behind(data, c * size_of(stored)),
                           components * bytes, binary_ && !of.is_bit});
   }
 

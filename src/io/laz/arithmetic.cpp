@@ -73,8 +73,7 @@ std::pair<std::uint32_t, std::uint32_t> SymbolModel::near(std::uint32_t place) c
   return {table_[slot], table_[slot + 1] + 1};
 }
 
-ArithmeticDecoder::ArithmeticDecoder(std::string_view bytes)
-    : bytes_(bytes), length_(std::numeric_limits<std::uint32_t>::max()) {
+ArithmeticDecoder::ArithmeticDecoder(std::string_view bytes) : bytes_(bytes) {
   for (int i = 0; i < 4; ++i) value_ = value_ << 8 | next_byte();
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -69,7 +70,7 @@ class LazyModels {
 /// Decodes bits and symbols from bytes, which must outlive it. All functions throw GarbledLaz.
 class ArithmeticDecoder {
  public:
-  ArithmeticDecoder() = default;
+  ArithmeticDecoder() = default;  ///< of no bytes: decoding soon throws GarbledLaz
   explicit ArithmeticDecoder(std::string_view bytes);
 
   std::uint32_t bit(BitModel& model);
@@ -83,7 +84,7 @@ class ArithmeticDecoder {
 
   std::string_view bytes_;
   std::size_t at_ = 0;
-  std::uint32_t value_ = 0, length_ = 0;
+  std::uint32_t value_ = 0, length_ = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// Decodes integers by what they differ from a prediction.

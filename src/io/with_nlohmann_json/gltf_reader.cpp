@@ -152,7 +152,7 @@ struct Columns {
 
   void add(const std::string& name, const GltfArray& array, std::size_t component) {
     const auto size = static_cast<std::int64_t>(size_of(array.type));
-    table.columns.push_back({name, array.type, array.type, array.bytes.data() + component * size_of(array.type),
+    table.columns.push_back({name, array.type, array.type, behind(array.bytes.data(), component * size_of(array.type)),
                              size * static_cast<std::int64_t>(array.components), false});
   }
   void add(const std::string& name, AttributeType type, std::vector<double> values) {

@@ -12,6 +12,7 @@
 
 #include <pointskin/attribute.hpp>
 
+#include "io/scalar.hpp"
 #include "io/source.hpp"
 
 namespace pointskin::io {
@@ -26,7 +27,7 @@ struct VtkArray {
   bool swapped = false;
 
   [[nodiscard]] const char* at(std::int64_t component) const {
-    return data + static_cast<std::size_t>(component) * size_of(type);
+    return behind(data, static_cast<std::size_t>(component) * size_of(type));
   }
   [[nodiscard]] std::int64_t stride() const { return components * static_cast<std::int64_t>(size_of(type)); }
   /// A value of an array of integers with one component.

@@ -230,6 +230,23 @@ TEST(Las, DamagedFilesEndInAStoryOrACloud) {
   test::damage(las(4, 8, 2), [](const std::string& damaged) { cloud_of("a.las", damaged); });
 }
 
+TEST(Las, LayersWithoutBytesAreRefusedOrLeftOut) {
+  const std::string bytes = peer_file("format8.laz");
+  const auto number = [&](std::size_t at, std::size_t size) {
+    std::size_t value = 0;
+    for (std::size_t i = size; i-- > 0;) value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  // The place of the chunk table, the first point as it is, how many points there are, then the lengths of the layers.
+  const std::size_t lengths = number(96, 4) + 8 + number(105, 2) + 4;
+  for (std::size_t layer = 0; layer < 9; ++layer) {
+    std::string damaged = bytes;
+    damaged.replace(lengths + 4 * layer, 4, 4, '\0');
+    const std::string story = story_of(ErrorCode::invalid_input, [&] { cloud_of("a.laz", damaged); });
+    if (layer == 0) EXPECT_NE(story.find("garbled"), std::string::npos) << "places are in the first";
+  }
+}
+
 TEST(Las, DamagedCompressedFilesDoSo) {
   for (const char* name : {"format3.laz", "format8.laz"}) {
     const std::string bytes = peer_file(name);

@@ -195,11 +195,8 @@ struct Points {
   const std::vector<Attribute>& attributes;
 };
 
-/// @param grid  null: positions and normals as floats
-std::vector<Part> parts_of(const Points& points, const std::vector<Triangle>* triangles, const Grid* grid) {
-  std::vector<Part> parts{grid == nullptr ? positions(points.positions) : cells(points.positions, *grid)};
-  if (!points.normals.empty())
-    parts.push_back(grid == nullptr ? vectors("NORMAL", points.normals) : small_normals(points.normals));
+/// @param parts  positions, and normals where there are some; the others are added
+std::vector<Part> with_the_rest(std::vector<Part> parts, const Points& points, const std::vector<Triangle>* triangles) {
   const std::vector<const Attribute*> channels = colour_channels(points.attributes);
   if (!channels.empty())
     parts.push_back(channels[0]->type() == AttributeType::uint8 ? colours<std::uint8_t>(channels)
@@ -312,7 +309,9 @@ std::string header_of(std::string json, std::size_t binary_bytes) {
 }
 
 Blocks format_plain(const Points& points, const std::vector<Triangle>* triangles) {
-  std::vector<Part> parts = parts_of(points, triangles, nullptr);
+  std::vector<Part> parts{positions(points.positions)};
+  if (!points.normals.empty()) parts.push_back(vectors("NORMAL", points.normals));
+  parts = with_the_rest(std::move(parts), points, triangles);
   check_lengths(points, parts);
   std::size_t bytes = 0;
   for (const Part& part : parts) bytes += part.rows * part.row_bytes;
@@ -325,10 +324,12 @@ Blocks format_plain(const Points& points, const std::vector<Triangle>* triangles
   return cut_into_blocks(std::move(header), std::move(sections));
 }
 
-/// The packed parts are made as a whole, in memory.
-Blocks format_compressed(const Points& points, const std::vector<Triangle>* triangles) {
+/// The packed parts are made as a whole, in memory. What it calls is there if kHasMeshoptimizer.
+[[maybe_unused]] Blocks format_compressed(const Points& points, const std::vector<Triangle>* triangles) {
   const Grid grid(points.positions);
-  const std::vector<Part> parts = parts_of(points, triangles, &grid);
+  std::vector<Part> parts{cells(points.positions, grid)};
+  if (!points.normals.empty()) parts.push_back(small_normals(points.normals));
+  parts = with_the_rest(std::move(parts), points, triangles);
   check_lengths(points, parts);
   std::vector<std::string> packed;
   for (const Part& part : parts) {

@@ -142,6 +142,10 @@ TEST_F(UnusedOptions, ThatTheFormatCannotHold) {
   expect_unused(stl, {"--ascii"}, "--ascii has no effect in STL files, which are written as binary ones");
   expect_unused({"convert", "cube.ply", "out.stl", "-q"}, {"--ascii"},
                 "--ascii has no effect in STL files, which are written as binary ones");
+  expect_unused({"convert", "cube.ply", "out.stl", "-q"}, {"--double"},
+                "--double has no effect in files other than PLY");
+  expect_unused({"convert", "cube.ply", "out.stl", "-q"}, {"--compress"},
+                "--compress has no effect in files other than GLB");
   expect_unused(joined(obj, {"--colors"}), {"--keep-attributes"}, "OBJ files hold colours alone: quality is left out");
 }
 

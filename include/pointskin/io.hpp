@@ -43,11 +43,11 @@ struct ReadOptions {
 Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
 /// Reads a triangle mesh: PLY (as above, polygons are fanned), OBJ, STL (binary and ascii, equal corners merged), OFF,
-/// legacy VTK (polygons, strips, and cells of a grid that are made of triangles), NPZ (vertices and faces), VTP, VTU, GLB
-/// and GLTF (all triangles of the scene, where its nodes put them; COLOR_0 is red, green and blue; attributes of
+/// legacy VTK (polygons, strips, and cells of a grid that are made of triangles), NPZ (vertices and faces), VTP, VTU,
+/// GLB and GLTF (all triangles of the scene, where its nodes put them; COLOR_0 is red, green and blue; attributes of
 /// applications lose the underscore; buffers as data: URIs or files in the same folder; quantised values and
-/// meshoptimizer's coding are understood, Draco's is not). Normals get unit length; those of OBJ are taken if every corner names the normal with the
-/// number of its vertex. Attributes have the types that read_cloud gives them.
+/// meshoptimizer's coding are understood, Draco's is not). Normals get unit length; those of OBJ are taken if every
+/// corner names the normal with the number of its vertex. Attributes have the types that read_cloud gives them.
 /// @throws Error invalid_input as read_cloud, also for an index out of range or a vertex that is not finite;
 ///         over_limit for more than 2^31 - 1 vertices
 Mesh read_mesh(const std::string& path, const ReadOptions& options = {});
@@ -59,8 +59,8 @@ struct WriteOptions {
   /// PLY with coordinates as double also where the origin is zero, for programs that expect them so.
   bool double_coordinates = false;
   /// GLB a quarter as large: positions of 16 bits (a 65,535th of the longest side of the box), normals of 12, and
-  /// meshoptimizer's coding (KHR_mesh_quantization, EXT_meshopt_compression). Vertices and triangles keep their order. Other
-  /// formats are written as ever.
+  /// meshoptimizer's coding (KHR_mesh_quantization, EXT_meshopt_compression). Vertices and triangles keep their order.
+  /// Other formats are written as ever. Made as a whole, in memory. Error usage in a build without meshoptimizer.
   bool compress = false;
 };
 

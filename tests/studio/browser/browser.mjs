@@ -1,4 +1,5 @@
 // Debian's chromium on a page of the studio, driven by real pointer and key events.
+import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { Client } from './client.mjs';
 import { require } from './packages.mjs';
@@ -73,6 +74,15 @@ export class Studio {
   /** The picture of the canvas; of one that moves all the time, as it is now. */
   async picture({ moves = false } = {}) {
     return moves ? decode(await this.at('viewport').screenshot()) : pictureOf(this.page);
+  }
+
+  /** Takes pictures until one is as it should be, however slow the machine is; after a minute fails, saying `what`. */
+  async seen(what, accepts, options) {
+    const end = Date.now() + 60_000;
+    while (!accepts(await this.picture(options))) {
+      assert.ok(Date.now() < end, what);
+      await this.page.waitForTimeout(100);
+    }
   }
 
   /** Presses, moves through the places (pixels of the page) and releases. */

@@ -48,12 +48,7 @@ test('trim cuts what was tinted', { skip: noBrowser(), timeout: 180_000 }, async
     const slider = studio.at('opt-trim');
     await slider.focus();
     for (let i = 0; i < 12; i += 1) await studio.press('ArrowRight');
-    let seen = null;
-    for (let tries = 0; tries < 60 && !seen; tries += 1) {  // the tint comes with the next preview
-      await studio.page.waitForTimeout(250);
-      seen = changedBox(await studio.picture(), plain);
-    }
-    assert.ok(seen, 'what goes is seen');
+    await studio.seen('what goes is seen', picture => changedBox(picture, plain));  // the tint comes with the next preview
     const scene = await state(studio, since, now => now.done > 0 && now.options.trim > 0);
     assert.ok(scene.triangles < whole, `${scene.triangles} triangles of ${whole}`);
     assert.equal(scene.surface.closed, false);
@@ -70,8 +65,7 @@ test('a section plane cuts the view, and nothing else', { skip: noBrowser(), tim
     await panel(studio, 'surface');
     await studio.at('section').click();
     await slide(studio, 'section-place', 0.3);
-    await studio.page.waitForTimeout(500);
-    assert.ok(changedBox(await studio.picture(), whole).pixels > 2000, 'half of the torus is gone from the picture');
+    await studio.seen('half of the torus is gone from the picture', picture => changedBox(picture, whole)?.pixels > 2000);
     assert.equal(await studio.client.digest(), before);
   } finally {
     await studio.close();
@@ -92,8 +86,7 @@ test('compare with a shape shows a table and a heat map', { skip: noBrowser(), t
     assert.match(await studio.at('comparison').innerText(), /both/);
     const shown = await studio.client.event('mesh', event => event.values.includes('distance'), { since });
     assert.ok(shown.triangles > 0);
-    await studio.page.waitForTimeout(1500);
-    assert.ok(changedBox(await studio.picture(), plain).pixels > 2000, 'the distances are seen');
+    await studio.seen('the distances are seen', picture => changedBox(picture, plain)?.pixels > 2000);
     await studio.at('reference-end').click();
   } finally {
     await studio.close();
@@ -112,8 +105,7 @@ test('problems are listed, and a click goes there', { skip: noBrowser(), timeout
     assert.ok(regions.length > 0 && regions[0].score >= regions.at(-1).score);
     const before = await studio.picture();
     await first.click();
-    await studio.page.waitForTimeout(1000);
-    assert.ok(changedBox(await studio.picture(), before).pixels > 2000, 'the camera went there');
+    await studio.seen('the camera went there', picture => changedBox(picture, before)?.pixels > 2000);
   } finally {
     await studio.close();
   }

@@ -31,8 +31,7 @@ test('two fingers are parted by a stroke', { skip: noBrowser(), timeout: 240_000
     const bare = await studio.picture();
     await studio.drag([at([0.235, 0.4, 0]), at([0.235, 0.7, 0]), at([0.235, 1, 0])], { steps: 12 });
     const ghosts = await studio.client.event('ghosts', event => event.added > 0);
-    await studio.page.waitForTimeout(800);
-    assert.ok(changedBox(await studio.picture(), bare)?.pixels > 50, 'ghosts are seen');
+    await studio.seen('ghosts are seen', picture => changedBox(picture, bare)?.pixels > 50);
     const since = studio.client.events.length;
     await studio.press('Enter');
     const parted = await studio.drawn(since);

@@ -16,14 +16,14 @@ test('live water is pushed by the mouse', { skip: noBrowser(), timeout: 240_000 
     await studio.at('fluid-scene').selectOption('stir').catch(() => {});
     await studio.at('fluid-start').click();
     await studio.client.event('frame', frame => frame.index >= 3, { timeout: 120_000 });
-    await studio.page.waitForTimeout(1000);
-    assert.ok(colours(await studio.picture({ moves: true })) > 20, 'the water is seen');
+    await studio.seen('the water is seen', picture => colours(picture) > 20, { moves: true });
     const { x, y, width, height } = await studio.canvas();
     const calm = frames(studio).at(-1).max_speed;
+    const pushing = frames(studio).length;
     const { mouse } = studio.page;
     await mouse.move(x + 0.4 * width, y + 0.55 * height);
     await mouse.down();
-    for (let i = 0; i < 40; i += 1) {
+    for (let i = 0; i < 40 || frames(studio).length < pushing + 8; i += 1) {
       await mouse.move(x + (0.4 + 0.2 * Math.abs(Math.sin(i / 4))) * width, y + 0.55 * height);
       await studio.page.waitForTimeout(60);
     }
@@ -31,7 +31,8 @@ test('live water is pushed by the mouse', { skip: noBrowser(), timeout: 240_000 
     await mouse.up();
     assert.ok(pushed > calm, `${pushed} m/s where it was ${calm}`);
     await studio.at('fluid-stop').click();
-    await studio.page.waitForTimeout(500);
+    const stopped = async () => (await studio.client.ask('fluid')).error?.code === 'usage';  // there is no water any more
+    while (!await stopped()) await studio.page.waitForTimeout(50);
     const count = frames(studio).length;
     await studio.page.waitForTimeout(700);
     assert.equal(frames(studio).length, count, 'stopped');
@@ -53,16 +54,14 @@ test('a sequence is played, stepped and scrubbed', { skip: noBrowser(), timeout:
     await studio.at('open-confirm').click();
     await studio.at('timeline').waitFor();
     await studio.client.event('frame', frame => frame.index === 0, { timeout: 60_000 });
-    await studio.page.waitForTimeout(1000);
+    await studio.seen('the first frame is seen', picture => colours(picture) > 20);
     const first = await studio.picture();
-    assert.ok(colours(first) > 20, 'the first frame is seen');
     await studio.at('timeline-next').click();
     await studio.client.event('frame', frame => frame.index === 1);
     const scrub = studio.at('timeline-scrub');
     await studio.page.mouse.click(...(await placeIn(scrub, 0.98)));
     await studio.client.event('frame', frame => frame.index === 5);
-    await studio.page.waitForTimeout(1000);
-    assert.ok(changedBox(await studio.picture(), first), 'the last frame is another one');
+    await studio.seen('the last frame is another one', picture => changedBox(picture, first));
     const since = studio.client.events.length;
     await studio.at('timeline-play').click();
     for (const index of [0, 1, 2]) await studio.client.event('frame', frame => frame.index === index, { since });

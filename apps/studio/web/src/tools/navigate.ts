@@ -6,5 +6,5 @@ export const navigate = register(() => ({
   title: "Navigate",
   key: "v",
   icon: "M5 3l14 8-6 2-3 6z",
-  hint: "Drag turns about the point under the cursor, Shift+drag or middle button moves, wheel goes nearer, double click sets the centre",
+  hint: "Drag turns, Shift+drag moves, wheel goes nearer, double click sets the centre",
 }));

@@ -31,6 +31,7 @@ export class Palette extends LitElement {
         overflow: hidden;
       }
       input {
+        flex: none;
         height: 44px;
         border: 0;
         border-bottom: 1px solid var(--line);

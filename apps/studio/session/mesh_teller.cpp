@@ -49,6 +49,7 @@ std::uint64_t MeshTeller::show(const Mesh& mesh, const MeshFacts& facts) {
   const std::uint64_t blob = services_.blobs.add(facts.preview ? "preview" : "mesh", std::move(data), kMeshesKept);
   const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
   Json event = {{"event", "mesh"},
+                {"scene", scene_},
                 {"version", ++version_},
                 {"blob", blob},
                 {"bytes", bytes},
@@ -70,7 +71,8 @@ bool MeshTeller::show_frame(const Mesh& mesh, Json facts) {
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t blob =
       services_.blobs.add("frame", wire::encode_mesh(mesh, {.threads = services_.device.threads}), kFramesKept);
-  Json event = {{"event", "frame"}, {"version", ++version_}, {"blob", blob}, {"triangles", mesh.triangles.size()}};
+  Json event = {{"event", "frame"}, {"scene", scene_}, {"version", ++version_}, {"blob", blob}};
+  event["triangles"] = mesh.triangles.size();
   event.update(facts);
   event["ms"]["encode"] = ms_since(start);
   return services_.audience.show(event, true) > 0;
@@ -98,8 +100,13 @@ void MeshTeller::show_points(const Cloud& cloud, std::int64_t most_points) {
       part.colours.insert(part.colours.end(), colour, colour + 4);
     }
     const std::uint64_t blob = services_.blobs.add("points", encode_points(part, box, false), SIZE_MAX);
-    const Json event = {{"event", "points"}, {"blob", blob},   {"from", from},
-                        {"count", count},    {"total", total}, {"final", from + count == shown}};
+    const Json event = {{"event", "points"},
+                        {"scene", scene_},
+                        {"blob", blob},
+                        {"from", from},
+                        {"count", count},
+                        {"total", total},
+                        {"final", from + count == shown}};
     services_.audience.remember_more("points", event);
     services_.audience.tell(event);
     from += count;

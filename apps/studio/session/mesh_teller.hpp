@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pointskin/cloud.hpp>
@@ -27,6 +28,10 @@ struct MeshFacts {
 class MeshTeller {
  public:
   explicit MeshTeller(Services& services) : services_(services) {}
+
+  /// What is told from now on belongs to this scene: pages show the first of it whole, and keep their view after that.
+  void begin(std::string scene) { scene_ = std::move(scene); }
+  [[nodiscard]] const std::string& scene() const { return scene_; }
 
   /// @returns its version; 0 if no page was told
   std::uint64_t show(const Mesh& mesh, const MeshFacts& facts);
@@ -53,6 +58,7 @@ class MeshTeller {
 
   Services& services_;
   std::uint64_t version_ = 0;
+  std::string scene_;  ///< empty: none yet
 };
 
 }  // namespace pointskin::studio

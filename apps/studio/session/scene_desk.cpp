@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <utility>
 
 #include <pointskin/camera.hpp>
@@ -36,6 +38,9 @@ class Holding {
   ProgressTeller* before_;
 };
 
+/// What pages know a scene by.
+std::string name_of(const std::filesystem::path& journal) { return journal.filename().string(); }
+
 /// By how many depths a surface of so many triangles is too fine: every depth has a quarter of the next one's.
 int levels_above(std::int64_t most, std::int64_t triangles) {
   int levels = 0;
@@ -54,13 +59,14 @@ const scene::Scene& SceneDesk::present() const {
   return *scene_;
 }
 
-SceneDesk::Opened SceneDesk::open(const scene::Document& document) {
+SceneDesk::Opened SceneDesk::open(const scene::Document& document, const std::filesystem::path& journal) {
   Opened opened;
   scene::ReadFacts facts;
   Cloud base = load_base(document.base.clouds, {.shift = scene::shift_of(document.base.shift)},
                          scene::MissingNormals::allowed, facts);
   opened.notices = std::move(facts.notices);
   opened.points = facts_of(base);
+  teller_.begin(name_of(journal));
   teller_.show_points(base, services_.most_shown);  // what was read is seen at once
   opened.dropped = facts.not_finite + facts.no_normal;
   scene::SceneOptions options;
@@ -108,18 +114,31 @@ void SceneDesk::begin(const scene::Document& document, const std::filesystem::pa
   const Clock::time_point start = Clock::now();
   scene::Document first = document;
   stamp_clouds(first.base);
-  Opened opened = open(first);
-  scene::Document beginning = first;
-  beginning.operations.clear();
-  beginning.done = 0;
-  scene::Journal begun = scene::Journal::create(journal.string(), beginning);
-  for (std::size_t i = 0; i < opened.scene->size(); ++i) begun.apply(opened.scene->operation(i));
-  if (opened.scene->done() < opened.scene->size()) begun.go(opened.scene->done());
-  take(std::move(opened), first);
-  journal_ = std::move(begun);
+  try {
+    Opened opened = open(first, journal);
+    scene::Document beginning = first;
+    beginning.operations.clear();
+    beginning.done = 0;
+    scene::Journal begun = scene::Journal::create(journal.string(), beginning);
+    for (std::size_t i = 0; i < opened.scene->size(); ++i) begun.apply(opened.scene->operation(i));
+    if (opened.scene->done() < opened.scene->size()) begun.go(opened.scene->done());
+    take(std::move(opened), first);
+    journal_ = std::move(begun);
+  } catch (...) {
+    show_again();
+    throw;
+  }
   last_ms_ = ms_since(start);
   changed(progress.phase_ms());
   points_are_old_ = scene_->size() > 0;
+}
+
+/// The points of a scene that could not be opened make place for the scene that there is.
+void SceneDesk::show_again() {
+  if (scene_ == nullptr || teller_.scene() == name_of(journal_->path())) return;
+  teller_.begin(name_of(journal_->path()));
+  points_are_old_ = true;
+  show_mesh({});
 }
 
 void SceneDesk::resume(const std::filesystem::path& journal) {
@@ -128,7 +147,7 @@ void SceneDesk::resume(const std::filesystem::path& journal) {
   const scene::Document document = scene::read_journal(journal.string());
   for (const std::string& notice : check_clouds(document.base))
     services_.audience.tell({{"event", "notice"}, {"level", "warning"}, {"text", notice}});
-  Opened opened = open(document);
+  Opened opened = open(document, journal);
   scene::Journal going_on = scene::Journal::open(journal.string());
   take(std::move(opened), document);
   journal_ = std::move(going_on);

@@ -77,8 +77,9 @@ class SceneDesk {
 
   static Points facts_of(const Cloud& cloud);
 
-  [[nodiscard]] Opened open(const scene::Document& document);
+  [[nodiscard]] Opened open(const scene::Document& document, const std::filesystem::path& journal);
   void replay(const scene::Document& document, scene::Scene& scene);
+  void show_again();
   void take(Opened opened, const scene::Document& document);
   void changed(Json ms);
   [[nodiscard]] const MeshReport& surface() const;

@@ -83,6 +83,39 @@ TEST_F(SessionFiles, NothingOutsideOfTheRootIsReadOrWritten) {
   EXPECT_FALSE(fs::exists(root().parent_path() / "b.ply"));
 }
 
+TEST_F(SessionFiles, MeshesAndPointsSayWhichSceneTheyBelongTo) {
+  write_torus("a.ply");
+  write_torus("b.ply", 4'000);
+  start();
+  (void)open_file("a.ply");
+  const Json first = page().last("mesh").at("scene");
+  apply(guide({pixel(-0.9, 0), pixel(0.9, 0)}));
+  EXPECT_EQ(page().last("mesh").at("scene"), first) << "a step goes on with the scene";
+  EXPECT_EQ(page().events("points").front().at("scene"), first);
+  (void)open_file("b.ply");
+  EXPECT_NE(page().last("mesh").at("scene"), first);
+  EXPECT_EQ(page().last("points").at("scene"), page().last("mesh").at("scene"));
+}
+
+TEST_F(SessionFiles, WhatCannotBeOpenedLeavesTheSceneBeforeOnThePage) {
+  write_torus("a.ply");
+  write_torus("b.ply", 4'000);
+  start();
+  (void)open_file("a.ply");
+  const std::string expected = digest();
+  const Json mesh = page().last("mesh");
+  fs::remove_all(folder());  // no place for a journal: found out when the points were shown
+  EXPECT_EQ(page().refusal("open", {{"files", {{{"path", "b.ply"}}}}}), "output_not_written");
+  fs::create_directory(folder());
+  const Json again = page().wait("mesh", 0, [&](const Json& e) { return e.at("version") > mesh.at("version"); });
+  EXPECT_EQ(again.at("scene"), mesh.at("scene"));
+  EXPECT_EQ(again.at("triangles"), mesh.at("triangles"));
+  const auto is_of_a = [](const Json& e) { return e.at("total") == 5'000; };
+  const Json points = page().wait("points", page().count("points") - 1, is_of_a);
+  EXPECT_EQ(points.at("scene"), mesh.at("scene"));
+  EXPECT_EQ(digest(), expected);
+}
+
 TEST_F(SessionFiles, AnUploadIsOpenedLikeAFile) {
   write_torus("a.ply");
   start();

@@ -18,7 +18,7 @@ export class Link {
   private pointsQueue: Promise<void> = Promise.resolve();
   private ghostsWanted = 0;
   private chips = 1;
-  private framed = false;
+  private sceneFramed: string | null = null; // by its events: they may come before the state that tells of it
 
   constructor(
     private readonly connection: Connection,
@@ -57,7 +57,6 @@ export class Link {
     const before = this.store.scene;
     const label = (state: SceneState | null) => state && [...state.clouds.map((cloud) => cloud.file + cloud.shape), state.journal].join("\n");
     if (label(before) !== label(scene)) {
-      this.framed = false;
       this.store.update({ histogram: null, problems: null, problem: -1, estimate: null, comparison: null, chip: null });
     } else if (before && scene) {
       this.chip(before.done, scene);
@@ -113,7 +112,7 @@ export class Link {
     this.meshShown = event.version;
     const begun = performance.now();
     this.viewport.setMesh(decoded);
-    this.frameOnce();
+    this.frameOnce(event.scene);
     if (!event.preview && ghosts === this.ghostsWanted) this.endGhosts();
     this.viewport.afterNextFrame(() => this.meshDrawn(event, decoded, performance.now() - begun));
     void this.lines();
@@ -168,8 +167,9 @@ export class Link {
     this.pointsQueue = this.pointsQueue.then(async () => {
       const decoded = await loading;
       if (!decoded || generation !== this.pointsGeneration) return;
+      if (this.sceneFramed !== null && this.sceneFramed !== event.scene) this.clear(); // the surface of another one
       this.viewport.setPoints(decoded, event.from);
-      this.frameOnce();
+      this.frameOnce(event.scene);
       this.store.update({ pointsShown: this.viewport.points.shown });
       this.viewport.afterNextFrame(() => performance.mark("psk:points-drawn"));
     });
@@ -196,7 +196,7 @@ export class Link {
     const decoded = event.blob === null ? null : await this.load(event.blob);
     const { sequence } = this.store;
     if (decoded) this.viewport.setMesh(decoded);
-    this.frameOnce();
+    this.frameOnce(event.scene);
     this.viewport.afterNextFrame(() => this.ack(event.version));
     if (!sequence) return;
     const files = sequence.kind === "files";
@@ -205,10 +205,11 @@ export class Link {
     this.store.update({ sequence: { ...sequence, index, frame: event, cached } });
   }
 
-  private frameOnce(): void {
+  /// Shows the first that comes of a scene whole; then the view is in the hands of who looks.
+  private frameOnce(scene: string): void {
     const { surface, points } = this.viewport;
-    if (this.framed || (!surface.decoded?.triangles && points.shown === 0)) return;
-    this.framed = true;
+    if (this.sceneFramed === scene || (!surface.decoded?.triangles && points.shown === 0)) return;
+    this.sceneFramed = scene;
     this.viewport.view.fit(this.viewport.box);
     this.viewport.requestRender();
   }

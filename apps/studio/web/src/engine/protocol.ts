@@ -316,6 +316,7 @@ export interface StageTimes {
   draw?: number;
 }
 export interface MeshEvent {
+  scene: string; // which scene it belongs to; shown whole when the first of it comes
   version: number;
   blob: number;
   bytes: number;
@@ -328,6 +329,7 @@ export interface MeshEvent {
   values?: string[];
 }
 export interface PointsEvent {
+  scene: string;
   blob: number;
   from: number;
   count: number;
@@ -349,6 +351,7 @@ export interface GhostsEvent {
   b?: ClassCounts;
 }
 export interface FrameEvent {
+  scene: string;
   version: number;
   index: number;
   blob: number | null;

@@ -10,7 +10,7 @@ const rounds = 20;
 /** Applies operations until the program dies. @returns the acknowledged ones, with the digest after some */
 async function workUntilKilled(program, client, random, known) {
   const acknowledged = [...known];
-  setTimeout(() => program.kill('SIGKILL'), 200 + 1500 * random());
+  setTimeout(() => program.kill('SIGKILL'), 50 + 600 * random());
   const ended = program.ended.then(() => 'ended');
   while (true) {
     const operation = operationFrom(random);

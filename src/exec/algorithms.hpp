@@ -76,9 +76,9 @@ T read_element(Exec& ex, ArrayView<const T> from, std::int64_t i) {
   return value;
 }
 
-/// The rest of reduce: combines the lanes' values, of which there is at least one. Waits.
+/// The rest of reduce: combines the lanes' values, of which there is at least one, to one element.
 template <class T, Space Exec, class Combine>
-T reduce_lane_values(Exec& ex, const char* label, Buffer<T> sums, Combine combine) {
+Buffer<T> reduce_lane_values(Exec& ex, const char* label, Buffer<T> sums, Combine combine) {
   std::int64_t lanes = sums.size();
   while (lanes > kReduceTail) {
     const std::int64_t fewer = reduce_lanes(lanes);
@@ -88,20 +88,27 @@ T reduce_lane_values(Exec& ex, const char* label, Buffer<T> sums, Combine combin
     sums = std::move(next);
     lanes = fewer;
   }
-  if (lanes == 1) return read_element(ex, sums.cview(), 0);
+  if (lanes == 1) return sums;
   Buffer<T> total = make_buffer<T>(ex, 1);
   reduce_tail(ex, label, sums.cview(), total.view(), combine);
-  return read_element(ex, total.cview(), 0);
+  return total;
 }
 
 /// combine over f(0), ..., f(n-1) for n > 0, in the order of exec/reduce_order.hpp, which depends on n alone: the same
-/// bits in every space and for every number of threads. About n calls of f; O(log n) launches; waits.
+/// bits in every space and for every number of threads. One element, in the space's memory: for work that follows.
+/// About n calls of f; O(log n) launches; does not wait.
 template <class T, Space Exec, class F, class Combine>
-T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
+Buffer<T> reduce_in_space(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
   const std::int64_t lanes = reduce_lanes(n);
   Buffer<T> sums = make_buffer<T>(ex, lanes);
   for_each(ex, label, lanes, detail::ReduceLane<T, F, Combine>{f, combine, n, lanes, sums.view()});
   return reduce_lane_values(ex, label, std::move(sums), combine);
+}
+
+/// The same on the host. Waits.
+template <class T, Space Exec, class F, class Combine>
+T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
+  return read_element(ex, reduce_in_space<T>(ex, label, n, f, combine).cview(), 0);
 }
 
 /// Sum of counts, in 64 bits. Waits.

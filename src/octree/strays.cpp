@@ -91,7 +91,8 @@ Extent measure_extent(Exec& ex, ArrayView<const Vec3f> positions) {
   const std::int64_t lanes = exec::reduce_lanes(positions.size);
   auto extents = exec::make_buffer<Extent>(ex, lanes);
   for_each(ex, "octree.bounds", lanes, ExtentOfLane{positions, lanes, extents.view()});
-  return exec::reduce_lane_values(ex, "octree.bounds", std::move(extents), JoinExtents{});
+  const auto joined = exec::reduce_lane_values(ex, "octree.bounds", std::move(extents), JoinExtents{});
+  return exec::read_element(ex, joined.cview(), 0);
 }
 
 /// Ends beyond which lie few points, but all strays: of many lanes, `limit` and one more have points at or beyond them.

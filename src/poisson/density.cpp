@@ -6,6 +6,7 @@
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
 #include "poisson/mean_length.hpp"
+#include "poisson/outliers.hpp"
 
 namespace pointskin::poisson {
 namespace {
@@ -101,8 +102,7 @@ struct Weigh {
   DensityView density;
   ArrayView<const Vec3f> positions;
   float samples_per_node;
-  double mean_length;  // of the normals; 0: all samples weigh the same
-  int coarsest;        // depth
+  int coarsest;  // depth
   ArrayView<Vec3f> normals;
   ArrayView<float> areas;
   ArrayView<float> splat_depths;
@@ -114,7 +114,7 @@ struct Weigh {
                                     static_cast<float>(n.z / length)}
                             : Vec3f{};
     const float per_cell = density.samples_per_cell(tree, positions[i]);
-    areas[i] = (mean_length > 0 ? static_cast<float>(length / mean_length) : 1.0F) / per_cell;
+    areas[i] = 1 / per_cell;
     splat_depths[i] = splat_depth(per_cell * kKernelFaces);
   }
 
@@ -130,6 +130,12 @@ struct Weigh {
     const float share = (samples / samples_per_node - 0.25F) * (4.0F / 3);
     return static_cast<float>(finer - 1) + share;
   }
+};
+
+struct ScaleArea {
+  ArrayView<const float> weights;
+  ArrayView<float> areas;
+  PSK_HD void operator()(std::int64_t i) const { areas[i] *= weights[i]; }
 };
 
 struct EvaluateDensity {
@@ -174,17 +180,19 @@ void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& dens
   const std::int64_t n = samples.positions.size();
   samples.areas = exec::make_buffer<float>(ex, n);
   samples.splat_depths = exec::make_buffer<float>(ex, n);
-  const double mean = options.confidence ? mean_length(ex, samples.normals.cview()) : 0;
+  exec::Buffer<float> weights;
+  if (options.confidence) weights = confidence_weights(ex, samples.normals.cview());
   for_each(ex, "density.weigh", n,
            Weigh{tree.view(),
                  {density.depth, density.counts.data()},
                  samples.positions.cview(),
                  static_cast<float>(options.samples_per_node),
-                 mean,
                  coarsest_splat_depth(n, tree.depth),
                  samples.normals.view(),
                  samples.areas.view(),
                  samples.splat_depths.view()});
+  if (options.drop_outliers) drop_outliers(ex, samples);
+  if (options.confidence) for_each(ex, "density.weigh", n, ScaleArea{weights.cview(), samples.areas.view()});
 }
 
 template <exec::Space Exec>

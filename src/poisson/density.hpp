@@ -50,6 +50,7 @@ struct DensityView {
 struct WeighOptions {
   double samples_per_node = 1.5;  ///< samples the splat kernel must average over, >= 0
   bool confidence = false;        ///< weight a sample by its normal's length over the mean length
+  bool drop_outliers = true;      ///< poisson/outliers.hpp; false where normals have no signs yet
 };
 
 /// Splats every sample's hat at level depth - 2, cell by cell, and restricts the counts to the levels above: hats are
@@ -59,7 +60,7 @@ Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const 
 
 /// Fills `samples.areas` and `splat_depths` (each from the density at its sample alone, and up to two levels below the
 /// finest: find_resolution evens them out), and normalises `samples.normals` in place; with confidence, their former
-/// lengths scale the areas. O(n depth).
+/// lengths scale the areas. Outliers get none. O(n depth).
 template <exec::Space Exec>
 void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& density, const WeighOptions& options,
                    Samples& samples);

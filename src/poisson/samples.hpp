@@ -37,8 +37,8 @@ PSK_HD inline float sampled_share(float splat_depth, int depth) {
 struct SamplesView {
   ArrayView<const Vec3f> positions;  ///< in the unit cube
   ArrayView<const Vec3f> normals;    ///< unit length, or zero for a sample without a normal
-  ArrayView<const float> areas;  ///< area of the surface that the sample stands for, in finest cells^2; 0 only for zero
-                                 ///< normals with confidence
+  ArrayView<const float> areas;  ///< area of the surface that the sample stands for, in finest cells^2; 0 for outliers,
+                                 ///< and with confidence for zero normals
   ArrayView<const float> splat_depths;  ///< depth whose cells hold enough samples to carry the normal, between two
                                         ///< levels where the one is too fine and the other too coarse
   ArrayView<const float> trust;         ///< factor on the weight in the screening, > 0; empty: 1 everywhere

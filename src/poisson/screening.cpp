@@ -4,6 +4,7 @@
 
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
+#include "poisson/trust.hpp"
 
 namespace pointskin::poisson {
 namespace {
@@ -65,7 +66,7 @@ struct CollapsePoints {
   PSK_HD float weight(std::int32_t p) const {
     const float share = sampled_share(samples.splat_depths[p], level.depth);
     const float area = samples.areas[p] * share * share;
-    return samples.trust.empty() ? area : samples.trust[p] * area;
+    return samples.trust.empty() ? area : trust_at(samples.trust[p], samples.splat_depths[p], level.depth) * area;
   }
 };
 

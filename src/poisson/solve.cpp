@@ -175,34 +175,35 @@ void start_level(Exec& ex, const PreviousField& before, const Prolong& prolong) 
   for_each(ex, "solve.start", level.nodes(), ProlongWithDetail{prolong, detail});
 }
 
-struct WeightedValue {
-  double sum = 0, weight = 0;
+struct SumOfValues {
+  double sum = 0;
+  std::int64_t count = 0;
 };
-struct AddWeighted {
-  PSK_HD WeightedValue operator()(const WeightedValue& a, const WeightedValue& b) const {
-    return {a.sum + b.sum, a.weight + b.weight};
+struct AddSums {
+  PSK_HD SumOfValues operator()(const SumOfValues& a, const SumOfValues& b) const {
+    return {a.sum + b.sum, a.count + b.count};
   }
 };
-/// The samples of one finest cell: all samples lie in finest cells.
+/// The samples of one finest cell that stand for some area: all samples lie in finest cells.
 struct ValuesInCell {
   octree::LevelView level;
   const float* u;
   SamplesView samples;
-  ArrayView<WeightedValue> out;
+  ArrayView<SumOfValues> out;
   PSK_HD void operator()(std::int64_t cell) const { out[cell] = total_of(cell); }
 
-  [[nodiscard]] PSK_HD WeightedValue total_of(std::int64_t cell) const {
+  [[nodiscard]] PSK_HD SumOfValues total_of(std::int64_t cell) const {
     const std::int32_t first = level.point_begin[cell];
     const std::int32_t last = level.point_begin[cell + 1];
-    WeightedValue total;
+    SumOfValues total;
     if (first == last) return total;
     const auto node = static_cast<std::int32_t>(cell);
     const octree::Coordinates at = octree::decode(level.node_key(node));
     for (std::int32_t i = first; i < last; ++i) {
-      const double area = samples.areas[i];
+      if (!(samples.areas[i] > 0)) continue;
       const Vec3f local = octree::local_in_cell(samples.positions[i], at, level.depth);
-      total.sum += area * octree::interpolated(level, u, node, local);
-      total.weight += area;
+      total.sum += octree::interpolated(level, u, node, local);
+      ++total.count;
     }
     return total;
   }
@@ -244,11 +245,11 @@ Solution solve_poisson(Exec& ex, const octree::OctreeView& tree, ArrayView<const
 template <exec::Space Exec>
 double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> u, const SamplesView& samples) {
   const octree::LevelView level = tree.view().finest();
-  auto cells = exec::make_buffer<WeightedValue>(ex, level.cells());
+  auto cells = exec::make_buffer<SumOfValues>(ex, level.cells());
   for_each(ex, "solve.isovalue", level.cells(), ValuesInCell{level, u.data + level.first_node, samples, cells.view()});
-  const auto total = exec::reduce<WeightedValue>(ex, "solve.isovalue", cells.size(),
-                                                 exec::LoadValue<WeightedValue>{cells.cview()}, AddWeighted{});
-  return total.sum / total.weight;
+  const auto total = exec::reduce<SumOfValues>(ex, "solve.isovalue", cells.size(),
+                                               exec::LoadValue<SumOfValues>{cells.cview()}, AddSums{});
+  return total.sum / static_cast<double>(total.count);
 }
 
 PSK_INSTANTIATE(solve_poisson);

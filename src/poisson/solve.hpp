@@ -50,7 +50,7 @@ template <exec::Space Exec>
 Solution solve_poisson(Exec& ex, const octree::OctreeView& tree, ArrayView<const float> b, const Screening& screening,
                        const SolveOptions& options);
 
-/// Mean of u over the samples, weighted by their areas: the isovalue. O(n depth), in double.
+/// Mean of u over the samples whose area is not 0: the isovalue. O(n depth), in double.
 template <exec::Space Exec>
 double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> u, const SamplesView& samples);
 

@@ -14,14 +14,27 @@ namespace pointskin::poisson {
 inline constexpr float kPairAgreement = 0.9F;
 inline constexpr float kPairReach = 1.4142135F;
 
-/// Trust = kTrustScale / (kCleanVariance + variance), the variance in squared cells of the splat depth: 3.1 for clean
+/// Trust = kTrustScale / (kCleanVariance + variance), the variance in squared cells of the splat depth: 4.4 for clean
 /// samples, 1 at a standard deviation of 0.15 cells (docs/decisions/0017-noise-and-smoothness.md).
-inline constexpr float kTrustScale = 0.0327F;
-inline constexpr float kCleanVariance = 0.0105F;
+inline constexpr float kTrustScale = 0.0287F;
+inline constexpr float kCleanVariance = 0.0065F;
 inline constexpr float kSmallestTrust = 0.05F;
 
 /// Pairs with the variance of trust 1 that are counted in: where there are few pairs, samples weigh as they are.
 inline constexpr float kPriorPairs = 1;
+
+/// Trust on a level: a scatter of so many cells is a fraction of that in the larger cells of a coarser one. So what is
+/// too noisy to hold the surface where it is may still hold it within a coarser cell. At most 1 where it was less.
+/// @param trust  at the splat depth, > 0
+PSK_HD inline float trust_at(float trust, float splat_depth, int depth) {
+  const int finer = finer_level(splat_depth);
+  if (trust >= 1 || depth >= finer) return trust;
+  const float squared_cells = (1 + 3 * (static_cast<float>(finer) - splat_depth)) /
+                              static_cast<float>(std::int64_t{1} << 2 * (finer - depth));  // 4^(depth - splat_depth)
+  const float variance = kTrustScale / trust - kCleanVariance;
+  const float there = kTrustScale / (kCleanVariance + (squared_cells < 1 ? squared_cells : 1.0F) * variance);
+  return there < 1 ? there : 1.0F;
+}
 
 /// Fills `samples.trust`. The variance is pooled over the cell of level D - 2 around a sample, for samples splatted one
 /// or more levels above the finest over that of level D - 3 or D - 4.

@@ -102,6 +102,27 @@ TEST(Trust, FallsWithTheNoiseAndCurvatureAloneDoesNotLowerIt) {
   EXPECT_GE(mean_trust(8 * cell), poisson::kSmallestTrust);
 }
 
+TEST(Trust, GrowsOnCoarserLevelsUpToOne) {
+  for (const float trust : {0.05F, 0.3F, 0.9F})
+    for (const double splat_depth : {6.0, 6.25, 6.9, 7.0}) {
+      const double variance = poisson::kTrustScale / static_cast<double>(trust) - poisson::kCleanVariance;
+      float above = trust;
+      for (int depth = 9; depth >= 0; --depth) {
+        const float there = poisson::trust_at(trust, static_cast<float>(splat_depth), depth);
+        ASSERT_GE(there, above);
+        ASSERT_LE(there, 1);
+        above = there;
+        if (depth >= splat_depth) {
+          ASSERT_EQ(there, trust);
+        } else if (splat_depth == 6 || splat_depth == 7) {  // between whole depths the square of the scale is linear
+          const double seen = variance * std::exp2(2 * (depth - splat_depth));
+          ASSERT_NEAR(there, std::min(1.0, poisson::kTrustScale / (poisson::kCleanVariance + seen)), 1e-5);
+        }
+      }
+    }
+  EXPECT_EQ(poisson::trust_at(3, 7, 2), 3);
+}
+
 TEST(Trust, IsOneWithoutPairs) {
   const std::vector<Vec3f> positions{{0.1F, 0.1F, 0.1F}, {0.9F, 0.9F, 0.9F}};
   test::SmallTree tree(positions, {{1, 0, 0}, {0, 1, 0}}, kDepth);

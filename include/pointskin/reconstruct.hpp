@@ -200,7 +200,7 @@ struct RunReport {
   int depth = 0;
   std::int64_t nodes = 0;           ///< cells of all depths
   std::vector<LevelReport> levels;  ///< depth 0 first
-  double isovalue = 0;              ///< weighted mean of the field over the samples; 0 for FieldKind::distance, and
+  double isovalue = 0;              ///< mean of the field over the samples but outliers; 0 for FieldKind::distance, and
                                     ///< minus OffsetReport::cells with Options::offset
   TrimReport trim;                  ///< with Options::trim
   PiecesReport pieces;              ///< with Options::largest or Options::min_component

@@ -77,8 +77,7 @@ struct Pipeline {
     samples = std::move(sorted.samples);
     keys = std::move(sorted.keys);
     tree = octree::build_octree(ex, keys.cview(), depth);
-    density = poisson::splat_density(ex, tree, samples.positions.cview());
-    poisson::weigh_samples(ex, tree, density, {options.samples_per_node, options.confidence}, samples);
+    density = poisson::weigh_samples(ex, tree, {options.samples_per_node, options.confidence}, samples);
     resolution = poisson::find_resolution(ex, tree, samples);
     divergence = poisson::splat_divergence(ex, tree, samples.view(), resolution);
     screening = poisson::collapse_samples(ex, tree, samples.view());
@@ -147,7 +146,7 @@ bool add_phases() {
       {"density", [](Exec& ex, P& p) { poisson::splat_density(ex, p.tree, p.samples.positions.cview()); }, 12, 4},
       {"weigh",
        [](Exec& ex, P& p) {
-         poisson::weigh_samples(ex, p.tree, p.density, {p.options.samples_per_node, p.options.confidence}, p.samples);
+         poisson::weigh_samples(ex, p.tree, {p.options.samples_per_node, p.options.confidence}, p.samples);
          poisson::find_resolution(ex, p.tree, p.samples);
        },
        56, 4},

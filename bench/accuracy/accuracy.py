@@ -49,6 +49,8 @@ def parse(words):
     add("--timeout", metavar="SECONDS", type=float, default=1800, help="of one run of a program")
     add("--update", metavar="FILE", type=pathlib.Path,
         help=f"put the table into this text, between {BEGIN} and {END}")
+    add("--brief", action="store_true",
+        help="with --update: one row a case instead, ours over the peer's, losses first")
     add("--json", metavar="FILE", type=pathlib.Path, help="write everything that was measured, and wall clocks")
     options = parser.parse_args(words)
     if options.peer and not all(name in options.peer for name in ("{in}", "{out}")):
@@ -59,6 +61,8 @@ def parse(words):
         parser.error("--equal-triangles needs --peer with {depth}")
     if options.update and not (options.update.is_file() and marked(options.update)):
         parser.error(f"--update: {options.update} has no lines {BEGIN} and {END}")
+    if options.brief and not (options.peer and options.update):
+        parser.error("--brief needs --peer and --update")
     if options.data and not options.data.is_dir():
         parser.error(f"--data: {options.data} is no folder")
     return options
@@ -148,6 +152,12 @@ class Table:
             if self.options.equal_triangles and "failed" not in ours and "failed" not in peer:
                 self.show_at_equal_triangles(case, cloud, ours, peer)
 
+    def brief(self):
+        """The rows of both programs at equal depth, where neither failed, side by side."""
+        ours = {(e["case"], e["depth"]): e for e in self.entries if e["program"] == self.ours[0] and "row" in e}
+        peers = [e for e in self.entries if e["program"] == self.peer[0] and "row" in e and not e.get("interpolated")]
+        return verdict.brief_table([(ours[e["case"], e["depth"]], e) for e in peers if (e["case"], e["depth"]) in ours])
+
     def summary(self):
         lines = []
         for text, interpolated in (("at equal depth", False), ("at equal numbers of triangles", True)):
@@ -198,7 +208,7 @@ def main(words):
         print("\n" + line)
     if options.update:
         before, after = marked(options.update)
-        text = "\n\n".join(["\n".join(table.lines), *(line + "." for line in lines)])
+        text = "\n\n".join(["\n".join(table.brief() if options.brief else table.lines), *(line + "." for line in lines)])
         options.update.write_text(f"{before}\n\n{text}\n\n{after}", encoding="utf-8")
     if options.json:
         report = {"version": 1, "peer": options.peer, "depths": options.depths, "options": options.options,

@@ -62,6 +62,17 @@ def row(**changes):
             "triangles": 1000, "components": 1, "genus": 0, "true_components": 1, "true_genus": 0, **changes}
 
 
+class Brief(unittest.TestCase):
+    def test_has_losses_first_and_geometric_means_last(self):
+        def entry(case, **changes):
+            return {"case": case, "depth": 8, "row": row(**changes)}
+        lines = verdict.brief_table([(entry("won", mean=0.5), entry("won")),
+                                     (entry("lost", mean=2.0, genus=3), entry("lost", components=2))])
+        self.assertEqual([line.split(" | ")[0] for line in lines[2:]], ["| lost", "| won", "| geometric mean"])
+        self.assertEqual(lines[2], "| lost | 8 | 2 | 2.000 | 1.000 | 1.000 | 1 | 3 (true: 0) | 2 (true: 1), 0 |")
+        self.assertEqual(lines[-1], "| geometric mean | | | 1.000 | 1.000 | 1.000 | | | |")
+
+
 class Verdict(unittest.TestCase):
     def judge(self, ours, peer):
         return verdict.verdict_text(verdict.compare(row(**ours), row(**peer), 0.005))
@@ -109,8 +120,9 @@ class Cases(unittest.TestCase):
                                ("b.ply", head + "end_header\n"), ("b_gt.ply", head), ("c.ply", head)):
                 (folder / name).write_text(text, encoding="latin-1")
             names = [case.name for case in cases.file_cases(pathlib.Path("bin"), folder, 1)]
-            self.assertEqual(names, ["a", "a-scan", "a-roughscan", "a@1-scan", "a@1-roughscan", "a@2-scan", "a@2-roughscan",
-                                     "b-scan", "b-roughscan", "b@1-scan", "b@1-roughscan", "b@2-scan", "b@2-roughscan"])
+            scans = [f"@{turned}-{scan}" for turned in (1, 2) for scan in ("scan", "roughscan", "misregistered")]
+            spoilt = [f"@1-{fault}" for fault in cases.SPOILED_MESHES]
+            self.assertEqual(names, ["a", *("a" + name for name in scans + spoilt), *("b" + name for name in scans + spoilt)])
             self.assertEqual(cases.point_count(folder / "a.ply"), 3)
 
     def test_are_chosen_by_patterns(self):
@@ -158,11 +170,11 @@ class Accuracy(unittest.TestCase):
 
     def test_judges_every_case_and_depth_and_sums_up(self):
         rows, text = self.table("--cases", "sphere-*", "--depths", "2,3", *self.peer("2.0 0"))
-        self.assertEqual(len(rows), 2 * 2 * 2 + 2 * 2 * 2)  # clean, noisy, scan, roughscan; two depths; two programs
+        self.assertEqual(len(rows), 2 * 2 * 2 + 3 * 2 * 2)  # clean, noisy; three scans; two depths; two programs
         self.assertEqual(rows[0]["mean %"], "0.25")
         self.assertEqual(rows[1]["mean %"], "0.5")
         self.assertEqual({r["verdict"] for r in rows if r["program"] == "pointskin"}, {"better"})
-        self.assertIn("at equal depth: not worse on 8 of 8, better on 8 of 8", text)
+        self.assertIn("at equal depth: not worse on 10 of 10, better on 10 of 10", text)
 
     def test_says_where_we_are_worse(self):
         rows, text = self.table("--cases", "torus-clean", "--options", "--genus 1", *self.peer("0.5 0"))

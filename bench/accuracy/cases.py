@@ -14,11 +14,14 @@ KINDS = {"clean": [], "noisy": ["--noise", "0.003", "--normal-noise", "0.1"]}
 SCANNED_SHAPES = ("sphere", "torus", "knot", "plate@1", "plate@2", "slab@1", "slab@2")
 SCANS = {"scan": ["--sigma", "0.0005", "--misregistration", "0.0005"],
          "roughscan": ["--views", "10", "--spread", "0.6", "--sigma", "0.0015", "--misregistration", "0.0015",
-                       "--window", "2", "--outliers", "0.01"]}
+                       "--window", "2", "--outliers", "0.01"],
+         "misregistered": ["--misregistration", "0.003"]}
 
 # Faults of real clouds, one at a time, of shapes that are smooth, twisted, thin and sharp. Lengths as above. 1 finest cell
 # of depth 8 is about 0.3 % of the diagonal.
 SPOILED_SHAPES = ("torus", "knot", "plate@1", "slab@2")
+SPOILED_SHELLS = {"gyroid": ("outliers1", "noise0.1", "noise0.3", "noise1")}
+SPOILED_MESHES = ("outliers1", "noise0.1", "noise0.3", "noise1", "1000", "5000noisy", "density100", "holes15", "flipped1")
 FAULTS = {
     "outliers0.1": ["--outliers", "0.001"], "outliers1": ["--outliers", "0.01"], "outliers5": ["--outliers", "0.05"],
     "clusters1": ["--outliers", "0.01", "--clusters", "5"],
@@ -86,25 +89,31 @@ def scanned_shape_cases(tools, seed):
         yield from scan_cases(tools, shape, ["--shape", shape], ["--shape", shape], seed)
 
 
+def spoiled(tools, name, surface, truth, seed, faults):
+    """A surface with one fault after another; `surface` and `truth` are the words that name it for either program."""
+    for fault in faults:
+        generate = [str(tools / "pointskin_spoil"), *surface, "-o", "{out}", "--seed", str(seed), *FAULTS[fault]]
+        yield Case(f"{name}-{fault}", truth, generate, None)
+
+
 def spoiled_cases(tools, seed):
-    for shape in SPOILED_SHAPES:
-        for fault, words in FAULTS.items():
-            generate = [str(tools / "pointskin_spoil"), "--shape", shape, "-o", "{out}", "--seed", str(seed), *words]
-            yield Case(f"{shape}-{fault}", ["--shape", shape], generate, None)
+    for shape, faults in {**dict.fromkeys(SPOILED_SHAPES, tuple(FAULTS)), **SPOILED_SHELLS}.items():
+        yield from spoiled(tools, shape, ["--shape", shape], ["--shape", shape], seed, faults)
 
 
 def file_cases(tools, folder, seed):
-    """Every NAME.ply with normals that has its truth beside it, as NAME_gt.ply, and scans of every NAME_gt.ply: along the
-    axes as it is, and turned."""
+    """Every NAME.ply with normals that has its truth beside it, as NAME_gt.ply; of every NAME_gt.ply, turned against the
+    axes, scans and points with faults."""
     for truth in sorted(folder.glob("*_gt.ply")):
         cloud = truth.with_name(truth.name.removesuffix("_gt.ply") + ".ply")
         words = ["--truth", str(truth)]
         if cloud.exists() and has_normals(cloud):
             yield Case(cloud.stem, words, [], cloud)
-        yield from scan_cases(tools, cloud.stem, [str(truth)], words, seed)
         for rotation in ("1", "2"):
             turned = ["--rotation", rotation]
             yield from scan_cases(tools, f"{cloud.stem}@{rotation}", [str(truth), *turned], [*words, *turned], seed)
+        yield from spoiled(tools, f"{cloud.stem}@1", ["--mesh", str(truth), "--rotation", "1"], [*words, "--rotation", "1"],
+                           seed, SPOILED_MESHES)
 
 
 def choose(cases, patterns):

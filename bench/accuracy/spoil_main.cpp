@@ -6,17 +6,21 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "mesh_points.hpp"
+#include "rotated.hpp"
 #include "shapes.hpp"
 #include "spoil.hpp"
 
 namespace {
 
 constexpr const char* kUsage =
-    "usage: pointskin_spoil (CLOUD | --shape NAME [--points 100000]) -o OUT.ply [options]\n"
+    "usage: pointskin_spoil (CLOUD | (--shape NAME | --mesh MESH) [--points 100000]) -o OUT.ply [options]\n"
     "\n"
     "Writes a cloud with faults, as binary PLY. Lengths are in units of the diagonal of the points' box, shares of 1.\n"
     "Faults come in this order:\n"
     "  --shape              a shape that pointskin_generate knows, instead of a file\n"
+    "  --mesh               a mesh, of which points are drawn with the normals of its triangles\n"
+    "  --rotation       0   turns that mesh by one of two fixed rotations, 1 or 2\n"
     "  --outside            only points that look away from the middle of the box\n"
     "  --density-ratio  1   along the longest side, the densest end to the thinnest\n"
     "  --holes          0   share of the points that is cut out\n"
@@ -35,7 +39,8 @@ int run(const std::vector<std::string>& words) {
   using namespace pointskin;
   bench::SpoilOptions options;
   bench::SamplingOptions sampling{.points = 100'000};
-  std::string in, shape, out;
+  std::string in, shape, mesh, out;
+  int rotation = 0;
   bench::Arguments arguments(words);
   while (const auto word = arguments.next()) {
     if (*word == "-h" || *word == "--help") return std::fputs(kUsage, stdout), 0;
@@ -43,6 +48,10 @@ int run(const std::vector<std::string>& words) {
       out = arguments.value();
     else if (*word == "--shape")
       shape = arguments.value();
+    else if (*word == "--mesh")
+      mesh = arguments.value();
+    else if (*word == "--rotation")
+      rotation = static_cast<int>(arguments.whole_number());
     else if (*word == "--points")
       sampling.points = arguments.whole_number();
     else if (*word == "--outside")
@@ -76,9 +85,16 @@ int run(const std::vector<std::string>& words) {
     else
       arguments.refuse();
   }
-  if (out.empty() || in.empty() == shape.empty()) return std::fputs(kUsage, stderr), 2;
-  const Cloud cloud = shape.empty() ? read_cloud(in) : bench::sample_surface(*bench::make_shape(shape), sampling);
-  write_cloud(out, bench::spoil(cloud, options));
+  if (out.empty() || (in.empty() ? 0 : 1) + (shape.empty() ? 0 : 1) + (mesh.empty() ? 0 : 1) != 1)
+    return std::fputs(kUsage, stderr), 2;
+  const auto draw = [&] {
+    if (!shape.empty()) return bench::sample_surface(*bench::make_shape(shape), sampling);
+    if (mesh.empty()) return read_cloud(in);
+    Mesh surface = read_mesh(mesh);
+    if (rotation != 0) bench::rotate(surface, rotation);
+    return bench::points_of(surface, sampling.points, sampling.seed);
+  };
+  write_cloud(out, bench::spoil(draw(), options));
   return 0;
 }
 

@@ -97,6 +97,31 @@ def table_head():
     return ["| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)]
 
 
+BRIEF_HEAD = ("case", "depth", "mean %", "mean", "rms", "1 - normals", "components", "genus", "the peer's")
+
+
+def brief_table(pairs):
+    """Markdown with a row for each (ours, peer) of two entries of one case: our mean distance, what mean, rms and normals are
+    over the peer's, and both topologies; the largest ratio of means first, and the geometric means last."""
+    ratios = {name: [] for name in (*ERRORS, "normals")}
+    rows = []
+    for ours, peer in pairs:
+        row = ours["row"]
+        ratio = {name: row[name] / peer["row"][name] for name in ratios}
+        for name, value in ratio.items():
+            ratios[name].append(value)
+        closed = row["true_genus"] is not None
+        topology = [count_text(r[name], r["true_" + name] if closed else None)
+                    for r in (row, peer["row"]) for name in ("components", "genus")]
+        cells = [ours["case"], str(ours["depth"]), f"{row['mean']:.4g}", *(f"{value:.3f}" for value in ratio.values()),
+                 topology[0], topology[1], f"{topology[2]}, {topology[3]}"]
+        rows.append((ratio["mean"], "| " + " | ".join(cells) + " |"))
+    rows.sort(key=lambda row: -row[0])
+    means = [f"{math.exp(sum(map(math.log, values)) / len(values)):.3f}" for values in ratios.values() if values]
+    last = ["| geometric mean | | | " + " | ".join(means) + " | | | |"] if rows else []
+    return ["| " + " | ".join(BRIEF_HEAD) + " |", "|" + "---|" * len(BRIEF_HEAD), *(line for _, line in rows), *last]
+
+
 def count(verdicts):
     """How many verdicts there are, how many are not worse, how many better."""
     counted = [v for v in verdicts if v is not None and "worse_in" in v]

@@ -65,13 +65,14 @@ struct SolveOptions {
   FieldKind field = FieldKind::poisson;
   double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
   bool fixed_screening = false;   ///< true: all samples weigh alike; false: samples that scatter across the surface
-                                  ///< weigh less, those that agree more (0.05 to 3.1 times `screening`)
-  int iterations = 8;             ///< relaxations of every level finer than 4, in [1, 1000]; coarser ones take
-                                  ///< max(this, twice their cells along an axis)
+                                  ///< weigh less, those that agree more (0.05 to 4.4 times `screening`)
+  int iterations = 8;             ///< relaxations of every level finer than 5, in [1, 1000]; coarser ones take
+                                  ///< max(this, twice their cells along an axis), level 5 max(this, 24)
   double scale = 1.1;             ///< working cube / bounding cube of the points used, in [1, 100]
   double samples_per_node = 1.5;  ///< samples that two cell faces of a level should hold; in [0, 100]. Sparser ones are
                                   ///< splatted coarser, and where they hold less than 0.42 of it the surface keeps to
-                                  ///< the level above; 0: all levels are used everywhere
+                                  ///< the level above; 0: all levels are used everywhere. Where clean samples lie
+                                  ///< along bends a third of it will do, and very noisy ones are given twice as many
   bool confidence = false;        ///< true: a normal's length, relative to the mean length, is the weight of its point
   Boundary boundary = Boundary::free;
   /// A watertight mesh that the surface stays inside of, in world coordinates (its origin counts): the field is 0 at
@@ -162,7 +163,8 @@ struct TrimReport {
   std::int64_t holes_filled = 0;       ///< cut pieces below Options::island_ratio, which were kept
 };
 
-/// What Options::largest and Options::min_component did. All zero without them.
+/// What Options::largest and Options::min_component did, or, without them, what was left out because there are outliers
+/// and fewer than 24 samples lie on it. All zero where nothing was looked for.
 struct PiecesReport {
   std::int64_t pieces = 0;             ///< connected pieces before
   std::int64_t pieces_removed = 0;     ///< of them

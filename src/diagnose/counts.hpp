@@ -44,10 +44,11 @@ enum Sum : int {
   kFlux,     ///< area times normal times place, signed: three times the volume
   kScatter,  ///< half the squared distances across the surface, finest cells^2, fractions; one for each step
   kScatterPairs = kScatter + kScatterSteps,
+  kLonely = kScatterPairs + kScatterSteps,  ///< all samples that are far from all others
   // Of the field.
-  kFacesInside = kScatterPairs + kScatterSteps,  ///< of the points on the cube's faces
-  kSamplesSeen,                                  ///< samples at which the field was looked at
-  kSamplesOff,                                   ///< of them, away from the surface
+  kFacesInside,  ///< of the points on the cube's faces
+  kSamplesSeen,  ///< samples at which the field was looked at
+  kSamplesOff,   ///< of them, away from the surface
   // Of triangles, fractions of a face of the cube.
   kSurface,
   kFarSurface,  ///< of it, far from all samples

@@ -55,6 +55,7 @@ struct LookAtSample {
       if (other < n) scatter(k, i, other, tally);
     }
     add_up(i, tally);
+    if (s == 0 && samples.lonely != nullptr) tally.add(kLonely, *samples.lonely);
     const std::int64_t warp = s / ByLanes<LookAtSample>::kLanes;  // each does the same thing with all of its lanes
     if (warp % kSparse != 0)
       compare_across(i, static_cast<int>(s % 3), tally);

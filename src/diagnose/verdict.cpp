@@ -71,6 +71,7 @@ Findings findings_of(const Counts& counts) {
   findings.off = share(sums[kSamplesOff], sums[kSamplesSeen]);
   findings.far = share(sums[kFarSurface], sums[kSurface]);
   findings.caps = share(sums[kCaps], sums[kSurface]);
+  findings.lonely = static_cast<double>(sums[kLonely]);
   findings.spacing = spacing_at(counts, 0.5);
   for (std::size_t i = 0; i < kTrims.size(); ++i) findings.sparsest[i] = spacing_at(counts, kTrims[i]);
   findings.scatter = scatter_of(counts);

@@ -25,6 +25,7 @@ struct Findings {
   double off = 0;           ///< of samples, those away from the surface
   double far = 0;           ///< of the surface's area, what is far from all samples
   double caps = 0;          ///< of the surface's area, what closes it on the faces of the cube
+  double lonely = 0;        ///< samples far from all others, not a share
   double spacing = 0;       ///< of samples, median, finest cells; 0: not known
   std::array<double, kTrims.size()> sparsest{};  ///< spacing that these shares of the samples exceed
   double scatter = 0;                            ///< standard deviation of samples across the surface, finest cells

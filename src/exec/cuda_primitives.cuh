@@ -112,7 +112,7 @@ void for_each_warp(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   cuda_check(cudaGetLastError(), label);
 }
 
-inline constexpr int kSweepThreads = 256;
+inline constexpr int kSweepThreads = 512;  // enough for the nodes of a complete level of 32^3 cells
 
 template <class F>
 __global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n, const F f) {

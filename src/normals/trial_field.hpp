@@ -78,8 +78,7 @@ class TrialField {
     copy(ex, positions, samples_.positions.view());
     samples_.normals = exec::make_buffer<Vec3f>(ex, positions.size);
     copy(ex, lines, samples_.normals.view());
-    const poisson::Density density = poisson::splat_density(ex, tree, positions);
-    poisson::weigh_samples(ex, tree, density, {1.5, false, false}, samples_);
+    poisson::weigh_samples(ex, tree, {1.5, false, false}, samples_);
     resolution_ = poisson::find_resolution(ex, tree, samples_);
     free_ = poisson::free_unknowns(ex, resolution_.view(tree), true);
   }

@@ -15,7 +15,7 @@ inline constexpr int kMaxDepth = 20;
 inline constexpr int kPointBits = 21;
 
 /// Levels 0..kCompleteDepth are complete grids, so that the far field and the domain's boundary are resolved.
-inline constexpr int kCompleteDepth = 4;
+inline constexpr int kCompleteDepth = 5;
 
 /// Integer coordinates in units of some level's cell width.
 struct Coordinates {

@@ -6,70 +6,23 @@
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
 #include "poisson/mean_length.hpp"
+#include "poisson/noise.hpp"
 #include "poisson/outliers.hpp"
+#include "poisson/own_side.hpp"
+#include "poisson/sum_hats.hpp"
 
 namespace pointskin::poisson {
 namespace {
 
-/// Hats of a cell's samples at its 8 corners: hats of a level are sums of finer hats, so no finer level is needed.
-struct SumHats {
-  octree::LevelView level;
-  ArrayView<const Vec3f> positions;
-  ArrayView<float> hats;  // (8 cells) at the corners of each cell
-  PSK_HD void operator()(std::int64_t cell) const {
-    float sum[8] = {};
-    const std::int32_t first = level.point_begin[cell];
-    const std::int32_t last = level.point_begin[cell + 1];
-    if (first < last) {
-      const octree::Coordinates at = octree::decode(level.node_key(static_cast<std::int32_t>(cell)));
-      PSK_UNROLL_BY_4 for (std::int32_t i = first; i < last; ++i) {
-        const Vec3f local = octree::local_in_cell(positions[i], at, level.depth);
-        PSK_UNROLL
-        for (int s = 0; s < 8; ++s) sum[s] += octree::corner_weight(s, local);
-      }
-    }
-    for (int s = 0; s < 8; ++s) hats[8 * cell + s] = sum[s];
-  }
+struct One {
+  using Value = float;
+  PSK_HD float operator()(std::int32_t /*i*/) const { return 1; }
 };
 
-/// Sum over the 8 cells around a corner.
-struct GatherHats {
-  octree::LevelView level;
-  ArrayView<const float> hats;
+struct TakeCount {
+  ArrayView<const Facing> facing;
   ArrayView<float> counts;
-  PSK_HD void operator()(std::int64_t n) const {
-    float sum = 0;
-    PSK_UNROLL
-    for (int s = 0; s < 8; ++s) {
-      const std::int32_t cell =
-          level.neighbour(static_cast<std::int32_t>(n), -octree::slot_x(s), -octree::slot_y(s), -octree::slot_z(s));
-      if (level.is_cell(cell)) sum += hats[8 * std::int64_t{cell} + s];
-    }
-    counts[n] = sum;
-  }
-};
-
-struct RestrictCounts {
-  octree::LevelView level, below;
-  const float* below_counts;
-  ArrayView<float> counts;
-  PSK_HD void operator()(std::int64_t n) const {
-    counts[n] = octree::restricted(level, below, below_counts, static_cast<std::int32_t>(n));
-  }
-};
-
-/// The complete levels, one a round: each is done in less time than a launch takes.
-struct RestrictLevels : exec::SweepAll {
-  octree::OctreeView tree;
-  int first;  // depth of round 0
-  float* counts;
-
-  PSK_HD void operator()(int round, int n, Nothing) const {
-    const octree::LevelView& level = tree.levels[first - round];
-    const octree::LevelView& below = tree.levels[first - round + 1];
-    if (n < level.nodes())
-      counts[level.first_node + n] = octree::restricted(level, below, counts + below.first_node, n);
-  }
+  PSK_HD void operator()(std::int64_t n) const { counts[n] = facing[n].count; }
 };
 
 /// In double: floats of any size have a length.
@@ -95,25 +48,38 @@ int coarsest_splat_depth(std::int64_t points, int depth) {
   return std::min(coarsest, depth);
 }
 
-struct Weigh {
-  static constexpr int kDepthsBelow = 2;  ///< splat depths may be this far below the finest level
-
-  octree::OctreeView tree;
-  DensityView density;
-  ArrayView<const Vec3f> positions;
-  float samples_per_node;
-  int coarsest;  // depth
+struct Normalise {
   ArrayView<Vec3f> normals;
-  ArrayView<float> areas;
-  ArrayView<float> splat_depths;
-
   PSK_HD void operator()(std::int64_t i) const {
     const Vec3f n = normals[i];
     const double length = length_of(n);
     normals[i] = length > 0 ? Vec3f{static_cast<float>(n.x / length), static_cast<float>(n.y / length),
                                     static_cast<float>(n.z / length)}
                             : Vec3f{};
-    const float per_cell = density.samples_per_cell(tree, positions[i]);
+  }
+};
+
+struct Weigh {
+  static constexpr int kDepthsBelow = 2;  ///< splat depths may be this far below the finest level
+
+  octree::OctreeView tree;
+  DensityView density;
+  FacingView facing;  // without sums where normals have no signs
+  ArrayView<const Vec3f> positions, normals;
+  float samples_per_node;
+  int coarsest;  // depth
+  ArrayView<float> areas, own_side;
+  ArrayView<float> splat_depths;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    float per_cell;
+    if (facing.sums == nullptr) {
+      per_cell = density.samples_per_cell(tree, positions[i]);
+    } else {
+      const FacingView::Densities densities = facing.at(positions[i], normals[i]);
+      per_cell = densities.all;
+      own_side[i] = 1 / densities.own_side;
+    }
     areas[i] = 1 / per_cell;
     splat_depths[i] = splat_depth(per_cell * kKernelFaces);
   }
@@ -148,51 +114,65 @@ struct EvaluateDensity {
 
 }  // namespace
 
+namespace {
+
+/// The finest level that is counted: its cells hold 16 samples of a surface that resolves the finest ones.
+int counted_depth(int depth) { return depth > 2 ? depth - 2 : 0; }
+
+template <exec::Space Exec>
+exec::Buffer<Facing> splat_facing(Exec& ex, const octree::OctreeView& tree, Samples& samples, Density& density) {
+  density.depth = counted_depth(tree.depth);
+  exec::Buffer<Facing> facing =
+      sum_hats(ex, tree, density.depth, samples.positions.cview(), FacingOf{samples.normals.cview()});
+  density.counts = exec::make_buffer<float>(ex, facing.size());
+  for_each(ex, "density.splat", facing.size(), TakeCount{facing.cview(), density.counts.view()});
+  return facing;
+}
+
+}  // namespace
+
 template <exec::Space Exec>
 Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const Vec3f> positions) {
-  const octree::OctreeView view = tree.view();
-  Density result;
-  result.depth = tree.depth > 2 ? tree.depth - 2 : 0;
-  const octree::LevelView& counted = view.levels[result.depth];
-  result.counts = exec::make_buffer<float>(ex, counted.first_node + counted.nodes());
-
-  auto hats = exec::make_buffer<float>(ex, 8 * counted.cells());
-  for_each(ex, "density.splat", counted.cells(), SumHats{counted, positions, hats.view()});
-  for_each(ex, "density.splat", counted.nodes(),
-           GatherHats{counted, hats.cview(), result.counts.view().part(counted.first_node, counted.nodes())});
-  const int complete = std::min(result.depth - 1, octree::kCompleteDepth);
-  for (int d = result.depth - 1; d > complete; --d) {
-    const octree::LevelView& level = view.levels[d];
-    const octree::LevelView& below = view.levels[d + 1];
-    for_each(ex, "density.restrict", level.nodes(),
-             RestrictCounts{level, below, result.counts.data() + below.first_node,
-                            result.counts.view().part(level.first_node, level.nodes())});
-  }
-  if (complete >= 0)
-    sweep(ex, "density.restrict", complete + 1, view.levels[complete].nodes(),
-          RestrictLevels{{}, view, complete, result.counts.data()});
-  return result;
+  const int depth = counted_depth(tree.depth);
+  return {depth, sum_hats(ex, tree.view(), depth, positions, One{})};
 }
 
 template <exec::Space Exec>
-void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& density, const WeighOptions& options,
-                   Samples& samples) {
+Density weigh_samples(Exec& ex, const octree::OctreeData& tree, const WeighOptions& options, Samples& samples) {
   const std::int64_t n = samples.positions.size();
   samples.areas = exec::make_buffer<float>(ex, n);
   samples.splat_depths = exec::make_buffer<float>(ex, n);
   exec::Buffer<float> weights;
   if (options.confidence) weights = confidence_weights(ex, samples.normals.cview());
+  const int coarsest = coarsest_splat_depth(n, tree.depth);
+  for_each(ex, "density.weigh", n, Normalise{samples.normals.view()});
+  Density density;
+  exec::Buffer<Facing> facing;
+  exec::Buffer<float> own_side;
+  if (options.has_signs) {
+    facing = splat_facing(ex, tree.view(), samples, density);
+    own_side = exec::make_buffer<float>(ex, n);
+  } else {
+    density = splat_density(ex, tree, samples.positions.cview());
+  }
   for_each(ex, "density.weigh", n,
            Weigh{tree.view(),
                  {density.depth, density.counts.data()},
+                 {tree.view(), density.depth, facing.data()},
                  samples.positions.cview(),
+                 samples.normals.cview(),
                  static_cast<float>(options.samples_per_node),
-                 coarsest_splat_depth(n, tree.depth),
-                 samples.normals.view(),
+                 coarsest,
                  samples.areas.view(),
+                 own_side.view(),
                  samples.splat_depths.view()});
-  if (options.drop_outliers) drop_outliers(ex, samples);
+  facing.reset();
+  if (options.has_signs) {
+    drop_outliers(ex, own_side.cview(), samples);
+    adapt_to_noise(ex, tree, density, coarsest, samples);
+  }
   if (options.confidence) for_each(ex, "density.weigh", n, ScaleArea{weights.cview(), samples.areas.view()});
+  return density;
 }
 
 template <exec::Space Exec>

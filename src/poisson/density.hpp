@@ -50,7 +50,7 @@ struct DensityView {
 struct WeighOptions {
   double samples_per_node = 1.5;  ///< samples the splat kernel must average over, >= 0
   bool confidence = false;        ///< weight a sample by its normal's length over the mean length
-  bool drop_outliers = true;      ///< poisson/outliers.hpp; false where normals have no signs yet
+  bool has_signs = true;  ///< false where normals have no signs yet: areas and depths are then those of the density
 };
 
 /// Splats every sample's hat at level depth - 2, cell by cell, and restricts the counts to the levels above: hats are
@@ -60,10 +60,11 @@ Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const 
 
 /// Fills `samples.areas` and `splat_depths` (each from the density at its sample alone, and up to two levels below the
 /// finest: find_resolution evens them out), and normalises `samples.normals` in place; with confidence, their former
-/// lengths scale the areas. Outliers get none. O(n depth).
+/// lengths scale the areas. Areas are those on a sample's own side (own_side.hpp), outliers get none (outliers.hpp), and
+/// depths follow the noise (noise.hpp).
+/// @returns the density, as splat_density() has it. O(8 n + 27 nodes of the counted levels + n depth).
 template <exec::Space Exec>
-void weigh_samples(Exec& ex, const octree::OctreeData& tree, const Density& density, const WeighOptions& options,
-                   Samples& samples);
+Density weigh_samples(Exec& ex, const octree::OctreeData& tree, const WeighOptions& options, Samples& samples);
 
 /// weights[i] = length of normal i over the mean length, the confidence in a sample. O(n), one read-back.
 template <exec::Space Exec>

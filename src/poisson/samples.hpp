@@ -39,11 +39,12 @@ struct SamplesView {
   ArrayView<const Vec3f> normals;    ///< unit length, or zero for a sample without a normal
   ArrayView<const float> areas;  ///< area of the surface that the sample stands for, in finest cells^2; 0 for outliers,
                                  ///< and with confidence for zero normals
-  ArrayView<const float> splat_depths;  ///< depth whose cells hold enough samples to carry the normal, between two
-                                        ///< levels where the one is too fine and the other too coarse
-  ArrayView<const float> trust;         ///< factor on the weight in the screening, > 0; empty: 1 everywhere
-  int coarsest_splat_depth = 0;         ///< coarsest level that normals are splatted at
-  std::uint32_t splat_depth_set = ~0U;  ///< bit d: some normals may be splatted at level d
+  ArrayView<const float> splat_depths;    ///< depth whose cells hold enough samples to carry the normal, between two
+                                          ///< levels where the one is too fine and the other too coarse
+  ArrayView<const float> trust;           ///< factor on the weight in the screening, > 0; empty: 1 everywhere
+  int coarsest_splat_depth = 0;           ///< coarsest level that normals are splatted at
+  std::uint32_t splat_depth_set = ~0U;    ///< bit d: some normals may be splatted at level d
+  const std::uint64_t* lonely = nullptr;  ///< one element: how many are far from all others (outliers.hpp); or null
 };
 
 /// Owns what SamplesView shows.
@@ -53,12 +54,13 @@ struct Samples {
   exec::Buffer<float> areas;
   exec::Buffer<float> splat_depths;
   exec::Buffer<float> trust;
+  exec::Buffer<std::uint64_t> lonely;
   int coarsest_splat_depth = 0;
   std::uint32_t splat_depth_set = ~0U;
 
   [[nodiscard]] SamplesView view() const {
-    return {positions.cview(), normals.cview(),      areas.cview(),  splat_depths.cview(),
-            trust.cview(),     coarsest_splat_depth, splat_depth_set};
+    return {positions.cview(), normals.cview(),      areas.cview(),   splat_depths.cview(),
+            trust.cview(),     coarsest_splat_depth, splat_depth_set, lonely.data()};
   }
 };
 

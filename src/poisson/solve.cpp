@@ -91,12 +91,14 @@ struct Schedule {
 };
 
 /// Complete levels are iterated longer, over their whole spectrum, whose lower end is about 2 / cells^2: they carry the
-/// far field, and they are cheap. The finest of them mends what the few iterations above left; levels 0 and 1 only give
-/// it a start. Finer levels only have to resolve what their own cells add to the interpolated field.
+/// far field, and the surface over holes, and they are cheap. The last but one mends what the few iterations above left;
+/// levels 0 and 1 only give it a start. The last is iterated less, over a quarter of the spectrum less: the level above has done the rest.
+/// Finer levels only have to resolve what their own cells add to the interpolated field.
 Schedule schedule_for(int depth, int iterations) {
   if (depth > octree::kCompleteDepth)
     return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};
   const int cells = 1 << depth;  // along an axis
+  if (depth == octree::kCompleteDepth) return {std::max(iterations, 3 * cells / 4), 8.0 / (cells * cells)};
   const int asked = depth < 2 ? iterations / 4 : iterations;
   return {std::max(asked, 2 * cells), std::min(0.1, 2.0 / (cells * cells))};
 }

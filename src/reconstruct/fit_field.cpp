@@ -22,6 +22,7 @@
 #include "reconstruct/fit_cube.hpp"
 #include "reconstruct/offset_surface.hpp"
 #include "reconstruct/phase_clock.hpp"
+#include "reconstruct/pieces_by_support.hpp"
 #include "reconstruct/points.hpp"
 #include "reconstruct/trim_to_samples.hpp"
 #include "reconstruct/within_envelope.hpp"
@@ -170,11 +171,11 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   announce(options.progress, "splat", 0.25);
   if (has_attributes && options.confidence)
     field.attributes.weights = poisson::confidence_weights(ex, samples.normals.cview());
-  field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
-  poisson::weigh_samples(ex, field.tree, field.density, {options.samples_per_node, options.confidence}, samples);
+  field.density = poisson::weigh_samples(ex, field.tree, {options.samples_per_node, options.confidence}, samples);
   field.resolution = poisson::find_resolution(ex, field.tree, samples);
   look_at_samples(ex, samples, setup, options, field);
-  if (!options.density && !options.weakness && options.trim == 0 && !setup.keep_all) field.density.counts.reset();
+  const bool keeps_density = options.density || options.weakness || options.trim != 0 || setup.keep_all;
+  if (!keeps_density && !setup.look) field.density.counts.reset();
   if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
   if (setup.keeps_samples()) field.samples.normals = std::move(samples.normals);
@@ -207,6 +208,7 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   field.isovalue = find_isovalue(ex, field, solution.u.cview(), samples, sorted.added.cview(), report);
   field.values = std::move(solution.u);
   if (!field.counts.empty()) look_at_fit(ex, samples, options, field);
+  if (!keeps_density && !picks_pieces_by_support(field, options)) field.density.counts.reset();
   if (setup.keeps_samples()) keep_samples(ex, samples, std::move(sorted.added), field.samples);
   if (options.weakness)
     field.weakness = weakness_scale(ex, field.tree, field.density, field.values.data(), samples.positions.cview());

@@ -18,7 +18,7 @@ constexpr std::int64_t kKey = 8;
 constexpr std::int64_t kWeighed = kSorted + 8;      // area, splat depth
 constexpr std::int64_t kCollapsed = kWeighed - 12;  // no normal any more
 constexpr std::int64_t kTrust = 4;
-constexpr std::int64_t kArea = 4;       // once more, with an envelope
+constexpr std::int64_t kArea = 4;       // once more: on its own side; with an envelope
 constexpr std::int64_t kSpacing = 16;   // trimming: key, and both again
 constexpr std::int64_t kShare = 4;      // of an attribute that is averaged; of a weight
 constexpr std::int64_t kLabelled = 20;  // searches among points of which some lack a label
@@ -93,7 +93,7 @@ struct Model {
   [[nodiscard]] bool trims() const { return options.trim != 0; }
   [[nodiscard]] bool picks_pieces() const { return options.largest || options.min_component > 0; }
   [[nodiscard]] std::int64_t kept_counts() const {
-    return options.density || options.weakness || trims() ? kNodeValue * counted_bricks : 0;
+    return !is_distance() || options.density || trims() ? kNodeValue * counted_bricks : 0;
   }
   [[nodiscard]] std::int64_t vertices() const {
     if (is_distance()) return 80 * bricks / kNodesPerTenVertices;
@@ -140,7 +140,11 @@ struct Model {
 
   [[nodiscard]] std::int64_t density() const {
     if (is_distance() && !options.density && !trims()) return 0;
-    return kSorted * points + kept() + kNodeValue * counted_bricks + kHats * level(counted_depth()).cell_bricks;
+    const std::int64_t counts = kNodeValue * counted_bricks;
+    const std::int64_t hats = kHats * level(counted_depth()).cell_bricks;
+    if (is_distance()) return kSorted * points + kept() + counts + hats;
+    constexpr std::int64_t kComponents = 4;  // of the sums of normals
+    return (kWeighed + kArea) * points + kept() + counts + kComponents * (counts + hats);
   }
 
   /// Signed distance: the samples, whose weights, with attributes, are counted there, and a value a node.

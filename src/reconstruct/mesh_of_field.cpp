@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <type_traits>
@@ -16,6 +17,7 @@
 #include "poisson/density.hpp"
 #include "reconstruct/kept_names.hpp"
 #include "reconstruct/phase_clock.hpp"
+#include "reconstruct/pieces_by_support.hpp"
 #include "reconstruct/points.hpp"
 #include "reconstruct/trim_to_samples.hpp"
 #include "reconstruct/within_envelope.hpp"
@@ -69,12 +71,39 @@ bool is_worth_trimming(Exec& ex, const FieldData& field, const surface::Surface&
   return diagnose::findings_of(diagnose::read_counts(ex, counts)).far >= kLittle;
 }
 
+/// Samples per finest cell face to samples per unit of area.
+struct PerArea {
+  double face;  // world units^2
+  ArrayView<float> density;
+  PSK_HD void operator()(std::int64_t i) const {
+    density[i] = static_cast<float>(static_cast<double>(density[i]) / face);
+  }
+};
+
+/// Samples per area of the cube's unit at the vertices.
+template <exec::Space Exec>
+exec::Buffer<float> density_at_vertices(Exec& ex, const FieldData& field, const surface::Surface& surface) {
+  auto density = exec::make_buffer<float>(ex, surface.positions.size());
+  poisson::evaluate_density(ex, field.tree, field.density, surface.positions.cview(), density.view());
+  for_each(ex, "pieces.density", density.size(), PerArea{std::ldexp(1.0, -2 * field.tree.depth), density.view()});
+  return density;
+}
+
 /// The surface without small pieces, where some are to go.
 template <exec::Space Exec>
-surface::Surface without_pieces(Exec& ex, surface::Surface surface, const Options& options, RunReport& report) {
-  if (!options.largest && options.min_component == 0) return surface;
+surface::Surface without_pieces(Exec& ex, surface::Surface surface, const FieldData& field, const Options& options,
+                                RunReport& report) {
+  surface::PieceOptions pieces{options.largest, options.min_component};
+  exec::Buffer<float> density;
+  if (picks_pieces_by_support(field, options)) {
+    density = density_at_vertices(ex, field, surface);
+    pieces.least_samples = kFewestSamples;
+    pieces.density = density.cview();
+  } else if (!options.largest && options.min_component == 0) {
+    return surface;
+  }
   surface::PieceCounts counts;
-  surface = surface::keep_pieces(ex, std::move(surface), {options.largest, options.min_component}, counts);
+  surface = surface::keep_pieces(ex, std::move(surface), pieces, counts);
   report.pieces = {counts.pieces, counts.pieces_removed, counts.triangles_removed};
   return surface;
 }
@@ -97,7 +126,7 @@ surface::Surface extract(Exec& ex, const FieldData& field, const Options& option
     report.trim.quantile = rule.share;
   }
   if (!options.normals) surface.normals.reset();
-  surface = without_pieces(ex, std::move(surface), options, report);
+  surface = without_pieces(ex, std::move(surface), field, options, report);
   if (field.envelope != nullptr)
     project_onto(ex, *field.envelope, field.frame, surface.positions.view(), report.envelope);
   return surface;
@@ -126,15 +155,6 @@ surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& o
 }
 
 namespace {
-
-/// Samples per finest cell face to samples per unit of area.
-struct PerArea {
-  double face;  // world units^2
-  ArrayView<float> density;
-  PSK_HD void operator()(std::int64_t i) const {
-    density[i] = static_cast<float>(static_cast<double>(density[i]) / face);
-  }
-};
 
 /// An array of floats as values of an attribute.
 template <exec::Space Exec>

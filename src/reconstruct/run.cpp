@@ -12,6 +12,14 @@ namespace pointskin::detail {
 
 using diagnose::NormalsVerdict;
 
+namespace {
+
+double flipped_share(const NormalReport& report) {
+  return static_cast<double>(report.flipped) / std::max(1.0, static_cast<double>(report.given));
+}
+
+}  // namespace
+
 Run::Run(const Engine& engine, const Options& options, RunReport& report)
     : engine_(engine), options_(options), engine_options_(options), report_(report) {
   if (options_.progress) engine_options_.progress = [this](const Progress& progress) { return tell(progress); };
@@ -137,7 +145,7 @@ std::optional<double> Run::flipped_parts(const Input& input) try {
   constexpr std::int64_t kFew = 16384;
   Cloud few = engine_.thin(input, engine_options_, kFew);
   const NormalReport report = orient(few, NormalMethod::automatic);
-  return static_cast<double>(report.flipped) / std::max(1.0, static_cast<double>(report.given));
+  return flipped_share(report);
 } catch (const Error& error) {
   if (options_.max_memory_bytes == 0 || error.code() != ErrorCode::over_limit) throw;
   return std::nullopt;
@@ -152,20 +160,44 @@ bool Run::may_take_normals(const Input& input) const {
   return needed + own <= options_.max_memory_bytes;
 }
 
+/// The share of single samples whose normals contradict those around them, 0 where they are too few to count.
+double Run::contradictions(const FieldImpl& field) {
+  const diagnose::Findings findings = diagnose::findings_of(field.seen());
+  return findings.has_many ? findings.flipped : 0;
+}
+
+/// Where two solids touch, samples of both face each other at one place and seem to contradict each other. Turned alike,
+/// they no longer do, but then a whole sheet was turned for what looked like a few single normals. So a repair of single
+/// normals is undone if it leaves more than kRepaired of the contradictions, or turns kTooMany times as many.
 /// @param field  of the normals as they came; stays if these cannot be repaired
 std::shared_ptr<FieldImpl> Run::fit_repaired(const Input& input, std::shared_ptr<FieldImpl> field) {
+  constexpr double kSingle = 0.05;  // from here on single normals are wrong, and not parts alone
+  constexpr double kRepaired = 0.5;
+  constexpr double kTooMany = 2;
   if (!may_take_normals(input)) {
     warn_of_normals(*field);
     return field;
   }
+  const double before = contradictions(*field);
   field.reset();
   next_part(0.7);
   own_ = engine_.copy(input);
   report_.normals = orient(own_, NormalMethod::automatic);
   report_.normals_done = NormalsDone::repaired;
-  diagnose::warn_of_repair(*report_.normals, report_.warnings);
   next_part(0.75);
-  return fit_outwards(own_);
+  field = fit_outwards(own_);
+  const double turned = flipped_share(*report_.normals);
+  if (before < kSingle || (contradictions(*field) <= kRepaired * before && turned <= kTooMany * before)) {
+    diagnose::warn_of_repair(*report_.normals, report_.warnings);
+    return field;
+  }
+  field.reset();
+  report_.normals.reset();
+  report_.normals_done = NormalsDone::kept;
+  next_part(0.8);
+  field = fit(input);
+  warn_of_normals(*field);
+  return field;
 }
 
 NormalReport Run::orient(Cloud& cloud, NormalMethod method) {

@@ -44,6 +44,7 @@ class Run {
   NormalReport orient(Cloud& cloud, NormalMethod method);
   [[nodiscard]] std::optional<double> flipped_parts(const Input& input);
   [[nodiscard]] bool may_take_normals(const Input& input) const;
+  [[nodiscard]] static double contradictions(const FieldImpl& field);
   [[nodiscard]] diagnose::NormalsVerdict judge(const FieldImpl& field) const;
 
   const Engine& engine_;

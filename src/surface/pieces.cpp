@@ -13,7 +13,10 @@ using namespace trim;
 /// Of a piece, at its root; else nothing.
 struct PieceExtent {
   std::uint64_t area = 0, triangles = 0;  // area in trim's units
+  std::uint64_t samples = 0;              // in units of 2^-20
 };
+
+constexpr double kSampleUnits = 0x1p20;
 
 /// Adds the triangles of a block to their pieces, those of one piece in a row at once.
 struct SumExtents {
@@ -21,6 +24,7 @@ struct SumExtents {
   SidesView mesh;
   exec::DisjointSets sets;
   PieceExtent* extents;  // (v)
+  ArrayView<const float> density;
 
   PSK_HD void operator()(std::int64_t block) const {
     const std::int64_t first = block * kTriangles;
@@ -31,7 +35,11 @@ struct SumExtents {
       const std::int32_t root = sets.root(mesh.triangles[t].data()[0]);
       if (root != piece) flush(piece, sum);
       piece = root;
-      sum.area += area_units(mesh.area(t));
+      const double area = mesh.area(t);
+      sum.area += area_units(area);
+      if (!density.empty())
+        sum.samples +=
+            static_cast<std::uint64_t>(kSampleUnits * area * static_cast<double>(density[mesh.triangles[t].data()[0]]));
       ++sum.triangles;
     }
     flush(piece, sum);
@@ -40,6 +48,7 @@ struct SumExtents {
     if (sum.triangles == 0) return;
     exec::add(&extents[piece].area, sum.area);
     exec::add(&extents[piece].triangles, sum.triangles);
+    if (sum.samples != 0) exec::add(&extents[piece].samples, sum.samples);
     sum = {};
   }
 };
@@ -69,11 +78,14 @@ struct AddWholes {
 
 /// Which pieces stay.
 struct Rule {
-  std::int64_t only = -1;  // root of the one that stays; -1: those that are large enough
-  std::uint64_t least_area = 0, least_triangles = 0;
+  std::int64_t only = -1;    // root of the one that stays; -1: those that are large enough
+  std::int64_t always = -1;  // root of one that stays however small it is
+  std::uint64_t least_area = 0, least_triangles = 0, least_samples = 0;
 
   [[nodiscard]] PSK_HD bool stays(std::int64_t root, const PieceExtent& extent) const {
-    return only >= 0 ? root == only : extent.area >= least_area && extent.triangles >= least_triangles;
+    if (only >= 0) return root == only;
+    return root == always ||
+           (extent.area >= least_area && extent.triangles >= least_triangles && extent.samples >= least_samples);
   }
 };
 
@@ -110,6 +122,10 @@ struct AddRemoved {
 Rule rule_of(const PieceOptions& options, const Whole& whole) {
   Rule rule;
   if (options.largest) rule.only = whole.largest_root;
+  if (options.least_samples > 0) {
+    rule.always = whole.largest_root;
+    rule.least_samples = static_cast<std::uint64_t>(kSampleUnits * options.least_samples);
+  }
   if (options.least >= 1) rule.least_triangles = static_cast<std::uint64_t>(options.least);
   if (options.least > 0 && options.least < 1)
     rule.least_area = static_cast<std::uint64_t>(options.least * static_cast<double>(whole.area));
@@ -133,7 +149,7 @@ Surface keep_pieces(Exec& ex, Surface surface, const PieceOptions& options, Piec
     auto extents = exec::make_buffer<PieceExtent>(ex, vertices);
     exec::fill(ex, extents.view(), PieceExtent{});
     const std::int64_t blocks = (triangles + SumExtents::kTriangles - 1) / SumExtents::kTriangles;
-    for_each(ex, "pieces.sum", blocks, SumExtents{mesh, sets, extents.data()});
+    for_each(ex, "pieces.sum", blocks, SumExtents{mesh, sets, extents.data(), options.density});
     const auto whole = exec::reduce<Whole>(ex, "pieces.whole", vertices, WholeOf{sets, extents.cview()}, AddWholes{});
     const Rule rule = rule_of(options, whole);
     const auto removed =

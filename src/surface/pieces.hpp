@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/array_view.hpp"
 #include "exec/space.hpp"
 #include "surface/extract.hpp"
 
@@ -11,6 +12,9 @@ namespace pointskin::surface {
 struct PieceOptions {
   bool largest = false;  ///< only the piece with the largest area stays; of several, that of the first vertex
   double least = 0;      ///< smaller pieces go: >= 1: in triangles; in (0, 1): in shares of the whole area
+  /// Pieces that fewer samples lie on go, but for the largest: the integral of the density over the piece. 0: none.
+  double least_samples = 0;
+  ArrayView<const float> density{};  ///< samples per area of the cube's unit at the vertices; with least_samples
 };
 
 struct PieceCounts {

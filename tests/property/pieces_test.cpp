@@ -54,6 +54,41 @@ TEST(Pieces, SmallOnesGoByTrianglesOrByArea) {
   EXPECT_EQ(pieces(static_cast<double>(triangles / 2)), 1);
 }
 
+/// The sphere of radius 1, with outliers all around that face all ways, and a ball of radius 0.1 with some samples.
+Cloud among_outliers(std::int64_t samples_of_ball) {
+  Cloud cloud = test::sphere_cloud(30'000, 1);
+  test::Random random(9);
+  const auto anywhere = [&] { return static_cast<float>(random.in(-1, 1)); };
+  for (int i = 0; i < 600; ++i) {
+    cloud.positions.push_back({1.6F * anywhere(), 1.6F * anywhere(), 1.6F * anywhere()});
+    cloud.normals.push_back({anywhere(), anywhere(), anywhere()});
+  }
+  if (samples_of_ball > 0) test::append(cloud, test::sphere_cloud(samples_of_ball, 3, 0.1, {1.4, 1.3, 1.2}));
+  return cloud;
+}
+
+TEST(Pieces, WithoutSamplesGoWhereThereAreOutliers) {
+  for (const int depth : {6, 7, 8}) {
+    const Outcome outcome = run(among_outliers(0), {{.depth = depth}});
+    const MeshReport mesh = measure(outcome.mesh);
+    EXPECT_EQ(mesh.components, 1) << depth;
+    EXPECT_TRUE(mesh.watertight());
+    EXPECT_NEAR(mesh.volume, 4.18879, 0.03);
+    EXPECT_EQ(outcome.report.pieces.pieces, outcome.report.pieces.pieces_removed + 1);
+  }
+}
+
+TEST(Pieces, WithSamplesStayAmongOutliers) {
+  EXPECT_EQ(measure(run(among_outliers(400), {{.depth = 7}}).mesh).components, 2);
+}
+
+TEST(Pieces, OfACloudWithoutOutliersAllStay) {
+  Cloud cloud = test::sphere_cloud(30'000, 1);
+  test::append(cloud, test::sphere_cloud(20, 3, 0.02, {1.4, 1.3, 1.2}));  // too few to be sure of
+  const Outcome outcome = run(cloud, {{.depth = 8}});
+  EXPECT_EQ(outcome.report.pieces.pieces_removed, 0);
+}
+
 TEST(Pieces, WhatStaysKeepsItsBytes) {
   const Cloud cloud = three_spheres();
   const Mesh all = run(cloud, {{.depth = 7}, {.density = true}}).mesh;

@@ -50,7 +50,7 @@ class BruteOctree {
     for (const Vec3f& p : points) inner.insert(cell_of(p, depth));
     for (int d = depth; d > 0; --d) {
       std::set<Cell>& bricks = bricks_[static_cast<std::size_t>(d)];
-      if (d <= 4)
+      if (d <= 5)
         add_all(d, bricks);
       else
         for (const Cell& c : inner) add_around(c, d, bricks);

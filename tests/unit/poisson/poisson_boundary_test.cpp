@@ -30,8 +30,7 @@ using test::SmallTree;
 struct Problem {
   template <class MakeTree>
   explicit Problem(const MakeTree& make_tree) : tree(make_tree()) {
-    const poisson::Density density = poisson::splat_density(tree.ex, tree.tree, tree.samples.positions.cview());
-    poisson::weigh_samples(tree.ex, tree.tree, density, {1.5, false}, tree.samples);
+    poisson::weigh_samples(tree.ex, tree.tree, {1.5, false}, tree.samples);
     poisson::find_resolution(tree.ex, tree.tree, tree.samples);  // for the splat depths: all cells count here
     b = poisson::splat_divergence(tree.ex, tree.tree, tree.samples.view(), {});
     screening = poisson::collapse_samples(tree.ex, tree.tree, tree.samples.view());

@@ -27,10 +27,7 @@ SmallTree two_densities(int dense, int sparse, int depth) {
   return {positions, std::vector<Vec3f>(positions.size(), Vec3f{0, 0, 1}), depth};
 }
 
-void weigh(SmallTree& tree) {
-  const poisson::Density density = poisson::splat_density(tree.ex, tree.tree, tree.samples.positions.cview());
-  poisson::weigh_samples(tree.ex, tree.tree, density, {1.5, false}, tree.samples);
-}
+void weigh(SmallTree& tree) { poisson::weigh_samples(tree.ex, tree.tree, {1.5, false}, tree.samples); }
 
 std::uint64_t brick_of(const Vec3f& p, int level) {
   return octree::point_key(p.x, p.y, p.z) >> 3 * (octree::kPointBits - level + 1);

@@ -66,6 +66,16 @@ inline ReferenceSystem assemble(const octree::LevelView& level, const poisson::S
   return system;
 }
 
+/// By factors or, where these would fill up (a complete level of 32^3 cells takes half a minute), by conjugate gradients
+/// until nothing is left but the rounding of double.
+inline Eigen::VectorXd solution_of(const Eigen::SparseMatrix<double>& matrix, const Eigen::VectorXd& right) {
+  constexpr Eigen::Index kFactored = 20'000;
+  if (matrix.rows() <= kFactored) return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> gradients(matrix);
+  gradients.setTolerance(1e-13);
+  return gradients.solve(right);
+}
+
 /// Solves the rows of the unknowns, the other corners keeping their values in `u`.
 /// @returns u with the unknowns replaced
 inline Eigen::VectorXd solve_directly(const ReferenceSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd u) {
@@ -87,8 +97,7 @@ inline Eigen::VectorXd solve_directly(const ReferenceSystem& system, const Eigen
     }
   Eigen::SparseMatrix<double> inner(count, count);
   inner.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(inner);
-  const Eigen::VectorXd solution = factors.solve(right);
+  const Eigen::VectorXd solution = solution_of(inner, right);
   for (Eigen::Index i = 0; i < count; ++i) u[system.unknowns[static_cast<std::size_t>(i)]] = solution[i];
   return u;
 }

@@ -1,0 +1,86 @@
+// What a sample stands for on its own side. Where two sheets are near each other, as in a thin wall, the density around
+// a sample counts the samples of both, and both sheets get the area of the mean: if one was seen better than the other,
+// the better one acts too strongly, and the field outside of the wall leaves 0 by the difference.
+#pragma once
+
+#include "core/host_device.hpp"
+#include "octree/access.hpp"
+#include "octree/view.hpp"
+#include "poisson/density.hpp"
+
+namespace pointskin::poisson {
+
+/// Samples on a sample's own side, on a face of a cell, below which an estimate is taken from a coarser level.
+inline constexpr float kReliableOnSide = 6;
+
+/// The least share of the samples around that is taken for those on the own side: a single flipped normal has none.
+inline constexpr float kLeastOwnShare = 0.25F;
+
+/// What samples add up to at a corner: their number and their normals, each by its hat. 16 bytes, read at once.
+struct alignas(16) Facing {
+  Vec3f normal;
+  float count = 0;
+
+  PSK_HD Facing& operator+=(const Facing& other) {
+    normal += other.normal;
+    count += other.count;
+    return *this;
+  }
+  PSK_HD friend Facing operator*(const Facing& a, float s) { return {s * a.normal, s * a.count}; }
+  PSK_HD friend Facing operator*(float s, const Facing& a) { return a * s; }
+};
+
+/// What one sample adds.
+struct FacingOf {
+  using Value = Facing;
+  ArrayView<const Vec3f> normals;  // unit length, or zero
+  PSK_HD Facing operator()(std::int32_t i) const { return {normals[i], 1}; }
+};
+
+/// Densities from the sums of Facing, over the nodes of levels 0..depth.
+struct FacingView {
+  octree::OctreeView tree;
+  int depth = 0;
+  const Facing* sums = nullptr;
+
+  /// Samples per finest cell face at a sample p with unit normal n: all, as DensityView::samples_per_cell has it, and those
+  /// on its own side. A sample q counts with (1 + n_p . n_q) / 2 there, so with the number N and the normals F of a level
+  ///   own_p = max(kLeastOwnShare N(p), (N(p) + n_p . F(p)) / 2) / kPlaneFactor,
+  /// on the finest level where that is at least kReliableOnSide. Of one sheet it is the density; across an edge the other
+  /// face counts half. Of a sample without a normal all count.
+  struct Densities {
+    float all, own_side;
+  };
+  PSK_HD Densities at(const Vec3f& p, const Vec3f& n) const {
+    int level = octree::locate(tree, octree::point_key(p.x, p.y, p.z), depth).depth;
+    Densities found{0, 0};
+    bool has_all = false;
+    bool has_own = false;
+    for (;; --level) {
+      const Facing sum = octree::value_at(tree, sums, p, level);
+      const float all = sum.count * (1 / kPlaneFactor);
+      const float per_finest = 1 / static_cast<float>(std::int64_t{1} << 2 * (tree.depth - level));
+      const bool last = level == 0;
+      if (!has_all && (last || all >= kReliableSamples)) {
+        found.all = all * per_finest;
+        has_all = true;
+      }
+      const float own = on_own_side(sum, n, all);
+      if (!has_own && (last || own >= kReliableOnSide)) {
+        found.own_side = own * per_finest;
+        has_own = true;
+      }
+      if (has_all && has_own) return found;
+    }
+  }
+
+ private:
+  PSK_HD static float on_own_side(const Facing& sum, const Vec3f& n, float all) {
+    if (n == Vec3f{}) return all;
+    const float own = 0.5F * (all + dot(n, sum.normal) * (1 / kPlaneFactor));
+    const float least = kLeastOwnShare * all;
+    return own > least ? own : least;
+  }
+};
+
+}  // namespace pointskin::poisson

@@ -1,0 +1,114 @@
+// Sums of hats over the samples, at the corners of a level and of all above it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "exec/algorithms.hpp"
+#include "exec/space.hpp"
+#include "octree/access.hpp"
+#include "octree/octree_data.hpp"
+
+namespace pointskin::poisson {
+
+namespace hats {
+
+/// A cell's samples at its 8 corners: hats of a level are sums of finer hats, so no finer level is needed.
+/// @tparam What  what(i) is what sample i adds, a What::Value
+template <class What>
+struct SumInCell {
+  octree::LevelView level;
+  ArrayView<const Vec3f> positions;
+  What what;
+  ArrayView<typename What::Value> sums;  // (8 cells) at the corners of each cell
+  PSK_HD void operator()(std::int64_t cell) const {
+    typename What::Value sum[8] = {};
+    const std::int32_t first = level.point_begin[cell];
+    const std::int32_t last = level.point_begin[cell + 1];
+    if (first < last) {
+      const octree::Coordinates at = octree::decode(level.node_key(static_cast<std::int32_t>(cell)));
+      PSK_UNROLL_BY_4 for (std::int32_t i = first; i < last; ++i) {
+        const Vec3f local = octree::local_in_cell(positions[i], at, level.depth);
+        const typename What::Value value = what(i);
+        PSK_UNROLL
+        for (int s = 0; s < 8; ++s) sum[s] += octree::corner_weight(s, local) * value;
+      }
+    }
+    for (int s = 0; s < 8; ++s) sums[8 * cell + s] = sum[s];
+  }
+};
+
+/// Sum over the 8 cells around a corner.
+template <class T>
+struct Gather {
+  octree::LevelView level;
+  ArrayView<const T> in_cells;
+  ArrayView<T> sums;
+  PSK_HD void operator()(std::int64_t n) const {
+    T sum{};
+    PSK_UNROLL
+    for (int s = 0; s < 8; ++s) {
+      const std::int32_t cell =
+          level.neighbour(static_cast<std::int32_t>(n), -octree::slot_x(s), -octree::slot_y(s), -octree::slot_z(s));
+      if (level.is_cell(cell)) sum += in_cells[8 * std::int64_t{cell} + s];
+    }
+    sums[n] = sum;
+  }
+};
+
+template <class T>
+struct Restrict {
+  octree::LevelView level, below;
+  const T* below_sums;
+  ArrayView<T> sums;
+  PSK_HD void operator()(std::int64_t n) const {
+    sums[n] = octree::restricted(level, below, below_sums, static_cast<std::int32_t>(n));
+  }
+};
+
+/// The complete levels, one a round: each is done in less time than a launch takes.
+template <class T>
+struct RestrictLevels : exec::SweepAll {
+  octree::OctreeView tree;
+  int first;  // depth of round 0
+  T* sums;
+
+  PSK_HD void operator()(int round, int n, Nothing) const {
+    const octree::LevelView& level = tree.levels[first - round];
+    const octree::LevelView& below = tree.levels[first - round + 1];
+    if (n < level.nodes()) sums[level.first_node + n] = octree::restricted(level, below, sums + below.first_node, n);
+  }
+};
+
+}  // namespace hats
+
+/// sum_p phi_c(p) what(p) at the corners c of level `depth` and, since hats are nested, of all levels above.
+/// @returns shape (nodes of the levels 0..depth), level-major
+/// O(8 n + 27 nodes of these levels), no atomics, deterministic.
+template <exec::Space Exec, class What>
+exec::Buffer<typename What::Value> sum_hats(Exec& ex, const octree::OctreeView& tree, int depth,
+                                            ArrayView<const Vec3f> positions, const What& what) {
+  using T = typename What::Value;
+  const octree::LevelView& counted = tree.levels[depth];
+  auto sums = exec::make_buffer<T>(ex, counted.first_node + counted.nodes());
+  {
+    auto in_cells = exec::make_buffer<T>(ex, 8 * counted.cells());
+    for_each(ex, "density.splat", counted.cells(), hats::SumInCell<What>{counted, positions, what, in_cells.view()});
+    for_each(ex, "density.splat", counted.nodes(),
+             hats::Gather<T>{counted, in_cells.cview(), sums.view().part(counted.first_node, counted.nodes())});
+  }
+  const int complete = std::min(depth - 1, octree::kCompleteDepth);
+  for (int d = depth - 1; d > complete; --d) {
+    const octree::LevelView& level = tree.levels[d];
+    const octree::LevelView& below = tree.levels[d + 1];
+    for_each(ex, "density.restrict", level.nodes(),
+             hats::Restrict<T>{level, below, sums.data() + below.first_node,
+                               sums.view().part(level.first_node, level.nodes())});
+  }
+  if (complete >= 0)
+    sweep(ex, "density.restrict", complete + 1, tree.levels[complete].nodes(),
+          hats::RestrictLevels<T>{{}, tree, complete, sums.data()});
+  return sums;
+}
+
+}  // namespace pointskin::poisson

@@ -126,7 +126,7 @@ class Combination {
     download_cloud(kept, result.cloud);
 
     const Options part = part_of_run(options.reconstruction, 0.6, 0.4);
-    FieldData field = fit_field(ex_, kept, {.cube = frame_}, part, report.result);
+    FieldData field = fit_field(ex_, kept, {.cube = frame_, .drop_specks = true}, part, report.result);
     if (steepness > 0)
       keep_apart(first.field, second.field, steepness, options.reconstruction.domain_faces, field, report);
     first = {};

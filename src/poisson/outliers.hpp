@@ -43,7 +43,7 @@ inline constexpr float kLonely = 8;
 inline constexpr int kManyNeighbours = 12;
 inline constexpr int kFewestAlike = 3;
 inline constexpr float kAlikeCosine = 0.8F;
-inline constexpr double kMostlyAlike = 0.9;
+inline constexpr double kMostlyAlike = 0.75;
 inline constexpr std::int64_t kLookedAt = 8192;
 
 /// Sets the areas of outliers to 0, counts the lonely ones in `samples.lonely`, and gives the others those on their own side. The usual area is the harmonic mean of

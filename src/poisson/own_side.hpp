@@ -13,8 +13,9 @@ namespace pointskin::poisson {
 /// Samples on a sample's own side, on a face of a cell, below which an estimate is taken from a coarser level.
 inline constexpr float kReliableOnSide = 6;
 
-/// The least share of the samples around that is taken for those on the own side: a single flipped normal has none.
-inline constexpr float kLeastOwnShare = 0.25F;
+/// The least share of the samples around that is taken for those on the own side: a flipped normal has
+/// hardly any, and many of them must not outweigh the others.
+inline constexpr float kLeastOwnShare = 0.5F;
 
 /// What samples add up to at a corner: their number and their normals, each by its hat. 16 bytes, read at once.
 struct alignas(16) Facing {

@@ -175,7 +175,7 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   field.resolution = poisson::find_resolution(ex, field.tree, samples);
   look_at_samples(ex, samples, setup, options, field);
   const bool keeps_density = options.density || options.weakness || options.trim != 0 || setup.keep_all;
-  if (!keeps_density && !setup.look) field.density.counts.reset();
+  if (!keeps_density && !setup.look && !setup.drop_specks) field.density.counts.reset();
   if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
   if (setup.keeps_samples()) field.samples.normals = std::move(samples.normals);
@@ -228,6 +228,7 @@ FieldData fit_to_points(Exec& ex, PointBuffers& points, const FitSetup& setup, c
   FieldData field;
   field.envelope = setup.envelope;
   field.keeps_all = setup.keep_all;
+  field.drops_specks = setup.drop_specks;
   announce(options.progress, "octree", 0.05);
   field.frame = setup.cube ? *setup.cube : fit_cube(ex, points, options, report);
   report.points = points.used_count();

@@ -41,6 +41,7 @@ struct FieldData {
   double isovalue = 0;
   FieldSamples samples;                   ///< with FitSetup::keeps_samples()
   bool keeps_all = false;                 ///< FitSetup::keep_all
+  bool drops_specks = false;              ///< FitSetup::drop_specks
   double fitting_trim = 0;                ///< where a trim was or may be chosen
   double trim = 0;                        ///< Options::trim, or what was chosen; not with keeps_all
   float trim_limit = 0;                   ///< spacing in finest cells, with a trim; not with keeps_all
@@ -63,6 +64,7 @@ struct FitSetup {
   bool keep_samples = false;                             ///< fill FieldData::samples
   bool keep_all = false;                                 ///< whatever any ExtractOptions need: they come later
   bool look = false;                                     ///< count what may be wrong, FieldData::seen
+  bool drop_specks = false;  ///< pieces without samples go, also where there are no outliers
   /// Of nearly the same points, or null. It is started from if its cube and depth are the same, with three
   /// quarters of the iterations (docs/decisions/0023-editing.md).
   const FieldData* before = nullptr;

@@ -96,7 +96,9 @@ struct Model {
     return !is_distance() || options.density || trims() ? kNodeValue * counted_bricks : 0;
   }
   [[nodiscard]] std::int64_t vertices() const {
-    if (is_distance()) return 80 * bricks / kNodesPerTenVertices;
+    // Of a complete finest level, a surface meets fewer cells than of a band around it.
+    const std::int64_t near = depth() > octree::kCompleteDepth ? bricks : 3 * bricks / 4;
+    if (is_distance()) return 80 * near / kNodesPerTenVertices;
     return std::min(80 * bricks / kNodesPerTenVertices, kVerticesPerPoint * points + kCompleteVertices);
   }
   [[nodiscard]] std::int64_t vertex() const { return options.normals || trims() ? 2 * kPosition : kPosition; }

@@ -14,7 +14,8 @@ inline constexpr double kFewestSamples = 24;
 
 /// True if a surface of the field loses its pieces without samples. Where a user says which pieces stay, that holds.
 inline bool picks_pieces_by_support(const FieldData& field, const Options& options) {
-  return !options.largest && options.min_component == 0 && diagnose::findings_of(field.seen).lonely > 0;
+  return !options.largest && options.min_component == 0 && !field.density.counts.empty() &&
+         (field.drops_specks || diagnose::findings_of(field.seen).lonely > 0);
 }
 
 }  // namespace pointskin::detail

@@ -168,12 +168,12 @@ double Run::contradictions(const FieldImpl& field) {
 
 /// Where two solids touch, samples of both face each other at one place and seem to contradict each other. Turned alike,
 /// they no longer do, but then a whole sheet was turned for what looked like a few single normals. So a repair of single
-/// normals is undone if it leaves more than kRepaired of the contradictions, or turns kTooMany times as many.
+/// normals is undone if it leaves more than kRepaired of the contradictions, or turns kTooMany times as many and a sheet besides.
 /// @param field  of the normals as they came; stays if these cannot be repaired
 std::shared_ptr<FieldImpl> Run::fit_repaired(const Input& input, std::shared_ptr<FieldImpl> field) {
   constexpr double kSingle = 0.05;  // from here on single normals are wrong, and not parts alone
   constexpr double kRepaired = 0.5;
-  constexpr double kTooMany = 2;
+  constexpr double kTooMany = 2, kSheet = 0.08;
   if (!may_take_normals(input)) {
     warn_of_normals(*field);
     return field;
@@ -187,7 +187,8 @@ std::shared_ptr<FieldImpl> Run::fit_repaired(const Input& input, std::shared_ptr
   next_part(0.75);
   field = fit_outwards(own_);
   const double turned = flipped_share(*report_.normals);
-  if (before < kSingle || (contradictions(*field) <= kRepaired * before && turned <= kTooMany * before)) {
+  if (before < kSingle ||
+      (contradictions(*field) <= kRepaired * before && (turned <= kTooMany * before || turned <= before + kSheet))) {
     diagnose::warn_of_repair(*report_.normals, report_.warnings);
     return field;
   }

@@ -42,6 +42,7 @@ TEST(Embedding, HoldsForAllOptions) {
   for (const auto& [name, cloud] : clouds())
     for (const auto& [set, options] : test::option_sets(6, true)) {
       SCOPED_TRACE(name + ", " + set);
+      if (options.envelope != nullptr) continue;  // what is moved promises nothing (docs/algorithm.md, section 7)
       if (options.offset < 0 && (name == "thin plate" || name == "open square")) continue;  // nothing is left
       expect_embedded(test::reconstructed(cloud, options));
     }

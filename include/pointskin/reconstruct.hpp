@@ -67,7 +67,7 @@ struct SolveOptions {
   bool fixed_screening = false;   ///< true: all samples weigh alike; false: samples that scatter across the surface
                                   ///< weigh less, those that agree more (0.05 to 4.4 times `screening`)
   int iterations = 8;             ///< relaxations of every level finer than 5, in [1, 1000]; coarser ones take
-                                  ///< max(this, twice their cells along an axis), level 5 max(this, 24)
+                                  ///< max(this, twice their cells along an axis), level 5 three times this
   double scale = 1.1;             ///< working cube / bounding cube of the points used, in [1, 100]
   double samples_per_node = 1.5;  ///< samples that two cell faces of a level should hold; in [0, 100]. Sparser ones are
                                   ///< splatted coarser, and where they hold less than 0.42 of it the surface keeps to

@@ -98,7 +98,10 @@ Schedule schedule_for(int depth, int iterations) {
   if (depth > octree::kCompleteDepth)
     return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};
   const int cells = 1 << depth;  // along an axis
-  if (depth == octree::kCompleteDepth) return {std::max(iterations, 3 * cells / 4), 8.0 / (cells * cells)};
+  if (depth == octree::kCompleteDepth) {
+    const double count = 3.0 * iterations;
+    return {3 * iterations, std::clamp(4.5 / (count * count), 0.004, 0.5)};
+  }
   const int asked = depth < 2 ? iterations / 4 : iterations;
   return {std::max(asked, 2 * cells), std::min(0.1, 2.0 / (cells * cells))};
 }

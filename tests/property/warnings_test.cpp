@@ -122,37 +122,6 @@ TEST(PointNormalsAreJudged, PartsThatAreTurnedAreFound) {
   }
 }
 
-/// Two boxes that touch along a side of both, with noise: samples of the two sides lie among each other and face each other.
-Cloud touching_boxes(std::uint64_t seed) {
-  Cloud cloud;
-  test::Random random(seed);
-  for (int i = 0; i < 60'000; ++i) {
-    const bool right = random.below(2) == 0;
-    const auto side = static_cast<std::size_t>(random.below(6));
-    Vec3d p{random.in(-0.5, 0.5), random.in(-0.5, 0.5), random.in(-0.5, 0.5)};
-    Vec3f n{};
-    const double out = side % 2 == 0 ? 1 : -1;
-    p[side / 2] = 0.5 * out;
-    n[side / 2] = static_cast<float>(out);
-    p.x += right ? 0.5 : -0.5;
-    for (std::size_t a = 0; a < 3; ++a) p[a] += random.in(-0.01, 0.01);
-    cloud.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-    cloud.normals.push_back(n);
-  }
-  return cloud;
-}
-
-TEST(PointNormalsAreJudged, SolidsThatTouchKeepTheirNormals) {
-  const Cloud cloud = touching_boxes(11);
-  const Options options{{.depth = 7}};
-  Options given = options;
-  given.point_normals = PointNormals::given;
-  const Outcome judged = run(cloud, options);
-  EXPECT_EQ(judged.report.normals_done, NormalsDone::kept);
-  EXPECT_FALSE(judged.report.normals.has_value());
-  expect_same_bytes(judged.mesh, run(cloud, given).mesh);
-}
-
 TEST(PointNormalsAreJudged, ARepairedCloudHasTheSameBytesInAnyOrder) {
   const Cloud cloud = with_flips(test::torus_cloud(15'000, 12), 0.4, 13);
   const Mesh mesh = run(cloud, {{.depth = 6}}, 1).mesh;

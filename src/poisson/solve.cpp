@@ -90,10 +90,10 @@ struct Schedule {
   double lower;  ///< eigenvalues of diagonal^-1 A in [lower, 1] are damped evenly
 };
 
-/// Complete levels are iterated longer, over their whole spectrum, whose lower end is about 2 / cells^2: they carry the
-/// far field, and the surface over holes, and they are cheap. The last but one mends what the few iterations above left;
-/// levels 0 and 1 only give it a start. The last is iterated less, over a quarter of the spectrum less: the level above has done the rest.
-/// Finer levels only have to resolve what their own cells add to the interpolated field.
+/// Complete levels are iterated longer: they carry the far field, and the surface over holes, and they are cheap. All but the
+/// last over their whole spectrum, whose lower end is about 2 / cells^2; levels 0 and 1 only give the next ones a start. The
+/// last, whose start is good, three times as long as finer levels, which only have to resolve what their own cells add to the
+/// interpolated field.
 Schedule schedule_for(int depth, int iterations) {
   if (depth > octree::kCompleteDepth)
     return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};

@@ -5,9 +5,8 @@
 
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
+#include "poisson/examine.hpp"
 #include "poisson/mean_length.hpp"
-#include "poisson/noise.hpp"
-#include "poisson/outliers.hpp"
 #include "poisson/own_side.hpp"
 #include "poisson/sum_hats.hpp"
 
@@ -78,7 +77,7 @@ struct Weigh {
     } else {
       const FacingView::Densities densities = facing.at(positions[i], normals[i]);
       per_cell = densities.all;
-      own_side[i] = 1 / densities.own_side;
+      own_side[i] = (densities.disagrees ? -1.0F : 1.0F) / densities.own_side;
     }
     areas[i] = 1 / per_cell;
     splat_depths[i] = splat_depth(per_cell * kKernelFaces);
@@ -167,10 +166,7 @@ Density weigh_samples(Exec& ex, const octree::OctreeData& tree, const WeighOptio
                  own_side.view(),
                  samples.splat_depths.view()});
   facing.reset();
-  if (options.has_signs) {
-    drop_outliers(ex, own_side.cview(), samples);
-    adapt_to_noise(ex, tree, density, coarsest, samples);
-  }
+  if (options.has_signs) examine_samples(ex, tree.depth, coarsest, own_side.cview(), samples);
   if (options.confidence) for_each(ex, "density.weigh", n, ScaleArea{weights.cview(), samples.areas.view()});
   return density;
 }

@@ -60,8 +60,8 @@ Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const 
 
 /// Fills `samples.areas` and `splat_depths` (each from the density at its sample alone, and up to two levels below the
 /// finest: find_resolution evens them out), and normalises `samples.normals` in place; with confidence, their former
-/// lengths scale the areas. Areas are those on a sample's own side (own_side.hpp), outliers get none (outliers.hpp), and
-/// depths follow the noise (noise.hpp).
+/// lengths scale the areas. Areas are those on a sample's own side (own_side.hpp), outliers get none, and depths follow the
+/// noise (examine.hpp).
 /// @returns the density, as splat_density() has it. O(8 n + 27 nodes of the counted levels + n depth).
 template <exec::Space Exec>
 Density weigh_samples(Exec& ex, const octree::OctreeData& tree, const WeighOptions& options, Samples& samples);

@@ -4,10 +4,12 @@
 // sparsely; there the neighbours confirm it.
 #pragma once
 
+#include <pointskin/vector.hpp>
+
 #include <cstdint>
 
-#include "exec/space.hpp"
-#include "poisson/samples.hpp"
+#include "core/array_view.hpp"
+#include "core/host_device.hpp"
 
 namespace pointskin::poisson {
 
@@ -38,21 +40,97 @@ inline constexpr float kLonely = 8;
 
 /// A sample among at least kManyNeighbours is in a cluster of outliers if fewer than kFewestAlike of them have a normal
 /// with a cosine above kAlikeCosine: in any direction, of random normals one in ten has; along an edge every second,
-/// at a corner every third. That is only asked of clouds of which the share kMostlyAlike of kLookedAt samples, evenly
-/// spread, passes: the normals of others are too noisy, or the surface bends too fast, to tell.
+/// at a corner every third. Normals are only asked of clouds that can be told by them: of the samples that are looked at
+/// (examine.hpp), at least the share kTelling is among so many, and of those the share kMostlyAlike passes. The normals of
+/// other clouds are too noisy, or their surfaces bend too fast.
 inline constexpr int kManyNeighbours = 12;
 inline constexpr int kFewestAlike = 3;
 inline constexpr float kAlikeCosine = 0.8F;
-inline constexpr double kMostlyAlike = 0.75;
-inline constexpr std::int64_t kLookedAt = 8192;
+inline constexpr float kTelling = 0.25F;
+inline constexpr float kMostlyAlike = 0.75F;
 
-/// Sets the areas of outliers to 0, counts the lonely ones in `samples.lonely`, and gives the others those on their own side. The usual area is the harmonic mean of
-/// these: the mean density is that of the dense parts, where there are any. A sample with an unusual area that is
-/// confirmed has few neighbours to tell sides by: it keeps the larger of its area and the largest usual one.
-/// @param own_side  shape (n), areas on the own side (own_side.hpp), finest cells^2
-/// @param samples   positions, unit normals, areas > 0 and splat depths in key order
-/// O(n), deterministic, the same bits on every device. Six launches; does not wait.
-template <exec::Space Exec>
-void drop_outliers(Exec& ex, ArrayView<const float> own_side, Samples& samples);
+/// Near the surface an outlier is told by its neighbours. One that disagrees with all samples around (own_side.hpp) is one
+/// if none of its neighbours faces it, with a cosine above kFacingCosine, and they are not all on the other side of a thin
+/// wall. So is one that stands off: kFewestFacing neighbours face it, and its heights above their tangent planes have a
+/// mean of more than kOffSurface spacings that is more than kSurelyOff times their standard deviation. Noise gives one
+/// sample in some hundred such heights, and the surface loses nothing by it.
+inline constexpr float kFacingCosine = 0.5F;
+inline constexpr int kFewestFacing = 3;
+inline constexpr float kOffSurface = 0.7F;
+inline constexpr float kSurelyOff = 5;
+
+/// What the neighbours of a sample say of it.
+struct Seen {
+  int neighbours = 0, alike = 0, facing = 0, opposite = 0;
+  float heights = 0, squared_heights = 0;  ///< sums over the facing ones, of the unit cube
+
+  [[nodiscard]] PSK_HD bool can_tell() const { return neighbours >= kManyNeighbours; }
+  [[nodiscard]] PSK_HD bool faces_like_others() const { return alike >= kFewestAlike; }
+
+  [[nodiscard]] PSK_HD bool none_faces_it() const { return facing == 0 && (neighbours == 0 || neighbours > opposite); }
+
+  /// @param spacing2  squared mean distance of the samples around, of the unit cube
+  [[nodiscard]] PSK_HD bool stands_off(float spacing2) const {
+    constexpr float kSure = 1 + 1 / (kSurelyOff * kSurelyOff);
+    if (facing < kFewestFacing) return false;
+    const auto count = static_cast<float>(facing);
+    const float squared = heights * heights;
+    return kSure * squared > count * squared_heights &&
+           squared > kOffSurface * kOffSurface * spacing2 * (count * count);
+  }
+};
+
+/// The neighbours of a sample.
+struct Around {
+  ArrayView<const Vec3f> positions, normals;
+  ArrayView<const float> splat_depths;
+
+  /// Calls visit(normal, step) for every neighbour, with its normal and the way to it. Both are read before it is known
+  /// whether it is near: reads that wait for others take longer.
+  template <class Visit>
+  PSK_HD void operator()(std::int64_t i, const Visit& visit) const {
+    const float near = kNearCells / static_cast<float>(std::int64_t{1} << static_cast<int>(splat_depths[i]));
+    const std::int64_t first = i > kWindow ? i - kWindow : 0;
+    const std::int64_t end = i + kWindow < positions.size ? i + kWindow + 1 : positions.size;
+    const Vec3f here = positions[i];
+    PSK_UNROLL_BY_4 for (std::int64_t j = first; j < end; ++j) {
+      const Vec3f step = positions[j] - here;
+      const Vec3f normal = normals[j];
+      if (j != i && squared_length(step) < near * near) visit(normal, step);
+    }
+  }
+
+  [[nodiscard]] PSK_HD bool is_confirmed(std::int64_t i) const {
+    const Vec3f own = normals[i];
+    int neighbours = 0;
+    int confirming = 0;
+    (*this)(i, [&](const Vec3f& normal, const Vec3f& step) {
+      const float cosine = dot(own, normal);
+      if (cosine < kOtherSideCosine) return;
+      ++neighbours;
+      const float across = 0.5F * dot(own + normal, step);
+      if (cosine > kLeastCosine && across * across <= kMostBend * squared_length(step)) ++confirming;
+    });
+    return confirming >= kFewestConfirming &&
+           static_cast<float>(confirming) >= kLeastConfirming * static_cast<float>(neighbours);
+  }
+
+  [[nodiscard]] PSK_HD Seen seen_from(std::int64_t i) const {
+    const Vec3f own = normals[i];
+    Seen seen;
+    (*this)(i, [&](const Vec3f& normal, const Vec3f& step) {
+      const float cosine = dot(own, normal);
+      ++seen.neighbours;
+      if (cosine > kAlikeCosine) ++seen.alike;
+      if (cosine < kOtherSideCosine) ++seen.opposite;
+      if (!(cosine > kFacingCosine)) return;
+      const float height = dot(normal, step);
+      ++seen.facing;
+      seen.heights += height;
+      seen.squared_heights += height * height;
+    });
+    return seen;
+  }
+};
 
 }  // namespace pointskin::poisson

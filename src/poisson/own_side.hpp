@@ -17,6 +17,10 @@ inline constexpr float kReliableOnSide = 6;
 /// hardly any, and many of them must not outweigh the others.
 inline constexpr float kLeastOwnShare = 0.5F;
 
+/// A sample whose own side has less than this share of the samples around disagrees with them: the mean cosine between its
+/// normal and theirs is below 1/2.
+inline constexpr float kAgreeingShare = 0.75F;
+
 /// What samples add up to at a corner: their number and their normals, each by its hat. 16 bytes, read at once.
 struct alignas(16) Facing {
   Vec3f normal;
@@ -51,10 +55,11 @@ struct FacingView {
   /// face counts half. Of a sample without a normal all count.
   struct Densities {
     float all, own_side;
+    bool disagrees;  ///< with the samples around, on the level of `all`
   };
   PSK_HD Densities at(const Vec3f& p, const Vec3f& n) const {
     int level = octree::locate(tree, octree::point_key(p.x, p.y, p.z), depth).depth;
-    Densities found{0, 0};
+    Densities found{0, 0, false};
     bool has_all = false;
     bool has_own = false;
     for (;; --level) {
@@ -64,6 +69,7 @@ struct FacingView {
       const bool last = level == 0;
       if (!has_all && (last || all >= kReliableSamples)) {
         found.all = all * per_finest;
+        found.disagrees = n != Vec3f{} && side(sum, n, all) < kAgreeingShare * all;
         has_all = true;
       }
       const float own = on_own_side(sum, n, all);
@@ -76,9 +82,12 @@ struct FacingView {
   }
 
  private:
+  PSK_HD static float side(const Facing& sum, const Vec3f& n, float all) {
+    return 0.5F * (all + dot(n, sum.normal) * (1 / kPlaneFactor));
+  }
   PSK_HD static float on_own_side(const Facing& sum, const Vec3f& n, float all) {
     if (n == Vec3f{}) return all;
-    const float own = 0.5F * (all + dot(n, sum.normal) * (1 / kPlaneFactor));
+    const float own = side(sum, n, all);
     const float least = kLeastOwnShare * all;
     return own > least ? own : least;
   }

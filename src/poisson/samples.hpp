@@ -44,7 +44,7 @@ struct SamplesView {
   ArrayView<const float> trust;           ///< factor on the weight in the screening, > 0; empty: 1 everywhere
   int coarsest_splat_depth = 0;           ///< coarsest level that normals are splatted at
   std::uint32_t splat_depth_set = ~0U;    ///< bit d: some normals may be splatted at level d
-  const std::uint64_t* lonely = nullptr;  ///< one element: how many are far from all others (outliers.hpp); or null
+  const std::uint64_t* lonely = nullptr;  ///< one element: how many are far from all others (examine.hpp); or null
 };
 
 /// Owns what SamplesView shows.

@@ -66,7 +66,7 @@ struct Restrict {
   }
 };
 
-/// The complete levels, one a round: each is done in less time than a launch takes.
+/// The levels that are complete and small, one a round: each is done in less time than a launch takes.
 template <class T>
 struct RestrictLevels : exec::SweepAll {
   octree::OctreeView tree;
@@ -79,6 +79,9 @@ struct RestrictLevels : exec::SweepAll {
     if (n < level.nodes()) sums[level.first_node + n] = octree::restricted(level, below, sums + below.first_node, n);
   }
 };
+
+/// The last of these: the few threads of a sweep would take longer over the next one than a launch.
+inline constexpr int kLastSmallDepth = 4;
 
 }  // namespace hats
 
@@ -97,17 +100,17 @@ exec::Buffer<typename What::Value> sum_hats(Exec& ex, const octree::OctreeView& 
     for_each(ex, "density.splat", counted.nodes(),
              hats::Gather<T>{counted, in_cells.cview(), sums.view().part(counted.first_node, counted.nodes())});
   }
-  const int complete = std::min(depth - 1, octree::kCompleteDepth);
-  for (int d = depth - 1; d > complete; --d) {
+  const int small = std::min(depth - 1, hats::kLastSmallDepth);
+  for (int d = depth - 1; d > small; --d) {
     const octree::LevelView& level = tree.levels[d];
     const octree::LevelView& below = tree.levels[d + 1];
     for_each(ex, "density.restrict", level.nodes(),
              hats::Restrict<T>{level, below, sums.data() + below.first_node,
                                sums.view().part(level.first_node, level.nodes())});
   }
-  if (complete >= 0)
-    sweep(ex, "density.restrict", complete + 1, tree.levels[complete].nodes(),
-          hats::RestrictLevels<T>{{}, tree, complete, sums.data()});
+  if (small >= 0)
+    sweep(ex, "density.restrict", small + 1, tree.levels[small].nodes(),
+          hats::RestrictLevels<T>{{}, tree, small, sums.data()});
   return sums;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "poisson/density.hpp"
@@ -137,6 +138,67 @@ TEST(Outliers, AreClustersThatFaceAllWays) {
     if (is_outlier && weighed.samples.areas.data()[i] > 0) ++in_cluster;
   }
   EXPECT_LT(in_cluster, 200);
+}
+
+/// A sphere of 20,000 samples, and `count` more at up to `height` distances between samples above or below it.
+struct NearSphere : Points {
+  NearSphere(test::Random& random, int count, double height, bool with_its_normals) {
+    add_sphere(random, 20'000, -1, 1);
+    const double spacing = std::sqrt(4 * 3.14159265 * 0.3 * 0.3 / 20'000);
+    Points others;
+    others.add_sphere(random, count, -1, 1);
+    Points directions;
+    directions.add_noise(random, count);
+    for (std::size_t i = 0; i < others.positions.size(); ++i) {
+      const double sign = random.below(2) == 0 ? -1 : 1;
+      const auto away = static_cast<float>(spacing * sign * random.in(1, height));
+      add(others.positions[i] + away * others.normals[i], with_its_normals ? others.normals[i] : directions.normals[i]);
+    }
+  }
+};
+
+/// Samples without area among those on the sphere, and their share among the others.
+std::pair<std::int64_t, double> dropped(const Weighed& weighed) {
+  std::int64_t inliers = 0;
+  std::int64_t outliers = 0;
+  std::int64_t gone = 0;
+  for (std::int64_t i = 0; i < weighed.samples.areas.size(); ++i) {
+    const bool has_area = weighed.samples.areas.data()[i] > 0;
+    if (height_above_sphere(weighed.samples.positions.data()[i]) < 1e-4) {
+      inliers += has_area ? 0 : 1;
+    } else {
+      ++outliers;
+      gone += has_area ? 0 : 1;
+    }
+  }
+  return {inliers, static_cast<double>(gone) / static_cast<double>(outliers)};
+}
+
+TEST(Outliers, NearTheSurfaceFaceNoneOfItsSamples) {
+  test::Random random(8);
+  const auto [inliers, share] = dropped(Weighed(NearSphere(random, 500, 4, false)));
+  EXPECT_EQ(inliers, 0);
+  EXPECT_GT(share, 0.8);
+}
+
+TEST(Outliers, StandOffTheSurfaceThatTheirNeighboursForm) {
+  test::Random random(9);
+  const auto [inliers, share] = dropped(Weighed(NearSphere(random, 100, 3, true)));
+  EXPECT_EQ(inliers, 0);
+  EXPECT_GT(share, 0.6);  // the others have fewer than 3 neighbours near them in key order
+}
+
+TEST(Outliers, AreHardlyAnyOfNoisySamples) {
+  test::Random random(10);
+  Points points;
+  points.add_sphere(random, 20'000, -1, 1);
+  const double spacing = std::sqrt(4 * 3.14159265 * 0.3 * 0.3 / 20'000);
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    double gaussian = -6;  // of twelve uniform numbers
+    for (int k = 0; k < 12; ++k) gaussian += random.in(0, 1);
+    points.positions[i] = points.positions[i] + static_cast<float>(spacing * gaussian) * points.normals[i];
+  }
+  EXPECT_LT(without_area(Weighed(points)), 200);  // 1 %
 }
 
 TEST(Outliers, AreNotSamplesOfACloudWhoseNormalsAreNoise) {

@@ -1,0 +1,125 @@
+#include "poisson/examine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "exec/atomic.hpp"
+#include "exec/this_space.hpp"
+#include "poisson/noise.hpp"
+#include "poisson/outliers.hpp"
+
+namespace pointskin::poisson {
+namespace {
+
+constexpr const char* kLabel = "density.examine";
+
+/// Words that are counted in, all in one buffer. The lonely samples are the first: `Samples` keeps the buffer for it.
+enum Word : int { kLonelyOnes, kAsked, kAlike, kOnLines, kDensity, kPairs, kWords = kPairs + NoiseBin::kCount };
+
+/// Densities add up in fixed point, in any order the same: in samples per face of the unit cube, over the number of all
+/// samples.
+constexpr float kFixed = 65536;
+constexpr float kDensest = 17'179'869'184.0F;  // 2^34: of kLookedAt samples the sum is below 2^63
+
+struct LookAt {
+  Around around;
+  std::int64_t looked_at;
+  float cell_area;  // of a finest cell's face
+  ArrayView<const float> own_side, areas;
+  std::uint64_t* words;
+
+  PSK_HD void operator()(std::int64_t s) const {
+    const std::int64_t n = around.positions.size;
+    const std::int64_t i = s * n / looked_at;
+    const float density = 1 / (std::abs(own_side[i]) * cell_area * static_cast<float>(n));
+    exec::add(words + kDensity, static_cast<std::uint64_t>(kFixed * (density < kDensest ? density : kDensest)));
+    const Seen seen = around.seen_from(i);
+    if (seen.can_tell()) exec::add(words + kAsked, 1);
+    if (seen.can_tell() && seen.faces_like_others()) exec::add(words + kAlike, 1);
+    if (i + Followed::kFourth >= n) return;
+    const Followed followed(around.positions, around.normals, i, areas[i] * cell_area);
+    if (followed.on_line) exec::add(words + kOnLines, 1);
+    if (followed.is_pair) exec::add(words + kPairs + NoiseBin::of(followed.noise2), 1);
+  }
+};
+
+/// What a look at the whole cloud says.
+struct Cloudwide {
+  Shift shift{};
+  float largest_usual_area = 0;  ///< finest cells^2
+  bool is_alike = false;         ///< neighbours mostly face the same way, as far as can be told
+};
+
+/// One thread.
+struct Judge {
+  const std::uint64_t* words;
+  std::int64_t points, looked_at;
+  float cell_area;
+  ArrayView<Cloudwide> found;
+
+  PSK_HD void operator()(std::int64_t /*i*/) const {
+    const auto looked = static_cast<float>(looked_at);
+    const float density = static_cast<float>(words[kDensity]) / kFixed / looked;
+    const float usual = 1 / (density * cell_area * static_cast<float>(points));
+    const auto asked = static_cast<float>(words[kAsked]);
+    found[0] = {shift_for(words + kPairs, static_cast<float>(words[kOnLines]) / looked), kUnusualArea * usual,
+                asked >= kTelling * looked && static_cast<float>(words[kAlike]) >= kMostlyAlike * asked};
+  }
+};
+
+struct Examine {
+  Around around;
+  ArrayView<const Cloudwide> found;
+  float cell_area, coarsest;
+  ArrayView<const float> own_side;
+  ArrayView<float> areas, splat_depths;
+  std::uint64_t* lonely;
+
+  PSK_HD void operator()(std::int64_t i) const {
+    const Cloudwide cloud = found[0];
+    const float own = std::abs(own_side[i]);
+    const float largest = cloud.largest_usual_area;
+    const bool is_usual = !(own > largest);
+    if (own > kLonely * largest) exec::add(lonely, 1);
+    float area = own;
+    if ((!is_usual && !around.is_confirmed(i)) || is_outlier_near_others(i, cloud.is_alike)) {
+      area = 0;
+    } else if (!is_usual) {
+      area = areas[i] < largest ? largest : areas[i];
+    }
+    areas[i] = area;
+    const bool finer = cloud.shift.finer > 0 && is_bent(around.positions, around.normals, i, area * cell_area);
+    const float depth = splat_depths[i] + (finer ? cloud.shift.finer : 0.0F) - cloud.shift.coarser;
+    splat_depths[i] = depth > coarsest ? depth : coarsest;
+  }
+
+  [[nodiscard]] PSK_HD bool is_outlier_near_others(std::int64_t i, bool is_alike) const {
+    const Seen seen = around.seen_from(i);
+    if (seen.stands_off(areas[i] * cell_area)) return true;
+    return is_alike && ((seen.can_tell() && !seen.faces_like_others()) || (own_side[i] < 0 && seen.none_faces_it()));
+  }
+};
+
+}  // namespace
+
+template <exec::Space Exec>
+void examine_samples(Exec& ex, int depth, int coarsest, ArrayView<const float> own_side, Samples& samples) {
+  const std::int64_t n = samples.areas.size();
+  const Around around{samples.positions.cview(), samples.normals.cview(), samples.splat_depths.cview()};
+  const std::int64_t looked_at = std::min(kLookedAt, n);
+  const float cell_area = 1 / static_cast<float>(std::int64_t{1} << 2 * depth);
+  samples.lonely = exec::make_buffer<std::uint64_t>(ex, kWords);
+  exec::fill(ex, samples.lonely.view(), std::uint64_t{0});
+  for_each(ex, kLabel, looked_at,
+           LookAt{around, looked_at, cell_area, own_side, samples.areas.cview(), samples.lonely.data()});
+  auto found = exec::make_buffer<Cloudwide>(ex, 1);
+  for_each(ex, kLabel, 1, Judge{samples.lonely.data(), n, looked_at, cell_area, found.view()});
+  for_each(ex, kLabel, n,
+           Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), own_side, samples.areas.view(),
+                   samples.splat_depths.view(), samples.lonely.data() + kLonelyOnes});
+}
+
+PSK_INSTANTIATE(examine_samples);
+
+}  // namespace pointskin::poisson

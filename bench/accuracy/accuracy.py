@@ -37,6 +37,8 @@ def parse(words):
     add("--bin", type=pathlib.Path, default=ROOT / "build/bin", help="folder of the programs")
     add("--program", metavar="PATH", type=pathlib.Path, help="another build of pointskin to judge (default: of --bin)")
     add("--options", metavar="WORDS", default="", help="options for pointskin reconstruct")
+    add("--without-normals", action="store_true",
+        help="take the normals of every cloud away; both programs get those that pointskin orient finds")
     add("--peer", metavar="CMD", help="another program; {in}, {out}, {depth} and {threads} are replaced, no shell runs")
     add("--equal-triangles", action="store_true",
         help="also compare with the peer at the same number of triangles, between its depths")
@@ -81,7 +83,8 @@ class Table:
     def __init__(self, options, folder):
         self.options = options
         tools = options.bin
-        ours = [str(options.program or tools / "pointskin"), "reconstruct", "{in}", "-o", "{out}", "--depth",
+        self.program = str(options.program or tools / "pointskin")
+        ours = [self.program, "reconstruct", "{in}", "-o", "{out}", "--depth",
                 "{depth}", "--threads", "{threads}", "-q", *shlex.split(options.options)]
         self.ours = ("pointskin", ours)
         peer = shlex.split(options.peer) if options.peer else []
@@ -89,13 +92,15 @@ class Table:
         metrics = [str(tools / "pointskin_metrics"), "--samples", str(options.samples), "--tau", str(options.tau),
                    "--threads", str(options.threads)]
         self.bench = programs.Bench(folder, metrics, options.threads, options.timeout)
-        self.entries, self.lines = [], verdict.table_head()
+        self.entries, self.lines, self.right_signs = [], verdict.table_head(), None
 
     def entry(self, case, cloud, program, depth):
         """Runs one program; returns the row's entry, not yet printed."""
         reuse = self.options.reuse_peer and program is self.peer
         result = self.bench.result(case, cloud, program, depth, reuse)
         entry = {"case": case.name, "depth": depth, "program": program[0], **result}
+        if self.right_signs is not None:
+            entry["right_signs"] = self.right_signs
         if "metrics" in result:
             entry["row"] = verdict.summary_of(result["metrics"])
         return entry
@@ -141,6 +146,12 @@ class Table:
 
     def run(self, case):
         cloud = self.bench.cloud(case, self.options.reuse_peer)
+        if self.options.without_normals:
+            try:
+                cloud, self.right_signs = self.bench.orient(case, cloud, self.program)
+            except programs.Failed as failure:
+                self.show({"case": case.name, "depth": self.options.depths[0], "program": self.ours[0], "failed": str(failure)})
+                return
         for depth in self.options.depths:
             ours = self.entry(case, cloud, self.ours, depth)
             if not self.peer:

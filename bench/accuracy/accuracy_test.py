@@ -73,6 +73,14 @@ class Brief(unittest.TestCase):
         self.assertEqual(lines[-1], "| geometric mean | | | 1.000 | 1.000 | 1.000 | | | |")
 
 
+    def test_has_a_column_of_signs_where_normals_were_found(self):
+        ours = {"case": "c", "depth": 8, "row": row(), "right_signs": 0.987}
+        lines = verdict.brief_table([(ours, {"case": "c", "depth": 8, "row": row()})])
+        self.assertTrue(lines[0].endswith("| right signs % |"))
+        self.assertTrue(lines[2].endswith("| 98.70 |"))
+        self.assertEqual({line.count("|") for line in lines}, {lines[0].count("|")})
+
+
 class Verdict(unittest.TestCase):
     def judge(self, ours, peer):
         return verdict.verdict_text(verdict.compare(row(**ours), row(**peer), 0.005))

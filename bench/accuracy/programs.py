@@ -3,9 +3,13 @@ import hashlib
 import json
 import pathlib
 import subprocess
+import sys
 import time
 
 from cases import point_count
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import normals  # noqa: E402  of bench/
 
 
 class Failed(Exception):
@@ -68,6 +72,14 @@ class Bench:
         run(fill(case.generate, out=path), self.timeout)
         write_record(path, {"command": case.generate[1:]})
         return path
+
+    def orient(self, case, cloud, program):
+        """The cloud with normals that `program orient` found, and the share of them on the side of those that were taken away."""
+        bare, oriented = (self.folder / f"{case.name}-{kind}.ply" for kind in ("bare", "oriented"))
+        positions, given = normals.read_ply(cloud)
+        normals.write_ply(bare, positions, None)
+        run([program, "orient", str(bare), "-o", str(oriented), "--threads", str(self.threads), "-q", "--overwrite"], self.timeout)
+        return oriented, normals.right_share(normals.read_ply(oriented)[1], given)
 
     def result(self, case, cloud, program, depth, reuse):
         """Runs `program` = (name, words) and measures its mesh: {"seconds", "metrics"} or {"failed"}.

@@ -102,8 +102,11 @@ BRIEF_HEAD = ("case", "depth", "mean %", "mean", "rms", "1 - normals", "componen
 
 def brief_table(pairs):
     """Markdown with a row for each (ours, peer) of two entries of one case: our mean distance, what mean, rms and normals are
-    over the peer's, and both topologies; the largest ratio of means first, and the geometric means last."""
+    over the peer's, and both topologies; the largest ratio of means first, and the geometric means last. Where normals were
+    found, a column more says how many have the right sign."""
+    pairs = list(pairs)
     ratios = {name: [] for name in (*ERRORS, "normals")}
+    head = BRIEF_HEAD + (("right signs %",) if any("right_signs" in ours for ours, _ in pairs) else ())
     rows = []
     for ours, peer in pairs:
         row = ours["row"]
@@ -115,11 +118,13 @@ def brief_table(pairs):
                     for r in (row, peer["row"]) for name in ("components", "genus")]
         cells = [ours["case"], str(ours["depth"]), f"{row['mean']:.4g}", *(f"{value:.3f}" for value in ratio.values()),
                  topology[0], topology[1], f"{topology[2]}, {topology[3]}"]
+        if len(head) > len(BRIEF_HEAD):
+            cells.append(f"{100 * ours['right_signs']:.2f}")
         rows.append((ratio["mean"], "| " + " | ".join(cells) + " |"))
     rows.sort(key=lambda row: -row[0])
     means = [f"{math.exp(sum(map(math.log, values)) / len(values)):.3f}" for values in ratios.values() if values]
-    last = ["| geometric mean | | | " + " | ".join(means) + " | | | |"] if rows else []
-    return ["| " + " | ".join(BRIEF_HEAD) + " |", "|" + "---|" * len(BRIEF_HEAD), *(line for _, line in rows), *last]
+    last = ["| geometric mean | | | " + " | ".join(means) + " |" + " |" * (len(head) - 6)] if rows else []
+    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head), *(line for _, line in rows), *last]
 
 
 def count(verdicts):

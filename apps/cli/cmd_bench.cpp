@@ -124,8 +124,17 @@ void race_depth(Bench& bench, const std::string& input, int depth) {
   }
 }
 
+/// Once a cloud is there: of a run that cannot begin, the error is the only line.
+void begin_table(const Bench& bench) {
+  for (const Device& device : bench.devices) {
+    if (!bench.args.quiet) print_note(fmt::format("{}: {}", short_name(device), device.name()));
+  }
+  write_stdout(memory_header(bench.name_width));
+}
+
 void measure_cloud(Bench& bench, const CloudSource& source, BenchProgress& progress) {
   const Cloud cloud = load(source, bench.args.threads);
+  if (bench.results.clouds.empty()) begin_table(bench);
   bench.results.clouds.push_back({source.name, source.path, source.shape, cloud.size(), cloud.dropped});
   std::string input = source.path.empty() ? "" : std::filesystem::absolute(source.path).string();
   if (bench.launcher && input.empty()) {
@@ -170,10 +179,6 @@ int run(const BenchArgs& args) {
   prepare(bench, sources);
   if (args.peer.empty()) warn_unused(args.given, {"--peer-repeat"}, "without --peer");
   BenchProgress progress(sources, !args.quiet && stderr_is_terminal());
-  for (const Device& device : bench.devices) {
-    if (!args.quiet) print_note(fmt::format("{}: {}", short_name(device), device.name()));
-  }
-  write_stdout(memory_header(bench.name_width));
   for (const CloudSource& source : sources) measure_cloud(bench, source, progress);
   if (bench.launcher) write_stdout(file_table(bench.results, bench.name_width));
   write_outputs(bench);

@@ -30,13 +30,27 @@ std::vector<std::string>& warnings() {
   return all;
 }
 
+/// Names in files are data of others: they must not steer the terminal.
+std::string without_controls(std::string text) {
+  for (char& c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code < 0x20 && c != '\n' && c != '\t') || code == 0x7f) c = '?';
+  }
+  return text;
+}
+
+void write_line(const std::string& text) {
+  const std::string line = text + "\n";
+  std::fwrite(line.data(), 1, line.size(), stderr);  // One call: lines of several processes do not mix.
+}
+
 }  // namespace
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
 
 void print_error(const std::string& story) {
   const std::string name = use_colour() ? "\x1b[1;31mpointskin:\x1b[0m" : "pointskin:";
-  print_note(fmt::format("{} {}", name, one_line(story)));
+  write_line(fmt::format("{} {}", name, one_line(story)));
 }
 
 void print_warning(const std::string& story) {
@@ -47,13 +61,11 @@ void print_warning(const std::string& story) {
 
 const std::vector<std::string>& printed_warnings() { return warnings(); }
 
-void print_note(const std::string& text) {
-  const std::string line = text + "\n";
-  std::fwrite(line.data(), 1, line.size(), stderr);  // One call: lines of several processes do not mix.
-}
+void print_note(const std::string& text) { write_line(without_controls(text)); }
 
 void write_stdout(const std::string& text) {
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  const std::string shown = without_controls(text);
+  const bool written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size();
   if (std::fflush(stdout) == 0 && written) return;
   throw Error(ErrorCode::output_not_written, fmt::format("cannot write to stdout: {}", std::strerror(errno)));
 }

@@ -20,10 +20,10 @@ void print_warning(const std::string& story);
 /// The stories of all warnings printed so far, for reports.
 const std::vector<std::string>& printed_warnings();
 
-/// Prints `text` and a line break on stderr.
+/// Prints `text` and a line break on stderr, control characters but line breaks and tabs as "?".
 void print_note(const std::string& text);
 
-/// Writes `text` to stdout and flushes it.
+/// Writes `text` to stdout, control characters but line breaks and tabs as "?", and flushes it.
 /// @throws Error output_not_written, for example when the reader has closed its end of a pipe
 void write_stdout(const std::string& text);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
-#include <iterator>
+#include <istream>
 
 #include <fmt/format.h>
 
@@ -88,10 +88,15 @@ Vec3d JsonReader::vector() const {
 }
 
 std::string read_text(const std::string& path) {
-  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file.is_open() || file.bad())
+  constexpr std::size_t kPiece = std::size_t{1} << 16;
+  std::ifstream file;
+  if (path != "-") file.open(path, std::ios::binary);
+  std::istream& in = path == "-" ? std::cin : file;
+  std::string text;
+  std::vector<char> piece(kPiece);  // read() says what failed by the state of the stream; iterators throw
+  while (in.read(piece.data(), static_cast<std::streamsize>(kPiece)) || in.gcount() > 0)
+    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+  if ((path != "-" && !file.is_open()) || in.bad())
     throw Error(ErrorCode::invalid_input, fmt::format("{}: cannot be read; is the name right?", path));
   return text;
 }

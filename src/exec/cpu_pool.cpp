@@ -14,6 +14,15 @@
 #include <string>
 #include <vector>
 
+// g++ says so by a macro, clang by a feature.
+#if defined(__SANITIZE_ADDRESS__)
+#define POINTSKIN_ADDRESS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define POINTSKIN_ADDRESS_SANITIZER
+#endif
+#endif
+
 namespace pointskin::exec {
 namespace {
 
@@ -25,7 +34,7 @@ constexpr std::size_t kHugePage = std::size_t{1} << 21;
 constexpr std::size_t kSpareShare = 64;
 
 /// Blocks from here on are cut from ranges. The address sanitizer watches the blocks of malloc only.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef POINTSKIN_ADDRESS_SANITIZER
 constexpr std::size_t kLargeBytes = std::numeric_limits<std::size_t>::max();
 #else
 constexpr std::size_t kLargeBytes = std::size_t{1} << 18;

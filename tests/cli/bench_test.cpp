@@ -92,6 +92,13 @@ TEST_F(BenchCommand, ReportsEveryPhaseOfFilesWithTheirPoints) {
   EXPECT_EQ(report["command_line"][1], "bench");
 }
 
+TEST_F(BenchCommand, SaysInOneLineThatAFileCannotBeRead) {
+  const Result result = bench({folder_ / "none.ply"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+}
+
 TEST_F(BenchCommand, TellsFilesOfTheSameNameApart) {
   for (const char* name : {"a", "b"}) {
     std::filesystem::create_directory(folder_ / name);

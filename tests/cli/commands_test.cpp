@@ -62,6 +62,16 @@ TEST_F(Commands, InfoNamesAttributesWithTheirTypes) {
   EXPECT_DOUBLE_EQ(info["spacing"].get<double>(), 5);
 }
 
+TEST_F(Commands, InfoDoesNotLetNamesSteerTheTerminal) {
+  write_file(folder_ / "steering.ply",
+             "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+             "property float \x1b[31mevil\x07\nend_header\n0 0 0 1\n");
+  const Result result = pointskin_run({"info", folder_ / "steering.ply"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("?[31mevil?"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find_first_of("\x1b\x07"), std::string::npos);
+}
+
 TEST_F(Commands, InfoDescribesAMesh) {
   const Json info = json_of({"info", save("cube.ply", cube_mesh_ply(2))});
   EXPECT_EQ(info["kind"], "mesh");

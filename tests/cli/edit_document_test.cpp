@@ -57,6 +57,14 @@ class EditDocument : public testing::Test {
   std::string output_ = folder_ / "out.ply";
 };
 
+TEST_F(EditDocument, MayNotBeAFolder) {
+  script_ = folder_ / "scenes";
+  std::filesystem::create_directory(script_);
+  const Result result = edit();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("cannot be read"), std::string::npos) << result.err;
+}
+
 TEST_F(EditDocument, GivesTheBytesOfTheSceneThatWasSaved) {
   save_session();
   const std::string report = folder_ / "report.json", saved = folder_ / "saved.json";

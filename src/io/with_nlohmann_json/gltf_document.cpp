@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -151,8 +152,13 @@ std::string GltfDocument::load_uri(const std::string& uri) const {
     fail_here("names the file " + in_quotes(uri) + ", which is not in its own folder");
   const std::filesystem::path path = std::filesystem::path(source_.name).parent_path() / name;
   std::ifstream in(path, std::ios::binary);
-  if (!in) fail(source_, "needs the file " + in_quotes(uri) + ", which cannot be read", "put it beside this one");
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::string bytes;
+  std::array<char, 65536> piece{};
+  while (in.read(piece.data(), piece.size()) || in.gcount() > 0)
+    bytes.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+  if (!in.is_open() || in.bad())
+    fail(source_, "needs the file " + in_quotes(uri) + ", which cannot be read", "put it beside this one");
+  return bytes;
 }
 
 void GltfDocument::read_buffers(std::string_view binary) {

@@ -77,7 +77,8 @@ struct WriteOptions {
 /// b` with colours in [0, 1], and no other attributes. A name without an extension is refused unless it is a special
 /// file, which gets PLY.
 /// @throws Error output_not_written (with the reason of the operating system); usage for an unknown extension or arrays
-///         that do not fit together; invalid_input for a triangle that names a vertex that does not exist
+///         that do not fit together; invalid_input for a triangle that names a vertex that does not
+///         exist, and for a vertex, a normal of a mesh, a point or an origin that is not finite
 void write_mesh(const std::string& path, const Mesh& mesh, int threads = 0);
 void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options);
 

@@ -73,8 +73,9 @@ void validate(const FluidOptions& options) {
     if (!holds) throw Error(ErrorCode::usage, fmt::format("option {} must be {}, but is {}", name, range, value));
   };
   const auto in = [](double value, double low, double high) { return value >= low && value <= high; };  // not NaN
-  require(options.particle_radius > 0 && std::isfinite(options.particle_radius), "particle_radius",
-          options.particle_radius, "positive and finite");
+  constexpr double kLargestRadius = 1e18;  // squares of a few of them are floats
+  require(options.particle_radius > 0 && options.particle_radius <= kLargestRadius, "particle_radius",
+          options.particle_radius, "positive and at most 1e18");
   require(in(options.smoothing_length, 1, 8), "smoothing_length", options.smoothing_length, "in 1..8");
   require(in(options.cube_size, 0.05, 4), "cube_size", options.cube_size, "in 0.05..4");
   const double most = options.kernel == FluidKernel::anisotropic ? 1 : 2;

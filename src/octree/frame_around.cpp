@@ -3,6 +3,8 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace pointskin::octree {
 
@@ -13,7 +15,15 @@ Frame frame_around(const Bounds& box, double scale) {
   result.size = scale * std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
   if (!(result.size > 0))
     throw Error(ErrorCode::empty_result, "all points are at one place; there is no surface to reconstruct");
-  for (std::size_t a = 0; a < 3; ++a) result.lower[a] = 0.5 * (lower[a] + upper[a]) - 0.5 * result.size;
+  constexpr auto kLargest = static_cast<double>(std::numeric_limits<float>::max());
+  for (std::size_t a = 0; a < 3; ++a) {
+    result.lower[a] = 0.5 * (lower[a] + upper[a]) - 0.5 * result.size;
+    if (!(std::max(std::abs(result.lower[a]), std::abs(result.lower[a] + result.size)) <= kLargest))
+      throw Error(
+          ErrorCode::invalid_input,
+          "the working cube reaches beyond 3.4e38, the largest coordinate of a vertex; give the points in larger "
+          "units, or a smaller scale");
+  }
   return result;
 }
 

@@ -285,6 +285,14 @@ TEST(Errors, NameWhatIsMissing) {
             ErrorCode::empty_result);
 }
 
+TEST(Errors, RefuseACubeThatFloatsDoNotReach) {
+  const Cloud cloud = cloud_of({{9e37F, 0, 0}, {-9e37F, 0, 0}, {0, 9e37F, 0}, {0, 0, 9e37F}},
+                               {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  EXPECT_EQ(reconstruct_error(cloud, {{.depth = 5, .scale = 10}}), ErrorCode::invalid_input);
+  const Mesh mesh = reconstructed(cloud, {{.depth = 5, .scale = 2}});
+  for (const Vec3f& v : mesh.vertices) ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
+}
+
 TEST(Errors, NameOptionsThatAreOutOfRange) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

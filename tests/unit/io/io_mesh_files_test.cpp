@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "support/io_files.hpp"
 
@@ -186,6 +187,29 @@ TEST(MeshFiles, AreRefusedWhenTheMeshDoesNotFitTogether) {
   EXPECT_NE(story(ErrorCode::usage, bad), "");
   EXPECT_NE(story(ErrorCode::usage, good, "a.step"), "");
   EXPECT_NE(story(ErrorCode::usage, good, "noextension"), "");
+  EXPECT_EQ(folder.file_count(), 0u);
+}
+
+TEST(MeshFiles, HoldNothingThatIsNotFinite) {
+  const test::TemporaryFolder folder;
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto is_refused = [&](const Mesh& mesh) {
+    return story_of(ErrorCode::invalid_input, [&] { write_mesh(folder.file("a.ply"), mesh); });
+  };
+  Mesh bad = far_tetrahedron();
+  bad.vertices[2].y = kNan;
+  EXPECT_NE(is_refused(bad).find("vertex 2"), std::string::npos);
+  bad = far_tetrahedron();
+  bad.normals[1].z = kInfinity;
+  EXPECT_NE(is_refused(bad).find("normal of vertex 1"), std::string::npos);
+  bad = far_tetrahedron();
+  bad.origin.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(is_refused(bad).find("origin"), std::string::npos);
+  Cloud cloud;
+  cloud.positions = {{0, 0, 0}, {0, -kInfinity, 0}};
+  EXPECT_NE(story_of(ErrorCode::invalid_input, [&] { write_cloud(folder.file("a.ply"), cloud); }).find("point 1"),
+            std::string::npos);
   EXPECT_EQ(folder.file_count(), 0u);
 }
 

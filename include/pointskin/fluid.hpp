@@ -22,9 +22,8 @@ enum class FluidKernel {
 
 /// Lengths are in particle radii, as in splashsurf, whose names these are where they mean the same.
 struct FluidOptions {
-  double particle_radius =
-      0;  ///< world units, in (0, 1e18]: half the distance of particles at rest; a particle stands for
-          ///< the rest volume (2 particle_radius)^3
+  double particle_radius = 0;  ///< world units, in (0, 1e18]: half the distance of particles at rest; each stands for
+                               ///< the rest volume (2 particle_radius)^3
   FluidKernel kernel = FluidKernel::isotropic;
   double smoothing_length = 2;  ///< in [1, 8]; the kernel reaches twice as far
   double cube_size = 0.5;       ///< width of the finest cells, in [0.05, 4]

@@ -306,6 +306,20 @@ class WithTheProgramsThemselves(unittest.TestCase):
         for case, found in rows.items():
             self.assertLess(found["mean"], 2, case)
 
+    def test_finds_the_normals_that_it_took_away(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "out.json"
+            words = ["--bin", str(PROGRAMS), "--cases", "torus-1000,torus-outliers5", "--depths", "5", "--points", "20000",
+                     "--samples", "20000", "--without-normals", "--keep", folder, "--json", str(path)]
+            result = subprocess.run([sys.executable, str(HERE / "accuracy.py"), *words], capture_output=True, text=True,
+                                    check=False)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            signs = {entry["case"]: entry["right_signs"] for entry in json.loads(path.read_text())["entries"]}
+            self.assertFalse(cases.has_normals(pathlib.Path(folder) / "torus-1000-bare.ply"))
+        self.assertEqual(signs["torus-1000"], 1)
+        self.assertGreater(signs["torus-outliers5"], 0.95)
+        self.assertLess(signs["torus-outliers5"], 1)  # half of the outliers' normals, which are random
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

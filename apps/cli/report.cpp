@@ -31,7 +31,6 @@ Json octree_json(const RunReport& run) {
 
 Json solve_json(const Record& record) {
   Json levels = Json::array();
-  if (record.options.field == FieldKind::distance) return {{"levels", levels}};  // nothing is solved for
   for (const LevelReport& level : record.run.levels) {
     levels.push_back({{"depth", level.depth},
                       {"unknowns", level.unknowns},

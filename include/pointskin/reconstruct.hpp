@@ -38,7 +38,8 @@ enum class Boundary {
 enum class FieldKind {
   poisson,   ///< screened Poisson (Kazhdan & Hoppe 2013): about 1 inside, 0 outside
   distance,  ///< signed distance to the tangent planes of the nearest samples, in finest cells, positive inside
-             ///< (Hoppe et al. 1992): nothing is solved; passes through the samples, their noise included
+             ///< (Hoppe et al. 1992), with the sides of the solved field; passes through the samples, their noise
+             ///< included
 };
 
 /// What is done about the normals that points come with.

@@ -23,6 +23,14 @@ struct Normalise {
   }
 };
 
+struct DropPlane {
+  ArrayView<const float> areas;
+  ArrayView<Vec3f> normals;
+  PSK_HD void operator()(std::int64_t i) const {
+    if (areas[i] == 0) normals[i] = {};
+  }
+};
+
 /// The samples found so far, nearest first.
 struct Nearest {
   int count = 0;
@@ -49,8 +57,10 @@ struct Nearest {
 struct DistanceAtCorner {
   /// Levels above the finest whose corners first look around themselves: cells of coarser ones hold too many samples.
   static constexpr int kLevelsAround = 2;
+  static constexpr float kLeast = 1e-6F;  ///< a value of 0 is inside
 
   TangentPlanes planes;
+  Sides sides;
 
   PSK_HD float operator()(const octree::OctreeView& tree, int depth, std::int32_t node) const {
     const octree::LevelView& level = tree.levels[depth];
@@ -58,7 +68,15 @@ struct DistanceAtCorner {
     Nearest nearest;
     const bool is_near = depth + kLevelsAround >= tree.depth && find_around(level, node, x, nearest);
     if (!is_near) find_anywhere(tree, x, nearest);
-    return -mean_distance(x, nearest) * static_cast<float>(std::int64_t{1} << tree.depth);
+    const float inwards = -mean_distance(x, nearest) * static_cast<float>(std::int64_t{1} << tree.depth);
+    return sides.values == nullptr ? inwards : on_its_side(inwards, sides.values[level.first_node + node]);
+  }
+
+  [[nodiscard]] PSK_HD float on_its_side(float inwards, float value) const {
+    const float off = value - sides.isovalue;
+    if (off > kSureSide) return inwards < 0 ? -inwards : inwards;
+    if (off < -kSureSide) return inwards >= 0 ? -inwards - kLeast : inwards;
+    return inwards;
   }
 
   PSK_HD void scan(const Vec3f& x, std::int32_t first, std::int32_t last, Nearest& nearest) const {
@@ -125,12 +143,19 @@ void normalise(Exec& ex, ArrayView<Vec3f> normals) {
 }
 
 template <exec::Space Exec>
-exec::Buffer<float> distance_to_planes(Exec& ex, const octree::OctreeData& tree, const TangentPlanes& planes) {
+void drop_planes_of_outliers(Exec& ex, ArrayView<const float> areas, ArrayView<Vec3f> normals) {
+  for_each(ex, "distance.normals", normals.size, DropPlane{areas, normals});
+}
+
+template <exec::Space Exec>
+exec::Buffer<float> distance_to_planes(Exec& ex, const octree::OctreeData& tree, const TangentPlanes& planes,
+                                       const Sides& sides) {
   const octree::OctreeView view = tree.view();
-  return fill_corners(ex, "distance.planes", view, DistanceAtCorner{planes});
+  return fill_corners(ex, "distance.planes", view, DistanceAtCorner{planes, sides});
 }
 
 PSK_INSTANTIATE(normalise);
+PSK_INSTANTIATE(drop_planes_of_outliers);
 PSK_INSTANTIATE(distance_to_planes);
 
 }  // namespace pointskin::field

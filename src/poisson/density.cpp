@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
@@ -166,7 +167,7 @@ Density weigh_samples(Exec& ex, const octree::OctreeData& tree, const WeighOptio
                  own_side.view(),
                  samples.splat_depths.view()});
   facing.reset();
-  if (options.has_signs) examine_samples(ex, tree.depth, coarsest, own_side.cview(), samples);
+  if (options.has_signs) examine_samples(ex, tree.depth, coarsest, std::move(own_side), samples);
   if (options.confidence) for_each(ex, "density.weigh", n, ScaleArea{weights.cview(), samples.areas.view()});
   return density;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "exec/atomic.hpp"
 #include "exec/this_space.hpp"
@@ -15,7 +16,21 @@ namespace {
 constexpr const char* kLabel = "density.examine";
 
 /// Words that are counted in, all in one buffer. The lonely samples are the first: `Samples` keeps the buffer for it.
-enum Word : int { kLonelyOnes, kAsked, kAlike, kOnLines, kDensity, kPairs, kWords = kPairs + NoiseBin::kCount };
+enum Word : int { kLonelyOnes, kTallies, kDensity, kPairs, kWords = kPairs + NoiseBin::kCount };
+
+/// Three counts of at most kLookedAt in one word, so that one atomic addition does for all.
+struct Tally {
+  static constexpr int kBits = 20;
+  static_assert(kLookedAt < std::int64_t{1} << kBits);
+
+  std::uint64_t asked, alike, on_lines;
+
+  PSK_HD static Tally of(std::uint64_t word) {
+    constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+    return {word & kMask, word >> kBits & kMask, word >> 2 * kBits};
+  }
+  [[nodiscard]] PSK_HD std::uint64_t word() const { return asked | alike << kBits | on_lines << 2 * kBits; }
+};
 
 /// Densities add up in fixed point, in any order the same: in samples per face of the unit cube, over the number of all
 /// samples.
@@ -35,12 +50,13 @@ struct LookAt {
     const float density = 1 / (std::abs(own_side[i]) * cell_area * static_cast<float>(n));
     exec::add(words + kDensity, static_cast<std::uint64_t>(kFixed * (density < kDensest ? density : kDensest)));
     const Seen seen = around.seen_from(i);
-    if (seen.can_tell()) exec::add(words + kAsked, 1);
-    if (seen.can_tell() && seen.faces_like_others()) exec::add(words + kAlike, 1);
-    if (i + Followed::kFourth >= n) return;
-    const Followed followed(around.positions, around.normals, i, areas[i] * cell_area);
-    if (followed.on_line) exec::add(words + kOnLines, 1);
-    if (followed.is_pair) exec::add(words + kPairs + NoiseBin::of(followed.noise2), 1);
+    Tally tally{seen.can_tell(), seen.can_tell() && seen.faces_like_others(), 0};
+    if (i + Followed::kFourth < n) {
+      const Followed followed(around.positions, around.normals, i, areas[i] * cell_area);
+      if (followed.on_line) tally.on_lines = 1;
+      if (followed.is_pair) exec::add(words + kPairs + NoiseBin::of(followed.noise2), 1);
+    }
+    exec::add(words + kTallies, tally.word());
   }
 };
 
@@ -62,9 +78,10 @@ struct Judge {
     const auto looked = static_cast<float>(looked_at);
     const float density = static_cast<float>(words[kDensity]) / kFixed / looked;
     const float usual = 1 / (density * cell_area * static_cast<float>(points));
-    const auto asked = static_cast<float>(words[kAsked]);
-    found[0] = {shift_for(words + kPairs, static_cast<float>(words[kOnLines]) / looked), kUnusualArea * usual,
-                asked >= kTelling * looked && static_cast<float>(words[kAlike]) >= kMostlyAlike * asked};
+    const Tally tally = Tally::of(words[kTallies]);
+    const auto asked = static_cast<float>(tally.asked);
+    found[0] = {shift_for(words + kPairs, static_cast<float>(tally.on_lines) / looked), kUnusualArea * usual,
+                asked >= kTelling * looked && static_cast<float>(tally.alike) >= kMostlyAlike * asked};
   }
 };
 
@@ -72,39 +89,40 @@ struct Examine {
   Around around;
   ArrayView<const Cloudwide> found;
   float cell_area, coarsest;
-  ArrayView<const float> own_side;
-  ArrayView<float> areas, splat_depths;
+  ArrayView<float> areas;
+  ArrayView<float> own_side_to_depths;  // read, then written: others still look at the depths that were
   std::uint64_t* lonely;
 
   PSK_HD void operator()(std::int64_t i) const {
     const Cloudwide cloud = found[0];
-    const float own = std::abs(own_side[i]);
+    const bool disagrees = own_side_to_depths[i] < 0;
+    const float own = std::abs(own_side_to_depths[i]);
     const float largest = cloud.largest_usual_area;
     const bool is_usual = !(own > largest);
     if (own > kLonely * largest) exec::add(lonely, 1);
     float area = own;
-    if ((!is_usual && !around.is_confirmed(i)) || is_outlier_near_others(i, cloud.is_alike)) {
+    if ((!is_usual && !around.is_confirmed(i)) || is_outlier_near_others(i, disagrees, cloud.is_alike)) {
       area = 0;
     } else if (!is_usual) {
       area = areas[i] < largest ? largest : areas[i];
     }
     areas[i] = area;
     const bool finer = cloud.shift.finer > 0 && is_bent(around.positions, around.normals, i, area * cell_area);
-    const float depth = splat_depths[i] + (finer ? cloud.shift.finer : 0.0F) - cloud.shift.coarser;
-    splat_depths[i] = depth > coarsest ? depth : coarsest;
+    const float depth = around.splat_depths[i] + (finer ? cloud.shift.finer : 0.0F) - cloud.shift.coarser;
+    own_side_to_depths[i] = depth > coarsest ? depth : coarsest;
   }
 
-  [[nodiscard]] PSK_HD bool is_outlier_near_others(std::int64_t i, bool is_alike) const {
+  [[nodiscard]] PSK_HD bool is_outlier_near_others(std::int64_t i, bool disagrees, bool is_alike) const {
     const Seen seen = around.seen_from(i);
     if (seen.stands_off(areas[i] * cell_area)) return true;
-    return is_alike && ((seen.can_tell() && !seen.faces_like_others()) || (own_side[i] < 0 && seen.none_faces_it()));
+    return is_alike && ((seen.can_tell() && !seen.faces_like_others()) || (disagrees && seen.none_faces_it()));
   }
 };
 
 }  // namespace
 
 template <exec::Space Exec>
-void examine_samples(Exec& ex, int depth, int coarsest, ArrayView<const float> own_side, Samples& samples) {
+void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_side, Samples& samples) {
   const std::int64_t n = samples.areas.size();
   const Around around{samples.positions.cview(), samples.normals.cview(), samples.splat_depths.cview()};
   const std::int64_t looked_at = std::min(kLookedAt, n);
@@ -112,12 +130,13 @@ void examine_samples(Exec& ex, int depth, int coarsest, ArrayView<const float> o
   samples.lonely = exec::make_buffer<std::uint64_t>(ex, kWords);
   exec::fill(ex, samples.lonely.view(), std::uint64_t{0});
   for_each(ex, kLabel, looked_at,
-           LookAt{around, looked_at, cell_area, own_side, samples.areas.cview(), samples.lonely.data()});
+           LookAt{around, looked_at, cell_area, own_side.cview(), samples.areas.cview(), samples.lonely.data()});
   auto found = exec::make_buffer<Cloudwide>(ex, 1);
   for_each(ex, kLabel, 1, Judge{samples.lonely.data(), n, looked_at, cell_area, found.view()});
   for_each(ex, kLabel, n,
-           Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), own_side, samples.areas.view(),
-                   samples.splat_depths.view(), samples.lonely.data() + kLonelyOnes});
+           Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), samples.areas.view(),
+                   own_side.view(), samples.lonely.data() + kLonelyOnes});
+  samples.splat_depths = std::move(own_side);
 }
 
 PSK_INSTANTIATE(examine_samples);

@@ -9,7 +9,7 @@
 namespace pointskin::poisson {
 
 /// Samples that are looked at to know the whole cloud, evenly spread over the order of the keys.
-inline constexpr std::int64_t kLookedAt = 8192;
+inline constexpr std::int64_t kLookedAt = 4096;
 
 /// Sets the areas of outliers to 0 (outliers.hpp) and gives the other samples those on their own side; adds to the splat
 /// depths what the noise of the cloud asks for (noise.hpp); counts the lonely samples in `samples.lonely`. The usual area
@@ -19,10 +19,10 @@ inline constexpr std::int64_t kLookedAt = 8192;
 /// @param depth     of the octree
 /// @param coarsest  depth below which splat depths do not fall
 /// @param own_side  shape (n), areas on the own side (own_side.hpp), finest cells^2; negative for a sample that disagrees
-///                  with those around it
+///                  with those around it. The depths go there
 /// @param samples   positions, unit normals, areas > 0 and splat depths in key order
 /// O(n), deterministic, the same bits on every device. Four launches; does not wait.
 template <exec::Space Exec>
-void examine_samples(Exec& ex, int depth, int coarsest, ArrayView<const float> own_side, Samples& samples);
+void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_side, Samples& samples);
 
 }  // namespace pointskin::poisson

@@ -84,24 +84,29 @@ struct Shift {
 /// @param pairs  shape (NoiseBin::kCount), numbers of pairs
 /// @param lines  share of the samples that lie on lines
 PSK_HD inline Shift shift_for(const std::uint64_t* pairs, float lines) {
-  constexpr float kOfGaussian = 0.674F;  // the median of |x|
-  float all = 0;
-  PSK_UNROLL_BY_4 for (int bin = 0; bin < NoiseBin::kCount; ++bin) all += static_cast<float>(pairs[bin]);
+  constexpr float kOfGaussian = 0.674F;    // the median of |x|
+  std::uint32_t counts[NoiseBin::kCount];  // in registers: a read that waits for the one before takes longer
+  std::uint32_t all = 0;
+  PSK_UNROLL
+  for (int bin = 0; bin < NoiseBin::kCount; ++bin) {
+    counts[bin] = static_cast<std::uint32_t>(pairs[bin]);
+    all += counts[bin];
+  }
   if (all == 0) return {0, 0};
   int median = 0;  // the bin that half of the pairs end in
-  float in_it = 0;
-  float before = 0;
-  float sum = 0;
-  PSK_UNROLL_BY_4 for (int bin = 0; bin < NoiseBin::kCount; ++bin) {
-    const auto count = static_cast<float>(pairs[bin]);
-    if (sum < 0.5F * all && count > 0) {
+  std::uint32_t in_it = 0;
+  std::uint32_t before = 0;
+  std::uint32_t sum = 0;
+  PSK_UNROLL
+  for (int bin = 0; bin < NoiseBin::kCount; ++bin) {
+    if (2 * sum < all && counts[bin] > 0) {
       median = bin;
-      in_it = count;
+      in_it = counts[bin];
       before = sum;
     }
-    sum += count;
+    sum += counts[bin];
   }
-  const float within = (0.5F * all - before) / in_it;
+  const float within = (0.5F * static_cast<float>(all) - static_cast<float>(before)) / static_cast<float>(in_it);
   const float lower = median > 0 ? NoiseBin::value(median) : 0.0F;
   const float noise = std::sqrt(lower + within * (NoiseBin::value(median + 1) - lower)) / kOfGaussian;
   return {kFiner * (1 - ramp(noise, kClean, kSomeNoise)) * (1 - ramp(lines, kNoLines, kLines)),

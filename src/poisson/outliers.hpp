@@ -85,7 +85,7 @@ struct Around {
   ArrayView<const Vec3f> positions, normals;
   ArrayView<const float> splat_depths;
 
-  /// Calls visit(normal, step) for every neighbour, with its normal and the way to it. Both are read before it is known
+  /// Calls visit(neighbour, normal, step) for every neighbour, with its normal and the way to it. Both are read before it is known
   /// whether it is near: reads that wait for others take longer.
   template <class Visit>
   PSK_HD void operator()(std::int64_t i, const Visit& visit) const {
@@ -96,15 +96,26 @@ struct Around {
     PSK_UNROLL_BY_4 for (std::int64_t j = first; j < end; ++j) {
       const Vec3f step = positions[j] - here;
       const Vec3f normal = normals[j];
-      if (j != i && squared_length(step) < near * near) visit(normal, step);
+      if (j != i && squared_length(step) < near * near) visit(j, normal, step);
     }
   }
 
+  /// Whether the neighbours confirm a sample, and one of them is confirmed by its own: of outliers far from the surface
+  /// some confirm a third by chance, but seldom each other.
   [[nodiscard]] PSK_HD bool is_confirmed(std::int64_t i) const {
+    if (!do_neighbours_confirm(i)) return false;
+    bool among_confirmed = false;
+    (*this)(i, [&](std::int64_t j, const Vec3f& /*normal*/, const Vec3f& /*step*/) {
+      among_confirmed = among_confirmed || do_neighbours_confirm(j);
+    });
+    return among_confirmed;
+  }
+
+  [[nodiscard]] PSK_HD bool do_neighbours_confirm(std::int64_t i) const {
     const Vec3f own = normals[i];
     int neighbours = 0;
     int confirming = 0;
-    (*this)(i, [&](const Vec3f& normal, const Vec3f& step) {
+    (*this)(i, [&](std::int64_t /*j*/, const Vec3f& normal, const Vec3f& step) {
       const float cosine = dot(own, normal);
       if (cosine < kOtherSideCosine) return;
       ++neighbours;
@@ -118,7 +129,7 @@ struct Around {
   [[nodiscard]] PSK_HD Seen seen_from(std::int64_t i) const {
     const Vec3f own = normals[i];
     Seen seen;
-    (*this)(i, [&](const Vec3f& normal, const Vec3f& step) {
+    (*this)(i, [&](std::int64_t /*j*/, const Vec3f& normal, const Vec3f& step) {
       const float cosine = dot(own, normal);
       ++seen.neighbours;
       if (cosine > kAlikeCosine) ++seen.alike;

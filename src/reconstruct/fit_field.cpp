@@ -119,60 +119,46 @@ void look_at_fit(Exec& ex, const poisson::Samples& samples, const Options& optio
   field.seen = diagnose::read_counts(ex, field.counts);
 }
 
-/// The report of a field that nothing was solved for.
-void report_octree(const octree::OctreeData& tree, RunReport& report) {
-  std::vector<poisson::LevelSolve> levels(static_cast<std::size_t>(tree.depth) + 1);
-  for (int d = 0; d <= tree.depth; ++d) levels[static_cast<std::size_t>(d)].depth = d;
-  report_levels(tree, levels, report);
+/// The tangent planes of the samples that are no outliers.
+struct Planes {
+  exec::Buffer<Vec3f> normals;
+  exec::Buffer<float> weights;  ///< with Options::confidence
+};
+
+template <exec::Space Exec>
+Planes planes_of(Exec& ex, const poisson::Samples& samples, exec::Buffer<float> weights) {
+  Planes planes{exec::make_buffer<Vec3f>(ex, samples.normals.size()), std::move(weights)};
+  copy(ex, samples.normals.cview(), planes.normals.view());
+  field::drop_planes_of_outliers(ex, samples.areas.cview(), planes.normals.view());
+  return planes;
 }
 
-/// Samples to signed distance (P10), once frame, tree and channels of `field` are there.
+/// Solved field to signed distance (P10): distances to planes, on the sides that the solved field tells.
 template <exec::Space Exec>
-void fit_distance(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const Options& options, FieldData& field,
-                  RunReport& report) {
-  PhaseClock clock(ex);
-  poisson::Samples& samples = sorted.samples;
-  const bool has_attributes = !field.attributes.names.empty();
-  announce(options.progress, "splat", 0.25);
-  exec::Buffer<float> weights;
-  if (options.confidence) weights = poisson::confidence_weights(ex, samples.normals.cview());
-  field::normalise(ex, samples.normals.view());
-  if (options.density || options.trim != 0 || setup.keep_all)
-    field.density = poisson::splat_density(ex, field.tree, samples.positions.cview());
-  look_at_samples(ex, samples, setup, options, field);
-  clock.lap(report.splat_ms);
-
-  announce(options.progress, "solve", 0.45);
-  field.values =
-      field::distance_to_planes(ex, field.tree, {samples.positions.cview(), samples.normals.cview(), weights.cview()});
+void measure_distances(Exec& ex, ArrayView<const Vec3f> positions, const Planes& planes, FieldData& field) {
+  field.values = field::distance_to_planes(ex, field.tree, {positions, planes.normals.cview(), planes.weights.cview()},
+                                           {field.values.data(), static_cast<float>(field.isovalue)});
   field.isovalue = 0;
-  if (!field.counts.empty()) look_at_fit(ex, samples, options, field);
-  if (setup.keeps_samples()) {
-    field.samples.normals = std::move(samples.normals);
-    keep_samples(ex, samples, std::move(sorted.added), field.samples);
-  }
-  if (has_attributes) {
-    field.attributes.weights = std::move(weights);
-    field.attributes.positions = std::move(samples.positions);
-  }
-  clock.lap(report.solve_ms);
-  clock.read();
-  report.isovalue = 0;
-  report_octree(field.tree, report);
+  field.resolution = {};
 }
 
-/// Samples to the screened Poisson field (P4 to P8), once frame, tree and channels of `field` are there.
+/// Samples to the screened Poisson field (P4 to P8), and on to the signed distance (P10) if that is asked for, once frame,
+/// tree and channels of `field` are there.
 template <exec::Space Exec>
-void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const Options& options, FieldData& field,
+void fit_samples(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const Options& options, FieldData& field,
                  RunReport& report) {
   PhaseClock clock(ex);
   poisson::Samples& samples = sorted.samples;
   const bool has_attributes = !field.attributes.names.empty();
+  const bool is_distance = options.field == FieldKind::distance;
   announce(options.progress, "splat", 0.25);
-  if (has_attributes && options.confidence)
-    field.attributes.weights = poisson::confidence_weights(ex, samples.normals.cview());
+  exec::Buffer<float> weights;
+  if ((has_attributes || is_distance) && options.confidence)
+    weights = poisson::confidence_weights(ex, samples.normals.cview());
   field.density = poisson::weigh_samples(ex, field.tree, {options.samples_per_node, options.confidence}, samples);
   field.resolution = poisson::find_resolution(ex, field.tree, samples);
+  Planes planes;
+  if (is_distance) planes = planes_of(ex, samples, std::move(weights));
   look_at_samples(ex, samples, setup, options, field);
   const bool keeps_density = options.density || options.weakness || options.trim != 0 || setup.keep_all;
   if (!keeps_density && !setup.look && !setup.drop_specks) field.density.counts.reset();
@@ -193,7 +179,7 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   exec::Buffer<std::uint8_t> free_unknowns = find_free_unknowns(ex, tree, field, options);
   solving.free_unknowns = free_unknowns.cview();
   exec::Buffer<std::int32_t> matches;
-  if (setup.before != nullptr && may_start_from(*setup.before, field)) {
+  if (setup.before != nullptr && !is_distance && may_start_from(*setup.before, field)) {
     solving.previous.tree = setup.before->resolution.view(setup.before->tree);
     solving.previous.u = setup.before->values.data();
     matches = poisson::match_bricks(ex, tree, solving.previous.tree);
@@ -207,12 +193,16 @@ void fit_poisson(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   screening = {};
   field.isovalue = find_isovalue(ex, field, solution.u.cview(), samples, sorted.added.cview(), report);
   field.values = std::move(solution.u);
+  if (is_distance) measure_distances(ex, samples.positions.cview(), planes, field);
   if (!field.counts.empty()) look_at_fit(ex, samples, options, field);
   if (!keeps_density && !picks_pieces_by_support(field, options)) field.density.counts.reset();
   if (setup.keeps_samples()) keep_samples(ex, samples, std::move(sorted.added), field.samples);
   if (options.weakness)
     field.weakness = weakness_scale(ex, field.tree, field.density, field.values.data(), samples.positions.cview());
-  if (has_attributes) field.attributes.positions = std::move(samples.positions);
+  if (has_attributes) {
+    field.attributes.weights = std::move(is_distance ? planes.weights : weights);
+    field.attributes.positions = std::move(samples.positions);
+  }
   clock.lap(report.solve_ms);
   clock.read();
 
@@ -238,10 +228,7 @@ FieldData fit_to_points(Exec& ex, PointBuffers& points, const FitSetup& setup, c
   field.tree = octree::build_octree(ex, sorted.keys.cview(), options.depth);
   sorted.keys.reset();
   clock.lap(report.octree_ms);
-  if (options.field == FieldKind::distance)
-    fit_distance(ex, sorted, setup, options, field, report);
-  else
-    fit_poisson(ex, sorted, setup, options, field, report);
+  fit_samples(ex, sorted, setup, options, field, report);
   clock.read();
   return field;
 }

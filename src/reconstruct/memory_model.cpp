@@ -92,9 +92,7 @@ struct Model {
   [[nodiscard]] bool has_envelope() const { return options.envelope != nullptr; }
   [[nodiscard]] bool trims() const { return options.trim != 0; }
   [[nodiscard]] bool picks_pieces() const { return options.largest || options.min_component > 0; }
-  [[nodiscard]] std::int64_t kept_counts() const {
-    return !is_distance() || options.density || trims() ? kNodeValue * counted_bricks : 0;
-  }
+  [[nodiscard]] std::int64_t kept_counts() const { return kNodeValue * counted_bricks; }
   [[nodiscard]] std::int64_t vertices() const {
     // Of a complete finest level, a surface meets fewer cells than of a band around it.
     const std::int64_t near = depth() > octree::kCompleteDepth ? bricks : 3 * bricks / 4;
@@ -111,9 +109,7 @@ struct Model {
   }
 
   /// What is there from the tree to the mesh.
-  [[nodiscard]] std::int64_t kept() const {
-    return tree() + (is_distance() ? 0 : kResolution * bricks) + kept_attributes();
-  }
+  [[nodiscard]] std::int64_t kept() const { return tree() + kResolution * bricks + kept_attributes(); }
   /// Positions of the samples, for their attributes.
   [[nodiscard]] std::int64_t kept_positions() const { return attributes.count > 0 ? kUnit * points : 0; }
   /// The solved field.
@@ -141,26 +137,28 @@ struct Model {
   [[nodiscard]] std::int64_t build_tree() const { return (kSorted + kKey) * points + kept_attributes() + tree(); }
 
   [[nodiscard]] std::int64_t density() const {
-    if (is_distance() && !options.density && !trims()) return 0;
     const std::int64_t counts = kNodeValue * counted_bricks;
     const std::int64_t hats = kHats * level(counted_depth()).cell_bricks;
-    if (is_distance()) return kSorted * points + kept() + counts + hats;
     constexpr std::int64_t kComponents = 4;  // of the sums of normals
     return (kWeighed + kArea) * points + kept() + counts + kComponents * (counts + hats);
   }
 
-  /// Signed distance: the samples, whose weights, with attributes, are counted there, and a value a node.
+  /// Planes for the signed distance, and their weights, which with attributes are counted there.
+  [[nodiscard]] std::int64_t planes() const {
+    const std::int64_t weight = options.confidence && attributes.count == 0 ? kShare : 0;
+    return is_distance() ? (kUnit + weight) * points : 0;
+  }
+  /// The solved field and the distances.
   [[nodiscard]] std::int64_t distance() const {
     if (!is_distance()) return 0;
-    const std::int64_t weight = options.confidence && attributes.count == 0 ? kShare : 0;
-    return (kSorted + weight) * points + kept() + kept_counts() + kNodeValue * bricks;
+    return kCollapsed * points + planes() + kept() + kept_counts() + 2 * kNodeValue * bricks;
   }
 
   /// The vector field of the finest level, the divergence of all and, once more, of the coarser ones, as if there were
   /// samples for them.
   [[nodiscard]] std::int64_t splat() const {
     const bool trusts = options.screening > 0 && !options.fixed_screening;
-    return (kWeighed + (trusts ? kTrust : 0)) * points + kept() + kept_counts() +
+    return (kWeighed + (trusts ? kTrust : 0)) * points + planes() + kept() + kept_counts() +
            kNodeValue * (2 * bricks + 2 * level(depth()).bricks);
   }
 
@@ -169,12 +167,13 @@ struct Model {
     const std::int64_t screening =
         options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
     const std::int64_t free = options.boundary == Boundary::dirichlet || has_envelope() ? kFree * bricks : 0;
-    return kCollapsed * points + kept() + kept_counts() + screening + free + kNodeValue * (2 * bricks + most_bricks);
+    return kCollapsed * points + planes() + kept() + kept_counts() + screening + free +
+           kNodeValue * (2 * bricks + most_bricks);
   }
 
   [[nodiscard]] std::int64_t isovalue() const {
     const std::int64_t inside = has_envelope() ? kArea * points : 0;
-    return kCollapsed * points + inside + kept() + kept_counts() + kNodeValue * bricks +
+    return kCollapsed * points + inside + planes() + kept() + kept_counts() + kNodeValue * bricks +
            kWeightedValues * level(depth()).cell_bricks;
   }
 
@@ -189,7 +188,7 @@ struct Model {
 
   /// Spacing at the samples.
   [[nodiscard]] std::int64_t trim_limit() const {
-    return trims() ? (kWeighed + kSpacing) * points + kept() + kept_counts() : 0;
+    return trims() ? (kWeighed + kSpacing) * points + planes() + kept() + kept_counts() : 0;
   }
 
   /// The larger of: pieces and their areas; the triangles that stay, as if all did.
@@ -227,22 +226,19 @@ struct Model {
 
 std::vector<PhaseBytes> model_memory(const RunSize& size, const Options& options) {
   const Model model(size, options);
-  if (model.is_distance())
-    return {{"sort", model.sort()},
-            {"find bricks", model.find_bricks()},
-            {"build tree", model.build_tree()},
-            {"density", model.density()},
-            {"trim limit", model.trim_limit()},
-            {"distance", model.distance()},
-            {"extract", model.extract()},
-            {"trim", model.trim()},
-            {"pieces", model.pick_pieces()},
-            {"interpolate", model.interpolate()},
-            {"labels", model.find_labels()}};
-  return {{"sort", model.sort()},         {"find bricks", model.find_bricks()}, {"build tree", model.build_tree()},
-          {"density", model.density()},   {"trim limit", model.trim_limit()},   {"splat", model.splat()},
-          {"solve", model.solve()},       {"isovalue", model.isovalue()},       {"extract", model.extract()},
-          {"trim", model.trim()},         {"pieces", model.pick_pieces()},      {"interpolate", model.interpolate()},
+  return {{"sort", model.sort()},
+          {"find bricks", model.find_bricks()},
+          {"build tree", model.build_tree()},
+          {"density", model.density()},
+          {"trim limit", model.trim_limit()},
+          {"splat", model.splat()},
+          {"solve", model.solve()},
+          {"isovalue", model.isovalue()},
+          {"distance", model.distance()},
+          {"extract", model.extract()},
+          {"trim", model.trim()},
+          {"pieces", model.pick_pieces()},
+          {"interpolate", model.interpolate()},
           {"labels", model.find_labels()}};
 }
 

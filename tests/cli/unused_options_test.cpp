@@ -97,11 +97,6 @@ class UnusedOptions : public testing::Test {
 TEST_F(UnusedOptions, OfTheSurface) {
   const Args base = {"reconstruct", "scan.ply", "-o", "out.ply", "--depth", "3", "-q"};
   expect_unused(base, {"--island-ratio", "0.2"}, "--island-ratio has no effect without --trim");
-  const Args distance = joined(base, {"--field", "distance"});
-  for (const Args& more :
-       {Args{"--screening", "5"}, Args{"--pointWeight", "5"}, Args{"--fixed-screening"}, Args{"--iterations", "2"},
-        Args{"--iters", "2"}, Args{"--samples-per-node", "5"}, Args{"--samplesPerNode", "5"}})
-    expect_unused(distance, more, more[0] + " has no effect with --field distance");
   expect_unused(joined(base, {"--screening", "0"}), {"--fixed-screening"},
                 "--fixed-screening has no effect with --screening 0");
   expect_unused(joined(base, {"--boundary", "dirichlet"}), {"--open"},

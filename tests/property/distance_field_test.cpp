@@ -78,8 +78,7 @@ TEST(DistanceField, PassesThroughCleanSamples) {
     ASSERT_EQ(outcome.report.levels.size(), static_cast<std::size_t>(depth) + 1);
     for (const LevelReport& level : outcome.report.levels) {
       EXPECT_GT(level.nodes, 0);
-      EXPECT_EQ(level.unknowns, 0);
-      EXPECT_EQ(level.iterations, 0);
+      EXPECT_GT(level.iterations, 0);
     }
   }
 }

@@ -44,10 +44,8 @@ void warn_unused(const GivenOptions& given, std::initializer_list<const char*> o
 }
 
 void warn_about_unused(const GivenOptions& given, const Options& options, const std::string& output, bool reports) {
-  if (options.field == FieldKind::distance)
-    warn_unused(given, {"--cold"}, "with --field distance");
-  if (options.screening == 0)
-    warn_unused(given, {"--fixed-screening"}, "with --screening 0");
+  if (options.field == FieldKind::distance) warn_unused(given, {"--cold"}, "with --field distance");
+  if (options.screening == 0) warn_unused(given, {"--fixed-screening"}, "with --screening 0");
   if (options.boundary == Boundary::dirichlet) warn_unused(given, {"--open"}, "with --boundary dirichlet");
   if (options.trim == 0) warn_unused(given, {"--island-ratio"}, "without --trim");
   warn_about_format(given, output, reports);

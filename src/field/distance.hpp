@@ -35,7 +35,10 @@ struct Sides {
 /// Of 1, the step of a solved field at the surface.
 inline constexpr float kSureSide = 0.01F;
 
-/// Takes the planes of samples away that have no area: their normals become 0. O(n).
+/// Takes the planes of samples away that have no area: their normals become 0.
+/// @param areas    shape (n), finest cells^2
+/// @param normals  shape (n)
+/// O(n), deterministic; does not wait.
 template <exec::Space Exec>
 void drop_planes_of_outliers(Exec& ex, ArrayView<const float> areas, ArrayView<Vec3f> normals);
 
@@ -47,9 +50,8 @@ void normalise(Exec& ex, ArrayView<Vec3f> normals);
 /// samples p_i that have a plane, nearest first, w_i their weights and K = kNearestSamples of them:
 ///   value(x) = - 2^D sum a_i (x - p_i) . n_i / sum a_i,   a_i = w_i (1 - |x - p_i|^2 / |x - p_K|^2)^2
 /// (a_i = w_i if that sums to 0, or if there are fewer than K samples), with the sign of `sides` where these are sure.
-/// Corners that are no unknowns of their level
-/// hold the interpolation of the level above. Nearest samples are exact; of two at one distance the first in the
-/// octree's order is nearer.
+/// Corners that are no unknowns of their level hold the interpolation of the level above. Nearest samples are exact; of
+/// two at one distance the first in the octree's order is nearer.
 /// @throws Error over_limit if memory runs out
 /// Near samples O(64 cells) a corner, else a walk from the root; one or two launches a level. Deterministic: the same
 /// bits on every device.

@@ -19,7 +19,7 @@ inline constexpr std::int64_t kLookedAt = 4096;
 /// @param depth     of the octree
 /// @param coarsest  depth below which splat depths do not fall
 /// @param own_side  shape (n), areas on the own side (own_side.hpp), finest cells^2; negative for a sample that disagrees
-///                  with those around it. The depths go there
+///                  with those around it. Its buffer becomes that of the splat depths
 /// @param samples   positions, unit normals, areas > 0 and splat depths in key order
 /// O(n), deterministic, the same bits on every device. Four launches; does not wait.
 template <exec::Space Exec>

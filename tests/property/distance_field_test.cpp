@@ -57,6 +57,30 @@ TEST(DistanceField, GivesOneClosedSurfaceForEveryShape) {
     }
 }
 
+/// 20,000 points of a torus, and `count` anywhere in its box that face any way.
+Cloud torus_among_outliers(int count) {
+  Cloud cloud = test::torus_cloud(20'000, 19);
+  test::Random random(20);
+  const auto anywhere = [&](double lower, double upper) { return static_cast<float>(random.in(lower, upper)); };
+  for (int i = 0; i < count; ++i) {
+    const Vec3d n = random.direction();
+    cloud.positions.push_back({anywhere(-1.3, 1.3), anywhere(-1.3, 1.3), anywhere(-0.8, 0.8)});
+    cloud.normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
+  }
+  return cloud;
+}
+
+TEST(DistanceField, GivesOneSurfaceAmongOutliers) {
+  for (const int outliers : {20, 200, 1000}) {
+    SCOPED_TRACE(outliers);
+    const MeshReport measured = measure(reconstructed(torus_among_outliers(outliers), distance_options(7)));
+    EXPECT_TRUE(measured.closed());
+    EXPECT_TRUE(measured.manifold());
+    EXPECT_EQ(measured.components, 1);
+    EXPECT_EQ(measured.euler, 0);
+  }
+}
+
 TEST(DistanceField, OfASphereIsItsSignedDistanceInCells) {
   const Cloud cloud = test::sphere_cloud(100'000, 8);
   const Options options = distance_options(7);
@@ -91,6 +115,17 @@ TEST(DistanceField, DoesNotDependOnThreadsOrOrder) {
   const Mesh once = reconstructed(cloud, options, 1);
   expect_same_bytes(once, reconstructed(cloud, options, 3));
   expect_same_bytes(once, reconstructed(test::shuffled(cloud, 13), options));
+}
+
+TEST(AmongOutliers, MeshesDoNotDependOnThreadsOrOrder) {
+  const Cloud cloud = torus_among_outliers(2000);
+  for (const FieldKind field : {FieldKind::poisson, FieldKind::distance}) {
+    Options options{{.depth = 6}};
+    options.field = field;
+    const Mesh once = reconstructed(cloud, options, 1);
+    for (int run = 0; run < 8; ++run) expect_same_bytes(once, reconstructed(cloud, options, 4));
+    expect_same_bytes(once, reconstructed(test::shuffled(cloud, 22), options));
+  }
 }
 
 TEST(DistanceField, IsTrimmedWhereSamplesEnd) {

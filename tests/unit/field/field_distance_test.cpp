@@ -109,6 +109,44 @@ TEST(DistanceToPlanes, DoesWithFewerSamplesThanItTakes) {
   expect_planes(tree, {});
 }
 
+TEST(DistanceToPlanes, IsOnTheSideOfAFieldWhereThatIsSure) {
+  SmallTree tree = test::sphere_tree(700, 0.4, 6);
+  const field::TangentPlanes planes{tree.samples.positions.cview(), tree.samples.normals.cview(), {}};
+  const exec::Buffer<float> without = field::distance_to_planes(tree.ex, tree.tree, planes);
+  auto sides = exec::make_buffer<float>(tree.ex, tree.view.nodes);
+  constexpr float kIsovalue = 0.5F;
+  constexpr float kOffsets[] = {-0.4F, -0.9F * field::kSureSide, 0.9F * field::kSureSide, 0.4F};
+  const auto offset = [&](std::int64_t node) { return kOffsets[node % 4]; };
+  for (std::int64_t i = 0; i < tree.view.nodes; ++i) sides.data()[i] = kIsovalue + offset(i);
+  const exec::Buffer<float> with = field::distance_to_planes(tree.ex, tree.tree, planes, {sides.data(), kIsovalue});
+  const octree::LevelView& finest = tree.view.levels[tree.view.depth];
+  std::int64_t turned = 0;
+  for (std::int64_t i = 0; i < finest.nodes(); ++i) {
+    if (!test::in_cube(finest, test::corner_at(finest, i)) || !test::is_unknown(finest, i)) continue;
+    const std::int64_t node = finest.first_node + i;
+    const float value = with.data()[node];
+    ASSERT_NEAR(std::abs(value), std::abs(without.data()[node]), 1e-5);
+    if (std::abs(offset(node)) < field::kSureSide)
+      ASSERT_EQ(value, without.data()[node]);
+    else
+      ASSERT_EQ(value >= 0, offset(node) > 0);
+    turned += (value >= 0) != (without.data()[node] >= 0);
+  }
+  EXPECT_GT(turned, finest.nodes() / 20);
+}
+
+TEST(DropPlanesOfOutliers, TakesTheNormalsOfSamplesWithoutArea) {
+  exec::Cpu ex(1);
+  auto normals = exec::make_buffer<Vec3f>(ex, 3);
+  auto areas = exec::make_buffer<float>(ex, 3);
+  for (int i = 0; i < 3; ++i) normals.data()[i] = {0, 0, 1};
+  areas.data()[0] = 1, areas.data()[1] = 0, areas.data()[2] = 1e-30F;
+  field::drop_planes_of_outliers(ex, areas.cview(), normals.view());
+  EXPECT_EQ(normals.data()[0], (Vec3f{0, 0, 1}));
+  EXPECT_EQ(normals.data()[1], Vec3f{});
+  EXPECT_EQ(normals.data()[2], (Vec3f{0, 0, 1}));
+}
+
 TEST(Normalise, MakesUnitLengthsAndKeepsZeros) {
   exec::Cpu ex(1);
   auto normals = exec::make_buffer<Vec3f>(ex, 3);

@@ -97,6 +97,16 @@ TEST(Outliers, ActLikeAFewSamplesAtMostAndTheSurfaceStays) {
   }
 }
 
+TEST(Outliers, AreNotConfirmedByTwoThatNothingConfirms) {
+  test::Random random(8);
+  Points points;
+  points.add_sphere(random, 10'000, -1, 1);
+  points.add({0.9F, 0.86F, 0.9F}, {0.7F, 0, 0.7F});  // agrees with the next, but not with the last
+  points.add({0.9F, 0.9F, 0.9F}, {0, 0, 1});
+  points.add({0.9F, 0.94F, 0.9F}, {-0.7F, 0, 0.7F});
+  EXPECT_EQ(without_area(Weighed(points)), 3);
+}
+
 TEST(Outliers, AreSeldomTheSamplesOfASparsePart) {
   test::Random random(3);
   Points points;

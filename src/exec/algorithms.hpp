@@ -51,6 +51,7 @@ struct ReduceLane {
 };
 
 struct Plus {
+  static constexpr bool kAnyOrder = true;
   PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
 };
 
@@ -79,12 +80,14 @@ T read_element(Exec& ex, ArrayView<const T> from, std::int64_t i) {
 /// The rest of reduce: combines the lanes' values, of which there is at least one, to one element.
 template <class T, Space Exec, class Combine>
 Buffer<T> reduce_lane_values(Exec& ex, const char* label, Buffer<T> sums, Combine combine) {
+  if constexpr (Exec::kOwnKernels && AnyOrder<Combine>)
+    return reduce_any_order<T>(ex, label, sums.size(), LoadValue<T>{sums.cview()}, combine);
   std::int64_t lanes = sums.size();
   while (lanes > kReduceTail) {
     const std::int64_t fewer = reduce_lanes(lanes);
     Buffer<T> next = make_buffer<T>(ex, fewer);
-    for_each(ex, label, fewer,
-             detail::ReduceLane<T, LoadValue<T>, Combine>{{sums.cview()}, combine, lanes, fewer, next.view()});
+    for_each_long(ex, label, fewer,
+                  detail::ReduceLane<T, LoadValue<T>, Combine>{{sums.cview()}, combine, lanes, fewer, next.view()});
     sums = std::move(next);
     lanes = fewer;
   }
@@ -96,12 +99,13 @@ Buffer<T> reduce_lane_values(Exec& ex, const char* label, Buffer<T> sums, Combin
 
 /// combine over f(0), ..., f(n-1) for n > 0, in the order of exec/reduce_order.hpp, which depends on n alone: the same
 /// bits in every space and for every number of threads. One element, in the space's memory: for work that follows.
-/// About n calls of f; O(log n) launches; does not wait.
+/// A GPU takes combinations that are AnyOrder by blocks of threads. About n calls of f; O(log n) launches; does not wait.
 template <class T, Space Exec, class F, class Combine>
 Buffer<T> reduce_in_space(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
+  if constexpr (Exec::kOwnKernels && AnyOrder<Combine>) return reduce_any_order<T>(ex, label, n, f, combine);
   const std::int64_t lanes = reduce_lanes(n);
   Buffer<T> sums = make_buffer<T>(ex, lanes);
-  for_each(ex, label, lanes, detail::ReduceLane<T, F, Combine>{f, combine, n, lanes, sums.view()});
+  for_each_long(ex, label, lanes, detail::ReduceLane<T, F, Combine>{f, combine, n, lanes, sums.view()});
   return reduce_lane_values(ex, label, std::move(sums), combine);
 }
 

@@ -46,6 +46,12 @@ void for_each_apart(Cpu& ex, const char* label, std::int64_t n, const F& f) {
   for_each(ex, label, n, f);
 }
 
+/// The same: on a CPU indices are shared out in blocks however many they are.
+template <class F>
+void for_each_long(Cpu& ex, const char* label, std::int64_t n, const F& f) {
+  for_each(ex, label, n, f);
+}
+
 /// Calls f.finish(i, sum of its parts) for every i in [0, n); see exec/lanes.hpp.
 template <class F>
 void for_each_by_lanes(Cpu& ex, const char* label, std::int64_t n, const F& f) {

@@ -57,6 +57,25 @@ void for_each_apart(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   for_each(ex, label, n * lanes, OneOfLanes<F>{f, lanes});
 }
 
+template <class F>
+__global__ void __launch_bounds__(kWarp) for_each_long_kernel(std::int64_t n, const F f) {
+  const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * kWarp + threadIdx.x;
+  if (i < n) f(i);
+}
+
+/// for_each for few indices that take long: in blocks of one warp, with no more of them in a warp than it takes to give
+/// every multiprocessor some.
+template <class F>
+void for_each_long(Cuda& ex, const char* label, std::int64_t n, const F& f) {
+  constexpr std::int64_t kRoom = 4 * kWarp;  // threads a multiprocessor
+  if (n <= 0) return;
+  unsigned lanes = kWarp;
+  while (lanes > 1 && n * lanes > kRoom * ex.multiprocessors()) lanes /= 2;
+  const std::int64_t blocks = (n * lanes + kWarp - 1) / kWarp;
+  for_each_long_kernel<<<static_cast<unsigned>(blocks), kWarp, 0, stream_of(ex)>>>(n * lanes, OneOfLanes<F>{f, lanes});
+  cuda_check(cudaGetLastError(), label);
+}
+
 /// `value` of the lane whose number differs in the bits of `mask`.
 template <class T>
 __device__ T shuffled(const T& value, int mask) {
@@ -116,7 +135,9 @@ inline constexpr int kSweepThreads = 512;  // enough for the nodes of a complete
 
 template <class F>
 __global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n, const F f) {
-  const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  // Indices next to each other lie in different blocks: where a round has few of them, all multiprocessors share them.
+  const auto thread = static_cast<int>(threadIdx.x);
+  const int i = (thread / kWarp * static_cast<int>(gridDim.x) + static_cast<int>(blockIdx.x)) * kWarp + thread % kWarp;
   const bool takes_part = i < n && f.takes_part(i);
   const auto prepared = f.prepare(takes_part ? i : 0);
   for (int round = 0; round < rounds; ++round) {
@@ -125,8 +146,10 @@ __global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n,
   }
 }
 
+/// Threads of a block, so that every multiprocessor has at most one.
 inline std::int64_t sweep_threads(const Cuda& ex, std::int64_t n) {
-  return n <= std::int64_t{ex.multiprocessors()} * kThreadsPerBlock ? kThreadsPerBlock : kSweepThreads;
+  const std::int64_t warps = (n + kWarp - 1) / kWarp;
+  return kWarp * ((warps + ex.multiprocessors() - 1) / ex.multiprocessors());
 }
 
 /// True if a sweep over n items takes one launch.
@@ -158,15 +181,23 @@ void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) 
   cuda_check(cudaLaunchKernelEx(&config, sweep_kernel<F>, rounds, static_cast<int>(n), f), label);
 }
 
+inline constexpr int kTailThreads = 128;
+
 /// One block combines up to kReduceTail values as exec::reduce documents: 64 a lane, until one is left.
 template <class T, class Combine>
-__global__ void __launch_bounds__(kReduceTail / kReduceLane)
+__global__ void __launch_bounds__(kTailThreads)
     reduce_tail_kernel(ArrayView<const T> values, ArrayView<T> out, const Combine combine) {
-  __shared__ alignas(16) unsigned char memory[sizeof(T) * (kReduceTail / kReduceLane)];
+  static_assert(kReduceTail / kReduceLane <= kTailThreads);
+  constexpr bool kFits = sizeof(T) * kReduceTail <= 32768;
+  __shared__ alignas(16) unsigned char memory[sizeof(T) * (kFits ? kReduceTail : kTailThreads)];
   T* const sums = reinterpret_cast<T*>(memory);
   const int lane = static_cast<int>(threadIdx.x);
-  auto lanes = static_cast<int>(reduce_lanes(values.size));
-  if (lane < lanes) sums[lane] = combine_lane(LoadValue<T>{values}, combine, values.size, lanes, lane);
+  auto lanes = static_cast<int>(kFits ? values.size : reduce_lanes(values.size));
+  if constexpr (kFits) {
+    for (int i = lane; i < lanes; i += kTailThreads) sums[i] = values[i];
+  } else if (lane < lanes) {
+    sums[lane] = combine_lane(LoadValue<T>{values}, combine, values.size, lanes, lane);
+  }
   __syncthreads();
   while (lanes > 1) {
     const auto fewer = static_cast<int>(reduce_lanes(lanes));
@@ -183,8 +214,51 @@ __global__ void __launch_bounds__(kReduceTail / kReduceLane)
 /// out[0] = the combination of at most kReduceTail values, in the order of exec::reduce. Asynchronous.
 template <class T, class Combine>
 void reduce_tail(Cuda& ex, const char* label, ArrayView<const T> values, ArrayView<T> out, const Combine& combine) {
-  reduce_tail_kernel<<<1, kReduceTail / kReduceLane, 0, stream_of(ex)>>>(values, out, combine);
+  reduce_tail_kernel<<<1, kTailThreads, 0, stream_of(ex)>>>(values, out, combine);
   cuda_check(cudaGetLastError(), label);
+}
+
+inline constexpr int kReducePerThread = 8;
+
+/// A block combines kThreadsPerBlock * kReducePerThread values.
+template <class T, class F, class Combine>
+__global__ void __launch_bounds__(kThreadsPerBlock)
+    reduce_blocks_kernel(std::int64_t n, const F f, const Combine combine, ArrayView<T> out) {
+  __shared__ alignas(16) unsigned char memory[sizeof(T) * kThreadsPerBlock];
+  T* const sums = reinterpret_cast<T*>(memory);
+  const int thread = static_cast<int>(threadIdx.x);
+  const std::int64_t first = std::int64_t{blockIdx.x} * (kThreadsPerBlock * kReducePerThread) + thread;
+  if (first < n) {
+    T values[kReducePerThread];  // all are fetched before any is used
+    PSK_UNROLL
+    for (int k = 0; k < kReducePerThread; ++k) {
+      const std::int64_t i = first + k * kThreadsPerBlock;
+      values[k] = f(i < n ? i : n - 1);
+    }
+    PSK_UNROLL
+    for (int k = 1; k < kReducePerThread; ++k)
+      if (first + k * kThreadsPerBlock < n) values[0] = combine(values[0], values[k]);
+    sums[thread] = values[0];
+  }
+  const auto left = static_cast<int>(n - (first - thread) < kThreadsPerBlock ? n - (first - thread) : kThreadsPerBlock);
+  for (int step = kThreadsPerBlock / 2; step > 0; step /= 2) {
+    __syncthreads();
+    if (thread < step && thread + step < left) sums[thread] = combine(sums[thread], sums[thread + step]);
+  }
+  if (thread == 0) out[blockIdx.x] = sums[0];
+}
+
+/// The combination of f(0), ..., f(n-1), n > 0, in any order. Asynchronous; one or two launches up to a million values.
+template <class T, class F, AnyOrder Combine>
+Buffer<T> reduce_any_order(Cuda& ex, const char* label, std::int64_t n, const F& f, const Combine& combine) {
+  constexpr std::int64_t kPerBlock = std::int64_t{kThreadsPerBlock} * kReducePerThread;
+  const std::int64_t blocks = (n + kPerBlock - 1) / kPerBlock;
+  Buffer<T> sums = make_buffer<T>(ex, blocks);
+  reduce_blocks_kernel<T>
+      <<<static_cast<unsigned>(blocks), kThreadsPerBlock, 0, stream_of(ex)>>>(n, f, combine, sums.view());
+  cuda_check(cudaGetLastError(), label);
+  if (blocks == 1) return sums;
+  return reduce_any_order<T>(ex, label, blocks, LoadValue<T>{sums.cview()}, combine);
 }
 
 template <class T>

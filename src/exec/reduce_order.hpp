@@ -4,6 +4,7 @@
 // lanes touch neighbouring memory); then the same over the lanes, until one is left.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
 #include "core/array_view.hpp"
@@ -14,9 +15,15 @@ namespace pointskin::exec {
 inline constexpr std::int64_t kReduceLane = 64;
 
 /// Up to this many values are combined by one block of threads.
-inline constexpr std::int64_t kReduceTail = 8192;
+inline constexpr std::int64_t kReduceTail = 512;
 
 PSK_HD constexpr std::int64_t reduce_lanes(std::int64_t n) { return n < 2 * kReduceLane ? 1 : n / kReduceLane; }
+
+/// True for combinations that give the same bits in any order, and say so: integers' sums, smallest and largest.
+template <class Combine>
+concept AnyOrder = requires {
+  requires Combine::kAnyOrder;
+};
 
 /// What one lane combines. Values are fetched in batches, so that their latencies overlap.
 template <class F, class Combine>

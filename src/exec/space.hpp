@@ -4,11 +4,13 @@
 //
 //   for_each(ex, "label", n, f)                f(i) for every i in [0, n)
 //   for_each_apart(ex, "label", n, f)          the same, for f that takes another path for every i
+//   for_each_long(ex, "label", n, f)           the same, for few indices that take long
 //   for_each_by_lanes(ex, "label", n, f)       f.finish(i, s) for every i in [0, n), s the sum of f.part(i, lane) over
 //                                              F::kLanes lanes in the order of lanes.hpp
 //   sweep(ex, "label", rounds, n, f)           f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i),
 //                                              rounds one after another; what prepare returns must not change meanwhile
-//   reduce_tail(ex, "label", values, out, combine)  the last step of reduce: few values to one
+//   reduce_tail(ex, "label", values, out, combine)  the last step of reduce: few values to one; with kOwnKernels also
+//                                              reduce_any_order, for combinations that are exact (reduce_order.hpp)
 //   select(ex, "label", n, keep)               Buffer<int32> of the i in [0, n) with keep(i), ascending
 //   exclusive_scan(ex, "label", in, out)       out[i] = in[0] + ... + in[i-1]; out may have one element more: the total
 //   sort_pairs(ex, "label", keys, values, bits, first_bit)  stable ascending radix sort by these bits of uint64 keys

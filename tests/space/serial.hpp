@@ -62,6 +62,11 @@ void for_each_apart(Serial& ex, const char* label, std::int64_t n, const F& f) {
 }
 
 template <class F>
+void for_each_long(Serial& ex, const char* label, std::int64_t n, const F& f) {
+  for_each(ex, label, n, f);
+}
+
+template <class F>
 void for_each_by_lanes(Serial& ex, const char* label, std::int64_t n, const F& f) {
   for_each(ex, label, n, SumOfLanes<F>{f});
 }

@@ -56,6 +56,15 @@ struct AddFloats {
   PSK_HD float operator()(float a, float b) const { return a + b; }
 };
 
+struct HashOf {
+  PSK_HD std::uint64_t operator()(std::int64_t i) const { return hash(static_cast<std::uint64_t>(i)); }
+};
+/// Exact, so that a space may take it in any order.
+struct AddExactly {
+  static constexpr bool kAnyOrder = true;
+  PSK_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+
 /// out[i] = the sum of 8 random floats, 8 i and on.
 struct SumByLanes {
   static constexpr int kLanes = 8;
@@ -269,6 +278,17 @@ TYPED_TEST_P(Primitives, FillGatherAndCount) {
   }
 }
 
+TYPED_TEST_P(Primitives, CallEveryIndexOfLongWorkOnce) {
+  auto& ex = this->space();
+  for (const std::int64_t n : kSizes) {
+    SCOPED_TRACE(n);
+    auto out = exec::make_buffer<std::uint64_t>(ex, n);
+    exec::fill(ex, out.view(), std::uint64_t{0});
+    for_each_long(ex, "test", n, AddHash{out.view()});
+    expect_same(to_host(ex, out), random_keys(n, 0));
+  }
+}
+
 TYPED_TEST_P(Primitives, AddLanesInPairs) {
   auto& ex = this->space();
   for (const std::int64_t n : kSizes) {
@@ -291,6 +311,16 @@ TYPED_TEST_P(Primitives, ReduceByTheDocumentedTree) {
     if (n == 0) continue;
     SCOPED_TRACE(n);
     EXPECT_EQ(exec::reduce<float>(this->space(), "test", n, RandomFloat{}, AddFloats{}), documented_sum(n));
+  }
+}
+
+TYPED_TEST_P(Primitives, ReduceInAnyOrderWhatIsExact) {
+  for (const std::int64_t n : kSizes) {
+    if (n == 0) continue;
+    SCOPED_TRACE(n);
+    std::uint64_t expected = 0;
+    for (std::int64_t i = 0; i < n; ++i) expected += HashOf{}(i);
+    EXPECT_EQ(exec::reduce<std::uint64_t>(this->space(), "test", n, HashOf{}, AddExactly{}), expected);
   }
 }
 
@@ -448,11 +478,12 @@ TYPED_TEST_P(Primitives, BuffersMoveTheirMemoryAndKeepTheirPool) {
   EXPECT_TRUE(pool.expired());
 }
 
-REGISTER_TYPED_TEST_SUITE_P(Primitives, CallEveryIndexOnce, AddLanesInPairs, SelectKeptIndicesInAscendingOrder,
-                            ScanWithAndWithoutTheTotalAndInPlace, ScanCountsOf32Bits, SortPairsByAllBits,
-                            SortPairsStably, SortPairsByTheirLowestBitsAlone, SortPairsWhoseKeysAgreeInSomeDigits,
-                            SortKeys, SortKeysByTheirLowestBitsAlone, CopyToTheSpaceWithinItAndBack, FillGatherAndCount,
-                            ReduceByTheDocumentedTree, FindWhereRunsStart, SortUniqueLeavesEveryKeyOnce,
+REGISTER_TYPED_TEST_SUITE_P(Primitives, CallEveryIndexOnce, CallEveryIndexOfLongWorkOnce, AddLanesInPairs,
+                            SelectKeptIndicesInAscendingOrder, ScanWithAndWithoutTheTotalAndInPlace, ScanCountsOf32Bits,
+                            SortPairsByAllBits, SortPairsStably, SortPairsByTheirLowestBitsAlone,
+                            SortPairsWhoseKeysAgreeInSomeDigits, SortKeys, SortKeysByTheirLowestBitsAlone,
+                            CopyToTheSpaceWithinItAndBack, FillGatherAndCount, ReduceByTheDocumentedTree,
+                            ReduceInAnyOrderWhatIsExact, FindWhereRunsStart, SortUniqueLeavesEveryKeyOnce,
                             DisjointSetsEndAtTheirSmallestMembers, AddToSharedWordsWithoutLosingAny,
                             PoolsCountWhatIsHeldAndItsPeak, MoreMemoryThanThereIsIsOverTheLimit,
                             MoreBytesThan64BitsCountIsOverTheLimit, BuffersMoveTheirMemoryAndKeepTheirPool);

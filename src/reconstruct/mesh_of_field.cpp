@@ -91,13 +91,13 @@ exec::Buffer<float> density_at_vertices(Exec& ex, const FieldData& field, const 
 
 /// The surface without small pieces, where some are to go.
 template <exec::Space Exec>
-surface::Surface without_pieces(Exec& ex, surface::Surface surface, const FieldData& field, const Options& options,
-                                RunReport& report) {
+surface::Surface without_pieces(Exec& ex, surface::Surface surface, std::int64_t lone_corners, const FieldData& field,
+                                const Options& options, RunReport& report) {
   surface::PieceOptions pieces{options.largest, options.min_component};
   exec::Buffer<float> density;
-  if (picks_pieces_by_support(field, options)) {
+  if (picks_pieces_by_support(field, options)) pieces.least_samples = fewest_samples(field, lone_corners);
+  if (pieces.least_samples > 0) {
     density = density_at_vertices(ex, field, surface);
-    pieces.least_samples = kFewestSamples;
     pieces.density = density.cview();
   } else if (!options.largest && options.min_component == 0) {
     return surface;
@@ -118,6 +118,7 @@ surface::Surface extract(Exec& ex, const FieldData& field, const Options& option
   if (field.envelope != nullptr) extraction.move_vertices = clip_to(ex, *field.envelope, field.frame, report.envelope);
   surface::Surface surface = surface::extract_surface(
       ex, field.view(domain_faces(field, options), options.isovalue.value_or(field.isovalue)), extraction);
+  const std::int64_t lone_corners = surface.lone_corners;
   if (trim && is_worth_trimming(ex, field, surface, options)) {
     surface::TrimCounts counts;
     surface =
@@ -126,7 +127,7 @@ surface::Surface extract(Exec& ex, const FieldData& field, const Options& option
     report.trim.quantile = rule.share;
   }
   if (!options.normals) surface.normals.reset();
-  surface = without_pieces(ex, std::move(surface), field, options, report);
+  surface = without_pieces(ex, std::move(surface), lone_corners, field, options, report);
   if (field.envelope != nullptr)
     project_onto(ex, *field.envelope, field.frame, surface.positions.view(), report.envelope);
   return surface;

@@ -1,7 +1,9 @@
-// Pieces that no samples ask for: outliers that others confirm by chance leave bubbles of a few triangles.
+// Pieces that no samples ask for: outliers that others confirm by chance leave bubbles of a few triangles, and so does noise.
 #pragma once
 
 #include <pointskin/reconstruct.hpp>
+
+#include <cstdint>
 
 #include "diagnose/verdict.hpp"
 #include "reconstruct/fit_field.hpp"
@@ -12,10 +14,20 @@ namespace pointskin::detail {
 /// scan with so few samples has no shape yet.
 inline constexpr double kFewestSamples = 24;
 
-/// True if a surface of the field loses its pieces without samples. Where a user says which pieces stay, that holds.
+/// Elsewhere pieces with fewer go: so many points are the corners of a solid.
+inline constexpr double kFewestOfSolid = 4;
+
+/// True if a surface of the field may lose pieces without samples, for which its density is needed. Where a user says which
+/// pieces stay, that holds.
 inline bool picks_pieces_by_support(const FieldData& field, const Options& options) {
-  return !options.largest && options.min_component == 0 && !field.density.counts.empty() &&
-         (field.drops_specks || diagnose::findings_of(field.seen).lonely > 0);
+  return !options.largest && options.min_component == 0 && !field.density.counts.empty();
+}
+
+/// How many samples a piece needs to stay; 0: none.
+/// @param lone_corners  surface::Surface::lone_corners: pieces are only looked at where there may be small ones
+inline double fewest_samples(const FieldData& field, std::int64_t lone_corners) {
+  if (field.drops_specks || diagnose::findings_of(field.seen).lonely > 0) return kFewestSamples;
+  return lone_corners > 0 ? kFewestOfSolid : 0;
 }
 
 }  // namespace pointskin::detail

@@ -291,18 +291,20 @@ struct AddCounts {
   PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
 };
 
-/// Exclusive scan of packed counts with the total on the host.
+/// Exclusive scan of packed counts, with the total and what follows it on the host.
+/// @param first           shape (counts + kRead), receives the scan and the total
 /// @param most_per_entry  bound of the low counts, which must not spill into the high ones
 /// @throws Error over_limit if a total does not fit into 32 bits
-template <exec::Space Exec>
-std::uint64_t scan_counts(Exec& ex, const exec::Buffer<std::uint64_t>& counts, exec::Buffer<std::uint64_t>& first,
-                          std::int64_t most_per_entry) {
+template <std::size_t kRead, exec::Space Exec>
+std::array<std::uint64_t, kRead> scan_counts(Exec& ex, const exec::Buffer<std::uint64_t>& counts,
+                                             ArrayView<std::uint64_t> first, std::int64_t most_per_entry) {
   if (counts.size() > std::numeric_limits<std::int32_t>::max() / most_per_entry)
     check_size("elements",
                exec::reduce<std::int64_t>(ex, "extract.scan", counts.size(), LowCount{counts.cview()}, AddCounts{}));
-  first = exec::make_buffer<std::uint64_t>(ex, counts.size() + 1);
-  exclusive_scan(ex, "extract.scan", counts.cview(), first.view());
-  return exec::read_element(ex, first.cview(), counts.size());
+  exclusive_scan(ex, "extract.scan", counts.cview(), first.part(0, counts.size() + 1));
+  std::array<std::uint64_t, kRead> read;
+  copy_to_host(ex, ArrayView<const std::uint64_t>(first.part(counts.size(), kRead)), read.data());
+  return read;
 }
 
 /// Vertices in the order of their keys, triangles renumbered.
@@ -341,24 +343,28 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   copy_constant_to_device(ex, kCases.data(), cases.view());
   auto marks = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
   auto signs = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
-  const Marker marker{f, count_triangles(kCases), marks.view(), signs.view()};
+  const std::int64_t bricks = f.tree.nodes / 8;
+  auto first =
+      exec::make_buffer<std::uint64_t>(ex, bricks + 2);  // and the number of lone corners, to be read with the total
+  exec::fill(ex, first.view().part(bricks + 1, 1), std::uint64_t{0});
+  const Marker marker{f, count_triangles(kCases), marks.view(), signs.view(), first.data() + bricks + 1};
   if constexpr (Exec::kManyThreads)
     for_each(ex, "extract.mark", f.tree.nodes, MarkNode{marker});
   else
-    for_each(ex, "extract.mark", f.tree.nodes / 8, MarkBrick{marker});
+    for_each(ex, "extract.mark", bricks, MarkBrick{marker});
 
-  auto counts = exec::make_buffer<std::uint64_t>(ex, f.tree.nodes / 8);
+  auto counts = exec::make_buffer<std::uint64_t>(ex, bricks);
   for_each(ex, "extract.count", counts.size(), CountBrick{marks.cview(), counts.view()});
-  exec::Buffer<std::uint64_t> first;
-  const std::uint64_t table = scan_counts(ex, counts, first, kMostEdgesPerBrick);
+  const auto [table, lone_corners] = scan_counts<2>(ex, counts, first.view(), kMostEdgesPerBrick);
   counts.reset();
   exec::Buffer<std::int32_t> traced;
   if (f.tree.finest().first_node > 0)  // there are coarser leaves
     traced = select(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()});
   auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
   for_each_apart(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
-  exec::Buffer<std::uint64_t> first_traced;
-  const std::uint64_t more = traced.empty() ? 0 : scan_counts(ex, traced_counts, first_traced, kMostTrianglesPerCell);
+  auto first_traced = exec::make_buffer<std::uint64_t>(ex, traced.empty() ? 0 : traced.size() + 1);
+  std::uint64_t more = 0;
+  if (!traced.empty()) more = scan_counts<1>(ex, traced_counts, first_traced.view(), kMostTrianglesPerCell)[0];
   const std::int64_t vertices = std::int64_t{low_count(table)} + high_count(more);
   const std::int64_t triangles = std::int64_t{high_count(table)} + low_count(more);
   check_size("vertices", vertices);
@@ -387,7 +393,9 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
       EmitTraced{f, vertex_on, traced.cview(), first_traced.cview(), low_count(table), high_count(table), mesh});
   marks.reset();
   first.reset();
-  return sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth);
+  surface = sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth);
+  surface.lone_corners = static_cast<std::int64_t>(lone_corners);
+  return surface;
 }
 
 PSK_INSTANTIATE(extract_surface);

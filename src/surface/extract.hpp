@@ -30,6 +30,9 @@ struct Surface {
   exec::Buffer<Vec3f> normals;       ///< (v) unit length, or (0)
   exec::Buffer<Triangle> triangles;  ///< (t) counter-clockwise from outside, by level and Morton key of their cells;
                                      ///< those of cells next to finer ones last
+  /// Corners that none of their six neighbours is on one side with, alone or as a pair: pieces of eight triangles around
+  /// one, or of some more around two. A bound from above: diagonals may join them to others.
+  std::int64_t lone_corners = 0;
 };
 
 /// Extracts the level set of `f` at its isovalue. Every edge of the mesh has exactly two triangles and every vertex one

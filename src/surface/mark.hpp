@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/array_view.hpp"
+#include "exec/atomic.hpp"
 #include "field/field_view.hpp"
 #include "octree/neighbourhood.hpp"
 #include "surface/leaf_cell.hpp"
@@ -28,6 +29,7 @@ struct Marker {
   TriangleCounts counts;
   ArrayView<std::uint8_t> marks;
   ArrayView<std::uint8_t> signs;  ///< inside bits of the corners of cells with triangles; undefined for others
+  std::uint64_t* lone_corners;    ///< counts them
 
   /// True if cells of the brick touch a face of the cube. Read off the key, without decoding it.
   PSK_HD static bool is_near_face(const octree::LevelView& l, std::int64_t brick) {
@@ -53,7 +55,33 @@ struct Marker {
       const unsigned end = signs >> (4 >> axis);  // the corner one step along the axis
       if (((signs ^ end) & 1) != 0 && is_finest_edge(level, node, axis)) mark |= 1U << axis;
     }
+    if (mark == kEdges && (signs == 1 || signs == 0xfe) && is_lone(level, node, signs == 1)) exec::add(lone_corners, 1);
     return mark | mark_cell(level, node, signs, uniform);
+  }
+
+  /// Of the six corners around one, those on its side, and the last of them; outside of the tree nothing is.
+  struct SameSide {
+    int count;
+    std::int32_t last;
+  };
+  PSK_HD SameSide same_side(int level, std::int32_t node, bool inside) const {
+    const octree::LevelView& l = f.tree.levels[level];
+    SameSide same{0, -1};
+    for (int i = 0; i < 6; ++i) {
+      const int step = 2 * (i & 1) - 1;
+      const std::int32_t other =
+          l.neighbour(node, i >> 1 == 0 ? step : 0, i >> 1 == 1 ? step : 0, i >> 1 == 2 ? step : 0);
+      if (other < 0 || (f.value(level, other) >= f.isovalue) != inside) continue;
+      ++same.count;
+      same.last = other;
+    }
+    return same;
+  }
+
+  /// Surface::lone_corners.
+  PSK_HD bool is_lone(int level, std::int32_t node, bool inside) const {
+    const SameSide same = same_side(level, node, inside);
+    return same.count == 0 || (same.count == 1 && same_side(level, same.last, inside).count == 1);
   }
 
   PSK_HD unsigned mark_cell(int level, std::int32_t node, unsigned signs, bool uniform) const {

@@ -38,7 +38,7 @@ Json solve_json(const Record& record) {
                       {"residual_before", level.residual_before},
                       {"residual_after", level.residual_after}});
   }
-  return {{"levels", levels}};
+  return {{"fits", record.run.fits}, {"levels", levels}};
 }
 
 Json trim_json(const TrimReport& trim) {

@@ -66,9 +66,9 @@ struct SolveOptions {
   FieldKind field = FieldKind::poisson;
   double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
   bool fixed_screening = false;   ///< true: all samples weigh alike; false: samples that scatter across the surface
-                                  ///< weigh less, those that agree more (0.05 to 4.4 times `screening`)
-  int iterations = 8;             ///< relaxations of every level finer than 5, in [1, 1000]; coarser ones take
-                                  ///< max(this, twice their cells along an axis), level 5 three times this
+                                  ///< weigh less, those that agree more (0.05 to 9.9 times `screening`)
+  int iterations = 8;             ///< relaxations of every level finer than 5, in [1, 1000]; the coarser ones
+                                  ///< together have a multigrid cycle for every four of them, at least two
   double scale = 1.1;             ///< working cube / bounding cube of the points used, in [1, 100]
   double samples_per_node = 1.5;  ///< samples that two cell faces of a level should hold; in [0, 100]. Sparser ones are
                                   ///< splatted coarser, and where they hold less than 0.42 of it the surface keeps to
@@ -198,6 +198,8 @@ struct RunReport {
   NormalsDone normals_done = NormalsDone::kept;
   std::optional<NormalReport> normals;  ///< where they were repaired or estimated
   std::int64_t points = 0;              ///< points used
+  int fits = 1;                         ///< times that the field was solved for: 2 where normals were mended, or where
+                                        ///< outliers had made the first cube too wide; 4 with both
   std::int64_t strays = 0;              ///< points left out because they are strays; 0 with Options::keep_strays
   std::vector<Vec3d> farthest_strays;   ///< up to 10 of them, world units, the farthest first
   int depth = 0;
@@ -242,7 +244,7 @@ class Reconstructor {
   /// Fits the implicit function (SolveOptions::field; by default screened Poisson, Kazhdan & Hoppe 2013) on the octree
   /// of Zhou et al. 2010.
   /// Strays are left out and reported unless SolveOptions::keep_strays: they would take the cube's resolution from the
-  /// rest.
+  /// rest. So are outliers beyond the box of all others, where they take 1/20 of it or more: that takes two fits.
   /// The Field shares this reconstructor's workspace and may outlive it. It keeps what any ExtractOptions need: beyond
   /// what reconstruct() takes, 24 bytes a point, the sample counts of its octree, and the attributes of the points.
   /// O(n log n + nodes). Deterministic: the same bytes for any thread count, any order of the points, CPU or GPU.

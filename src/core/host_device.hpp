@@ -8,6 +8,13 @@
 #define PSK_HD
 #endif
 
+/// PSK_SELDOM keeps a function that few threads call out of the code, and its variables out of the registers, of the others.
+#ifdef __CUDACC__
+#define PSK_SELDOM __noinline__
+#else
+#define PSK_SELDOM
+#endif
+
 /// PSK_UNROLL unrolls the loop after it, so that small arrays indexed by its counter stay in registers.
 /// PSK_UNROLL_BY_4 lets a GPU fetch what four rounds of a longer loop need before it uses it.
 #if defined(__CUDA_ARCH__)

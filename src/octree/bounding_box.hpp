@@ -14,6 +14,7 @@ struct BoxOf {
 };
 
 struct JoinBoxes {
+  static constexpr bool kAnyOrder = true;
   PSK_HD static float smaller(float a, float b) { return a < b ? a : b; }
   PSK_HD static float larger(float a, float b) { return a > b ? a : b; }
   PSK_HD static Vec3f lower_of(const Vec3f& a, const Vec3f& b) {

@@ -29,6 +29,14 @@ struct Place {
   std::int32_t index;
 };
 
+std::vector<Place> places_of(const Candidates& candidates) {
+  std::vector<Place> places;
+  places.reserve(candidates.indices.size());
+  for (std::size_t i = 0; i < candidates.indices.size(); ++i)
+    places.push_back({wide(candidates.positions[i]), candidates.indices[i]});
+  return places;
+}
+
 double largest_difference(const Vec3d& p, const Vec3d& q) {
   return std::max({std::abs(p[0] - q[0]), std::abs(p[1] - q[1]), std::abs(p[2] - q[2])});
 }
@@ -79,9 +87,11 @@ Bounds box_without(const std::vector<Place>& strays, const Candidates& candidate
   return box;
 }
 
-StrayPoints farthest_first(std::vector<Place> strays, const Bounds& core) {
+/// @param sorted  so many of the farthest come first, in their order
+StrayPoints farthest_first(std::vector<Place> strays, const Bounds& core, std::size_t sorted) {
   const Box box = wide(core);
-  std::sort(strays.begin(), strays.end(), [&](const Place& p, const Place& q) {
+  const auto end = strays.begin() + static_cast<std::ptrdiff_t>(std::min(sorted, strays.size()));
+  std::partial_sort(strays.begin(), end, strays.end(), [&](const Place& p, const Place& q) {
     const auto key = [&](const Place& s) { return std::tuple(-distance(box, s.at), s.at.x, s.at.y, s.at.z, s.index); };
     return key(p) < key(q);
   });
@@ -122,9 +132,7 @@ Bounds ends_of(const std::vector<Bounds>& boxes, std::int64_t rank) {
 StrayPoints choose_strays(const Candidates& candidates, const Bounds& ends, const Bounds& all, std::int64_t limit) {
   constexpr double kWorthIt = 1.5;  // the box with strays / the box without
   const StrayPoints none{{}, {}, all};
-  std::vector<Place> outside;
-  for (std::size_t i = 0; i < candidates.indices.size(); ++i)
-    outside.push_back({wide(candidates.positions[i]), candidates.indices[i]});
+  std::vector<Place> outside = places_of(candidates);
   // With the number of strays as the rank, every core must hold it.
   Box core = middle_of(
       outside, [](const Place& p) { return p.at; }, wide(ends), limit);
@@ -135,7 +143,12 @@ StrayPoints choose_strays(const Candidates& candidates, const Bounds& ends, cons
   if (outside.empty() || static_cast<std::int64_t>(outside.size()) > limit) return none;
   const Bounds without = box_without(outside, candidates, ends);
   if (wide(all).longest_side() < kWorthIt * wide(without).longest_side()) return none;
-  return farthest_first(std::move(outside), without);
+  const std::size_t all_of_them = outside.size();
+  return farthest_first(std::move(outside), without, all_of_them);
+}
+
+StrayPoints as_strays(const Candidates& candidates, const Bounds& core) {
+  return farthest_first(places_of(candidates), core, kMostReported);
 }
 
 }  // namespace strays

@@ -44,6 +44,7 @@ struct ExtentOfLane {
   }
 };
 struct JoinExtents {
+  static constexpr bool kAnyOrder = true;
   PSK_HD Extent operator()(const Extent& a, const Extent& b) const {
     return {JoinBoxes{}(a.all, b.all),
             {JoinBoxes::upper_of(a.inner.lower, b.inner.lower), JoinBoxes::lower_of(a.inner.upper, b.inner.upper)}};
@@ -90,7 +91,7 @@ template <exec::Space Exec>
 Extent measure_extent(Exec& ex, ArrayView<const Vec3f> positions) {
   const std::int64_t lanes = exec::reduce_lanes(positions.size);
   auto extents = exec::make_buffer<Extent>(ex, lanes);
-  for_each(ex, "octree.bounds", lanes, ExtentOfLane{positions, lanes, extents.view()});
+  for_each_long(ex, "octree.bounds", lanes, ExtentOfLane{positions, lanes, extents.view()});
   const auto joined = exec::reduce_lane_values(ex, "octree.bounds", std::move(extents), JoinExtents{});
   return exec::read_element(ex, joined.cview(), 0);
 }
@@ -101,7 +102,7 @@ Bounds find_ends(Exec& ex, ArrayView<const Vec3f> positions, std::int64_t limit)
   constexpr std::int64_t kLanes = 4096;
   const std::int64_t lanes = std::min(kLanes, exec::reduce_lanes(positions.size));
   auto boxes = exec::make_buffer<Bounds>(ex, lanes);
-  for_each(ex, "octree.strays", lanes, BoxOfLane{positions, lanes, boxes.view()});
+  for_each_long(ex, "octree.strays", lanes, BoxOfLane{positions, lanes, boxes.view()});
   return ends_of(to_vector(ex, boxes), limit);
 }
 
@@ -127,6 +128,12 @@ StrayPoints find_strays(Exec& ex, ArrayView<const Vec3f> positions) {
 }
 
 template <exec::Space Exec>
+StrayPoints find_outside(Exec& ex, ArrayView<const Vec3f> positions, const Frame& cube, const Bounds& core) {
+  const Bounds ends{cube.to_world({0, 0, 0}), cube.to_world({1, 1, 1})};
+  return as_strays(find_candidates(ex, positions, ends), core);
+}
+
+template <exec::Space Exec>
 exec::Buffer<std::int32_t> without_strays(Exec& ex, std::int64_t n, const StrayPoints& strays) {
   if (strays.indices.empty()) return {};
   std::vector<std::int32_t> ascending = strays.indices;
@@ -139,6 +146,7 @@ exec::Buffer<std::int32_t> without_strays(Exec& ex, std::int64_t n, const StrayP
 }
 
 PSK_INSTANTIATE(find_strays);
+PSK_INSTANTIATE(find_outside);
 PSK_INSTANTIATE(without_strays);
 
 }  // namespace pointskin::octree

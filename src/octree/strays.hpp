@@ -6,6 +6,7 @@
 // order of the points. docs/decisions/0016-stray-points.md has the reasons for the constants.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,8 +16,12 @@
 #include "core/array_view.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
+#include "octree/frame.hpp"
 
 namespace pointskin::octree {
+
+/// Reports list so many strays.
+inline constexpr std::size_t kMostReported = 10;
 
 /// Strays with their places, the farthest first, and the bounding box of the other points.
 struct StrayPoints {
@@ -34,6 +39,12 @@ struct StrayPoints {
 /// that can rule out, O(n) twice more, up to 8 n bytes of scratch and four waits.
 template <exec::Space Exec>
 StrayPoints find_strays(Exec& ex, ArrayView<const Vec3f> positions);
+
+/// The points outside of a cube, as strays: those that turned out to belong to no surface, of points around a core that do.
+/// Of the places, the first kMostReported are the farthest from the core; the others are in no order.
+/// O(n), two waits, 16 bytes of host memory for every point outside.
+template <exec::Space Exec>
+StrayPoints find_outside(Exec& ex, ArrayView<const Vec3f> positions, const Frame& cube, const Bounds& core);
 
 /// Indices of the points that are no strays, ascending; an empty array if there are no strays.
 /// @param n  number of all points
@@ -64,6 +75,9 @@ Bounds ends_of(const std::vector<Bounds>& boxes, std::int64_t rank);
 /// @param limit       most strays
 /// O(candidates + limit^2 rounds), on the host.
 StrayPoints choose_strays(const Candidates& candidates, const Bounds& ends, const Bounds& all, std::int64_t limit);
+
+/// All candidates as strays, those that are reported first.
+StrayPoints as_strays(const Candidates& candidates, const Bounds& core);
 
 }  // namespace strays
 }  // namespace pointskin::octree

@@ -60,15 +60,16 @@ struct Normalise {
 };
 
 struct Weigh {
-  static constexpr int kDepthsBelow = 2;  ///< splat depths may be this far below the finest level
+  static constexpr int kDepthsBelow = 3;  ///< splat depths may be this far below the finest level
 
   octree::OctreeView tree;
   DensityView density;
   FacingView facing;  // without sums where normals have no signs
   ArrayView<const Vec3f> positions, normals;
   float samples_per_node;
-  int coarsest;  // depth
-  ArrayView<float> areas, own_side;
+  int coarsest;                         // depth
+  ArrayView<const float> bend_of_cell;  // of the finest counted level
+  ArrayView<float> areas, own_side, bends;
   ArrayView<float> splat_depths;
 
   PSK_HD void operator()(std::int64_t i) const {
@@ -79,6 +80,8 @@ struct Weigh {
       const FacingView::Densities densities = facing.at(positions[i], normals[i]);
       per_cell = densities.all;
       own_side[i] = (densities.disagrees ? -1.0F : 1.0F) / densities.own_side;
+      const Vec3f p = positions[i];
+      bends[i] = bend_of_cell[octree::locate(tree, octree::point_key(p.x, p.y, p.z), facing.depth).cell];
     }
     areas[i] = 1 / per_cell;
     splat_depths[i] = splat_depth(per_cell * kKernelFaces);
@@ -95,6 +98,21 @@ struct Weigh {
     if (finer == coarsest || samples >= samples_per_node) return static_cast<float>(finer);
     const float share = (samples / samples_per_node - 0.25F) * (4.0F / 3);
     return static_cast<float>(finer - 1) + share;
+  }
+};
+
+/// How much the surface bends in the middle of a cell that holds samples.
+struct BendOfCell {
+  octree::LevelView level;
+  FacingView facing;
+  ArrayView<float> out;
+  PSK_HD void operator()(std::int64_t cell) const {
+    if (level.point_begin[cell] == level.point_begin[cell + 1]) return;
+    const octree::Coordinates at = octree::decode(level.node_key(static_cast<std::int32_t>(cell)));
+    const float width = 1 / static_cast<float>(std::int64_t{1} << level.depth);
+    const Vec3f middle{(static_cast<float>(at.x) + 0.5F) * width, (static_cast<float>(at.y) + 0.5F) * width,
+                       (static_cast<float>(at.z) + 0.5F) * width};
+    out[cell] = facing.bend_at(middle, level.depth);
   }
 };
 
@@ -149,9 +167,16 @@ Density weigh_samples(Exec& ex, const octree::OctreeData& tree, const WeighOptio
   Density density;
   exec::Buffer<Facing> facing;
   exec::Buffer<float> own_side;
+  exec::Buffer<float> bends;
+  exec::Buffer<float> bend_of_cell;
   if (options.has_signs) {
     facing = splat_facing(ex, tree.view(), samples, density);
+    const octree::LevelView& counted = tree.view().levels[density.depth];
+    bend_of_cell = exec::make_buffer<float>(ex, counted.cells());
+    for_each(ex, "density.bend", counted.cells(),
+             BendOfCell{counted, {tree.view(), density.depth, facing.data()}, bend_of_cell.view()});
     own_side = exec::make_buffer<float>(ex, n);
+    bends = exec::make_buffer<float>(ex, n);
   } else {
     density = splat_density(ex, tree, samples.positions.cview());
   }
@@ -163,11 +188,14 @@ Density weigh_samples(Exec& ex, const octree::OctreeData& tree, const WeighOptio
                  samples.normals.cview(),
                  static_cast<float>(options.samples_per_node),
                  coarsest,
+                 bend_of_cell.cview(),
                  samples.areas.view(),
                  own_side.view(),
+                 bends.view(),
                  samples.splat_depths.view()});
   facing.reset();
-  if (options.has_signs) examine_samples(ex, tree.depth, coarsest, std::move(own_side), samples);
+  bend_of_cell.reset();
+  if (options.has_signs) examine_samples(ex, tree.depth, coarsest, std::move(own_side), std::move(bends), samples);
   if (options.confidence) for_each(ex, "density.weigh", n, ScaleArea{weights.cview(), samples.areas.view()});
   return density;
 }

@@ -7,6 +7,7 @@
 
 #include "exec/atomic.hpp"
 #include "exec/this_space.hpp"
+#include "poisson/bend.hpp"
 #include "poisson/noise.hpp"
 #include "poisson/outliers.hpp"
 
@@ -62,7 +63,7 @@ struct LookAt {
 
 /// What a look at the whole cloud says.
 struct Cloudwide {
-  Shift shift{};
+  Averaging averaging{};
   float largest_usual_area = 0;  ///< finest cells^2
   bool is_alike = false;         ///< neighbours mostly face the same way, as far as can be told
 };
@@ -80,7 +81,7 @@ struct Judge {
     const float usual = 1 / (density * cell_area * static_cast<float>(points));
     const Tally tally = Tally::of(words[kTallies]);
     const auto asked = static_cast<float>(tally.asked);
-    found[0] = {shift_for(words + kPairs, static_cast<float>(tally.on_lines) / looked), kUnusualArea * usual,
+    found[0] = {averaging_for(words + kPairs, static_cast<float>(tally.on_lines) / looked), kUnusualArea * usual,
                 asked >= kTelling * looked && static_cast<float>(tally.alike) >= kMostlyAlike * asked};
   }
 };
@@ -90,6 +91,7 @@ struct Examine {
   ArrayView<const Cloudwide> found;
   float cell_area, coarsest;
   ArrayView<float> areas;
+  ArrayView<float> bends_to_urges;
   ArrayView<float> own_side_to_depths;  // read, then written: others still look at the depths that were
   std::uint64_t* lonely;
 
@@ -100,29 +102,49 @@ struct Examine {
     const float largest = cloud.largest_usual_area;
     const bool is_usual = !(own > largest);
     if (own > kLonely * largest) exec::add(lonely, 1);
+    Seen seen;
+    BendAmongNeighbours bend;
+    const float per_sample = 1 / (own * cell_area);
+    around(i, [&](std::int64_t /*j*/, const Vec3f& normal, const Vec3f& step) {
+      const float cosine = dot(around.normals[i], normal);
+      seen.add(cosine, normal, step);
+      bend.add(cosine, squared_length(step) * per_sample);
+    });
     float area = own;
-    if ((!is_usual && !around.is_confirmed(i)) || is_outlier_near_others(i, disagrees, cloud.is_alike)) {
+    if ((!is_usual && !Around::is_confirmed(around, i)) || is_outlier_near_others(i, seen, disagrees, cloud.is_alike)) {
       area = 0;
     } else if (!is_usual) {
       area = areas[i] < largest ? largest : areas[i];
     }
     areas[i] = area;
-    const bool finer = cloud.shift.finer > 0 && is_bent(around.positions, around.normals, i, area * cell_area);
-    const float depth = around.splat_depths[i] + (finer ? cloud.shift.finer : 0.0F) - cloud.shift.coarser;
+    float depth = around.splat_depths[i];
+    float urge = 1;
+    if (area > 0) {
+      const float near = bend.value();
+      const float samples = cloud.averaging.samples(near > bends_to_urges[i] ? near : bends_to_urges[i]);
+      depth += Averaging::levels_finer(samples);
+      urge = Averaging::urge(samples);
+    }
+    bends_to_urges[i] = urge;
     own_side_to_depths[i] = depth > coarsest ? depth : coarsest;
   }
 
-  [[nodiscard]] PSK_HD bool is_outlier_near_others(std::int64_t i, bool disagrees, bool is_alike) const {
-    const Seen seen = around.seen_from(i);
+  [[nodiscard]] PSK_HD bool faces_like_others(std::int64_t i, const Seen& seen) const {
+    return seen.faces_like_others() && (seen.surely_does() || Around::is_among_such(around, i));
+  }
+
+  [[nodiscard]] PSK_HD bool is_outlier_near_others(std::int64_t i, const Seen& seen, bool disagrees,
+                                                   bool is_alike) const {
     if (seen.stands_off(areas[i] * cell_area)) return true;
-    return is_alike && ((seen.can_tell() && !seen.faces_like_others()) || (disagrees && seen.none_faces_it()));
+    return is_alike && ((seen.can_tell() && !faces_like_others(i, seen)) || (disagrees && seen.none_faces_it()));
   }
 };
 
 }  // namespace
 
 template <exec::Space Exec>
-void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_side, Samples& samples) {
+void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_side, exec::Buffer<float> bends,
+                     Samples& samples) {
   const std::int64_t n = samples.areas.size();
   const Around around{samples.positions.cview(), samples.normals.cview(), samples.splat_depths.cview()};
   const std::int64_t looked_at = std::min(kLookedAt, n);
@@ -134,9 +156,10 @@ void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_
   auto found = exec::make_buffer<Cloudwide>(ex, 1);
   for_each(ex, kLabel, 1, Judge{samples.lonely.data(), n, looked_at, cell_area, found.view()});
   for_each(ex, kLabel, n,
-           Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), samples.areas.view(),
+           Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), samples.areas.view(), bends.view(),
                    own_side.view(), samples.lonely.data() + kLonelyOnes});
   samples.splat_depths = std::move(own_side);
+  samples.trust = std::move(bends);
 }
 
 PSK_INSTANTIATE(examine_samples);

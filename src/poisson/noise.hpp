@@ -1,6 +1,6 @@
-// How noisy the samples are, against the distance between them, and so how coarse a level has to carry their normals.
-// Clean samples say where the surface is by themselves: averaged over as many as noisy ones need, sparse clouds lose
-// their shape. Where noise is half as wide as the distance between samples, it takes more of them.
+// How many samples a normal is averaged over, and so how coarse a level carries it. Averaged over few, noise stays; averaged over
+// many, the shape goes where it bends. Both are measured: noise for the whole cloud, here, and bends at every sample
+// (bend.hpp).
 #pragma once
 
 #include <pointskin/vector.hpp>
@@ -14,22 +14,24 @@
 
 namespace pointskin::poisson {
 
-/// Noise is the standard deviation of a sample across the surface over the distance between samples. Up to kClean the
-/// splat depths are kFiner levels finer, so that a third of the samples carries a normal; from kSomeNoise to kMuchNoise
-/// they stay; from kTooMuchNoise on they are kCoarser levels coarser, with twice the samples. In between linear.
-inline constexpr float kClean = 0.03F, kSomeNoise = 0.12F, kMuchNoise = 0.4F, kTooMuchNoise = 0.6F;
-inline constexpr float kFiner = 0.79F, kCoarser = 0.5F;
+/// Noise is the standard deviation of a sample across the surface over the distance between samples. A normal is averaged over
+///   kSmoothing sqrt(noise^2 / bend)   samples, but not over less than
+///   kUsual min(1, kSharp / bend)      of clean ones, and in all over kFinest + kPerNoise (noise - kClean) to kMost
+/// (docs/decisions/0048-averaging-by-noise-and-bend.md).
+inline constexpr float kSmoothing = 1.4F, kSharp = 0.036F, kClean = 0.03F;
+inline constexpr float kUsual = 1.5F, kFinest = 0.22F, kPerNoise = 4, kMost = 8;
+
+/// Where so few samples are averaged, the shape bends more than noise hides: positions are trusted more, by kUrgent over
+/// the number of samples, at most kMostUrge times (trust.hpp).
+inline constexpr float kUrgent = 2, kMostUrge = 3;
 
 /// On scan lines the fourth sample after one is often more than sqrt(kAlongLines) = 3.5 times as far away as the next:
 /// for half of the samples, but for one in three where they are spread over the surface. Density then says nothing of
-/// the distance between lines, and the depths do not get finer. Shares in between: linear.
+/// the distance between lines, and a normal is averaged over kUsual samples at least. Shares in between: linear.
 inline constexpr float kAlongLines = 12;
 inline constexpr float kNoLines = 0.38F, kLines = 0.46F;
 
-/// Depths get finer only where the shape asks for it, along bends and across edges: for samples with a normal more than
-/// 10 degrees apart among those up to kFollowers places before and after and nearer than kNear distances between samples.
-inline constexpr float kBentCosine = 0.985F;
-inline constexpr std::int64_t kFollowers = 4;
+/// A pair of samples tells of the noise if they are nearer along the surface than kNear distances between samples.
 inline constexpr float kNear = 2;
 
 /// Bins of noise^2, by exponent and two bits more: the same on every device, without a logarithm.
@@ -71,19 +73,43 @@ PSK_HD inline float ramp(float x, float from, float to) {
   return t < 0 ? 0.0F : t > 1 ? 1.0F : t;
 }
 
-/// What the splat depths of a cloud may rise and do fall by.
-struct Shift {
-  float finer, coarser;
+/// The logarithm to the base of 2 of a positive float, linear between powers of 2 and so up to 0.09 too small: the same on every
+/// device.
+PSK_HD inline float rough_log2(float x) { return static_cast<float>(std::bit_cast<std::int32_t>(x)) * 0x1p-23F - 127; }
+
+/// How a cloud is averaged.
+struct Averaging {
+  float noise2 = 0;       ///< squared noise
+  float fewest = kUsual;  ///< samples
+
+  /// Samples that a normal is averaged over, in [kFinest, kMost]. For Options::samples_per_node of kUsual.
+  /// @param bend  bend.hpp
+  [[nodiscard]] PSK_HD float samples(float bend) const {
+    constexpr float kFlat = 1e-4F;
+    const float least_bend = bend > kFlat ? bend : kFlat;
+    const float by_noise = kSmoothing * std::sqrt(noise2 / least_bend);
+    const float if_clean = least_bend > kSharp ? kUsual * kSharp / least_bend : kUsual;
+    const float most = by_noise > if_clean ? by_noise : if_clean;
+    return most < fewest ? fewest : most > kMost ? kMost : most;
+  }
+
+  /// Levels that a normal is splatted finer at for that: four times the samples are under the kernel of the next coarser one.
+  PSK_HD static float levels_finer(float samples) { return 0.5F * rough_log2(kUsual / samples); }
+
+  PSK_HD static float urge(float samples) {
+    const float urge = kUrgent / samples;
+    return urge < 1 ? 1.0F : urge > kMostUrge ? kMostUrge : urge;
+  }
 };
 
-/// The shift that the noise of the whole cloud asks for. Over the pairs (p, n), (q, m) of a sample and the next one, if the
+/// How the whole cloud is averaged. Over the pairs (p, n), (q, m) of a sample and the next one, if the
 /// normals agree and the two are near each other along the surface,
 ///   noise^2 = median of ((n + m) / 2 . (p - q))^2 / (2 area_p) / 0.674^2,   area_p = 1 / density, 0.674^2 of a Gaussian;
 /// an evenly bent surface adds nothing to it (trust.hpp), and sharp edges are too few to move a median. If no pair tells,
-/// depths do not change.
+/// it is as if there were some noise.
 /// @param pairs  shape (NoiseBin::kCount), numbers of pairs
 /// @param lines  share of the samples that lie on lines
-PSK_HD inline Shift shift_for(const std::uint64_t* pairs, float lines) {
+PSK_HD inline Averaging averaging_for(const std::uint64_t* pairs, float lines) {
   constexpr float kOfGaussian = 0.674F;    // the median of |x|
   std::uint32_t counts[NoiseBin::kCount];  // in registers: a read that waits for the one before takes longer
   std::uint32_t all = 0;
@@ -92,7 +118,7 @@ PSK_HD inline Shift shift_for(const std::uint64_t* pairs, float lines) {
     counts[bin] = static_cast<std::uint32_t>(pairs[bin]);
     all += counts[bin];
   }
-  if (all == 0) return {0, 0};
+  if (all == 0) return {};
   int median = 0;  // the bin that half of the pairs end in
   std::uint32_t in_it = 0;
   std::uint32_t before = 0;
@@ -109,18 +135,9 @@ PSK_HD inline Shift shift_for(const std::uint64_t* pairs, float lines) {
   const float within = (0.5F * static_cast<float>(all) - static_cast<float>(before)) / static_cast<float>(in_it);
   const float lower = median > 0 ? NoiseBin::value(median) : 0.0F;
   const float noise = std::sqrt(lower + within * (NoiseBin::value(median + 1) - lower)) / kOfGaussian;
-  return {kFiner * (1 - ramp(noise, kClean, kSomeNoise)) * (1 - ramp(lines, kNoLines, kLines)),
-          kCoarser * ramp(noise, kMuchNoise, kTooMuchNoise)};
-}
-
-/// Whether the surface bends around sample i.
-/// @param area  that the sample stands for, of the unit cube; 0: it does not
-PSK_HD inline bool is_bent(ArrayView<const Vec3f> positions, ArrayView<const Vec3f> normals, std::int64_t i,
-                           float area) {
-  const float near2 = kNear * kNear * area;
-  for (std::int64_t j = i > kFollowers ? i - kFollowers : 0; j <= i + kFollowers && j < positions.size; ++j)
-    if (dot(normals[i], normals[j]) < kBentCosine && squared_length(positions[i] - positions[j]) < near2) return true;
-  return false;
+  const float fewest = kFinest + kPerNoise * (noise > kClean ? noise - kClean : 0.0F);
+  const float on_lines = ramp(lines, kNoLines, kLines);
+  return {noise * noise, fewest < kUsual ? fewest + on_lines * (kUsual - fewest) : fewest};
 }
 
 }  // namespace pointskin::poisson

@@ -22,8 +22,10 @@ struct LevelSystem {
   octree::LevelView level;
   const float* b = nullptr;  ///< divergence, (nodes of the level)
   ScreeningView screening;
-  float screening_scale = 0;  ///< w 4^(d - D): turns a collapsed weight into a matrix weight; 0: no screening
-  AxisRowsF rows{};           ///< for corners on the cube's faces
+  float screening_scale = 0;      ///< w 4^(d - D): turns a collapsed weight into a matrix weight; 0: no screening
+  AxisRowsF rows{};               ///< for corners on the cube's faces
+  const float* lumped = nullptr;  ///< (nodes of the level) instead of samples: a matrix weight at every corner, that
+                                  ///< pulls it to 0 by itself; null: none
 };
 
 /// Values at the 27 corners around one corner, in registers; offsets -1, 0, 1 along each axis.
@@ -138,6 +140,11 @@ struct CornerResidual {
     residual += sum_of_cells(residuals);
     diagonal += sum_of_cells(diagonals);
   }
+  /// A weight that pulls the corner's value to 0.
+  PSK_HD void hold(float weight, float value) {
+    residual -= weight * value;
+    diagonal += weight;
+  }
 };
 
 /// Laplacian at corner `slot` of a brick.
@@ -185,6 +192,7 @@ class CornerOperator {
       : system_(system),
         slot_(static_cast<int>(node & 7)),
         b_(system.b[node]),
+        lumped_(system.lumped == nullptr ? 0.0F : system.lumped[node]),
         brick_key_(system.level.brick_key[node >> 3]) {
     const std::int32_t* bricks = system.level.neighbours + (node >> 3) * octree::kNeighbours;
     find_bricks(bricks, static_cast<std::int32_t>(node >> 3));
@@ -199,6 +207,7 @@ class CornerOperator {
     CornerResidual out;
     out.residual = b_ - laplacian_at(system_, brick_key_, slot_, true, values);
     if (any_samples_) screen(values, out);
+    out.hold(lumped_, value);
     return out;
   }
 
@@ -272,7 +281,7 @@ class CornerOperator {
 
   const LevelSystem& system_;
   int slot_;
-  float b_;
+  float b_, lumped_;
   std::uint64_t brick_key_;
   std::int32_t brick_[8];
   CollapsedSample sample_[8];
@@ -350,6 +359,7 @@ PSK_HD inline BrickResidual brick_residual(const LevelSystem& system, std::int64
   for (int s = 0; s < 8; ++s) {
     const BrickCornerValues values{u, octree::slot_x(s), octree::slot_y(s), octree::slot_z(s)};
     out.corner[s].residual = system.b[8 * brick + s] - laplacian_at(system, brick_key, s, false, values);
+    out.corner[s].hold(system.lumped == nullptr ? 0.0F : system.lumped[8 * brick + s], values(0, 0, 0));
   }
   if (!(system.screening_scale > 0) || system.screening.corners[brick] == 0) return out;
   BrickPulls pulls;
@@ -450,6 +460,9 @@ PSK_INLINE void residual_lanes(const LevelSystem& system, std::int64_t brick, co
   out.residual = load8(system.b + 8 * brick) - laplacian_inside(u);
   out.diagonal = Float8{} + kLargestEigenvalue;
   if (system.screening_scale > 0 && system.screening.corners[brick] != 0) screen_lanes(system, brick, u, out);
+  const Float8 lumped = system.lumped == nullptr ? Float8{} : load8(system.lumped + 8 * brick);
+  out.residual = out.residual - lumped * u(0, 0, 0);
+  out.diagonal = out.diagonal + lumped;
 }
 
 #endif

@@ -34,6 +34,9 @@ inline constexpr float kOtherSideCosine = -0.8F;
 inline constexpr int kFewestConfirming = 2;
 inline constexpr float kLeastConfirming = 0.34F;
 
+/// Such a share of its neighbours must be confirmed, too (docs/decisions/0049-cube-of-the-inliers.md).
+inline constexpr float kLeastConfirmed = 0.2F;
+
 /// Samples with so many times the largest usual area are lonely, confirmed or not: a cloud that has some has outliers, or
 /// ends so thinly that pieces of its surface may hang on one sample.
 inline constexpr float kLonely = 8;
@@ -43,8 +46,14 @@ inline constexpr float kLonely = 8;
 /// at a corner every third. Normals are only asked of clouds that can be told by them: of the samples that are looked at
 /// (examine.hpp), at least the share kTelling is among so many, and of those the share kMostlyAlike passes. The normals of
 /// other clouds are too noisy, or their surfaces bend too fast.
+/// Of outliers in a cluster one in five has three alike by chance: where they are less than kSurelyAlike of the neighbours,
+/// and the mean cosine of all but those on the other side of a thin wall is below kMeanCosine, kFewestSuch of the alike ones
+/// must have three themselves.
 inline constexpr int kManyNeighbours = 12;
 inline constexpr int kFewestAlike = 3;
+inline constexpr float kSurelyAlike = 0.26F;
+inline constexpr float kMeanCosine = 0.3F;
+inline constexpr int kFewestSuch = 2;
 inline constexpr float kAlikeCosine = 0.8F;
 inline constexpr float kTelling = 0.25F;
 inline constexpr float kMostlyAlike = 0.75F;
@@ -62,10 +71,32 @@ inline constexpr float kSurelyOff = 5;
 /// What the neighbours of a sample say of it.
 struct Seen {
   int neighbours = 0, alike = 0, facing = 0, opposite = 0;
+  float cosines = 0;                       ///< sum over those that are not opposite
   float heights = 0, squared_heights = 0;  ///< sums over the facing ones, of the unit cube
+
+  /// A neighbour with its normal.
+  /// @param cosine  between the normals
+  /// @param step    the way to it
+  PSK_HD void add(float cosine, const Vec3f& normal, const Vec3f& step) {
+    ++neighbours;
+    if (cosine > kAlikeCosine) ++alike;
+    if (cosine < kOtherSideCosine)
+      ++opposite;
+    else
+      cosines += cosine;
+    if (!(cosine > kFacingCosine)) return;
+    const float height = dot(normal, step);
+    ++facing;
+    heights += height;
+    squared_heights += height * height;
+  }
 
   [[nodiscard]] PSK_HD bool can_tell() const { return neighbours >= kManyNeighbours; }
   [[nodiscard]] PSK_HD bool faces_like_others() const { return alike >= kFewestAlike; }
+  [[nodiscard]] PSK_HD bool surely_does() const {
+    return static_cast<float>(alike) >= kSurelyAlike * static_cast<float>(neighbours) ||
+           cosines >= kMeanCosine * static_cast<float>(neighbours - opposite);
+  }
 
   [[nodiscard]] PSK_HD bool none_faces_it() const { return facing == 0 && (neighbours == 0 || neighbours > opposite); }
 
@@ -100,15 +131,19 @@ struct Around {
     }
   }
 
-  /// Whether the neighbours confirm a sample, and one of them is confirmed by its own: of outliers far from the surface
-  /// some confirm a third by chance, but seldom each other.
-  [[nodiscard]] PSK_HD bool is_confirmed(std::int64_t i) const {
-    if (!do_neighbours_confirm(i)) return false;
-    bool among_confirmed = false;
-    (*this)(i, [&](std::int64_t j, const Vec3f& /*normal*/, const Vec3f& /*step*/) {
-      among_confirmed = among_confirmed || do_neighbours_confirm(j);
+  /// Whether the neighbours confirm a sample, and kLeastConfirmed of them are confirmed by their own: of outliers far from
+  /// the surface some confirm a third by chance, but seldom each other.
+  [[nodiscard]] PSK_HD PSK_SELDOM static bool is_confirmed(Around around, std::int64_t i) {
+    if (!around.do_neighbours_confirm(i)) return false;
+    const Vec3f own = around.normals[i];
+    int neighbours = 0;
+    int confirmed = 0;
+    around(i, [&](std::int64_t j, const Vec3f& normal, const Vec3f& /*step*/) {
+      if (dot(own, normal) < kOtherSideCosine) return;
+      ++neighbours;
+      if (around.do_neighbours_confirm(j)) ++confirmed;
     });
-    return among_confirmed;
+    return confirmed > 0 && static_cast<float>(confirmed) >= kLeastConfirmed * static_cast<float>(neighbours);
   }
 
   [[nodiscard]] PSK_HD bool do_neighbours_confirm(std::int64_t i) const {
@@ -126,19 +161,21 @@ struct Around {
            static_cast<float>(confirming) >= kLeastConfirming * static_cast<float>(neighbours);
   }
 
+  /// Whether kFewestSuch of those that face like sample i face like others themselves.
+  [[nodiscard]] PSK_HD PSK_SELDOM static bool is_among_such(Around around, std::int64_t i) {
+    const Vec3f own = around.normals[i];
+    int such = 0;
+    around(i, [&](std::int64_t j, const Vec3f& normal, const Vec3f& /*step*/) {
+      if (dot(own, normal) > kAlikeCosine && around.seen_from(j).faces_like_others()) ++such;
+    });
+    return such >= kFewestSuch;
+  }
+
   [[nodiscard]] PSK_HD Seen seen_from(std::int64_t i) const {
     const Vec3f own = normals[i];
     Seen seen;
     (*this)(i, [&](std::int64_t /*j*/, const Vec3f& normal, const Vec3f& step) {
-      const float cosine = dot(own, normal);
-      ++seen.neighbours;
-      if (cosine > kAlikeCosine) ++seen.alike;
-      if (cosine < kOtherSideCosine) ++seen.opposite;
-      if (!(cosine > kFacingCosine)) return;
-      const float height = dot(normal, step);
-      ++seen.facing;
-      seen.heights += height;
-      seen.squared_heights += height * height;
+      seen.add(dot(own, normal), normal, step);
     });
     return seen;
   }

@@ -6,6 +6,7 @@
 #include "core/host_device.hpp"
 #include "octree/access.hpp"
 #include "octree/view.hpp"
+#include "poisson/bend.hpp"
 #include "poisson/density.hpp"
 
 namespace pointskin::poisson {
@@ -54,12 +55,12 @@ struct FacingView {
   /// on the finest level where that is at least kReliableOnSide. Of one sheet it is the density; across an edge the other
   /// face counts half. Of a sample without a normal all count.
   struct Densities {
-    float all, own_side;
-    bool disagrees;  ///< with the samples around, on the level of `all`
+    float all = 0, own_side = 0;
+    bool disagrees = false;  ///< with the samples around, on the level of `all`
   };
   PSK_HD Densities at(const Vec3f& p, const Vec3f& n) const {
     int level = octree::locate(tree, octree::point_key(p.x, p.y, p.z), depth).depth;
-    Densities found{0, 0, false};
+    Densities found;
     bool has_all = false;
     bool has_own = false;
     for (;; --level) {
@@ -79,6 +80,16 @@ struct FacingView {
       }
       if (has_all && has_own) return found;
     }
+  }
+
+  /// How much the surface bends around a point, from the levels `from` and above.
+  PSK_HD float bend_at(const Vec3f& p, int from) const {
+    BendAcrossLevels bend;
+    for (int level = from; level >= 0 && !bend.is_known(); --level) {
+      const Facing sum = octree::value_at(tree, sums, p, level);
+      if (sum.count > 0) bend.add(sum.normal, sum.count, sum.count * (1 / kPlaneFactor));
+    }
+    return bend.value();
   }
 
  private:

@@ -3,21 +3,10 @@
 
 #include <cstdint>
 
+#include "poisson/chebyshev.hpp"
 #include "poisson/operator.hpp"
 
 namespace pointskin::poisson {
-
-/// One Chebyshev iteration:  step = momentum step + gain diagonal^-1 (b - A u);  u = u + step. The last step is the
-/// difference of the last two u: one is read, the other is there, to be written.
-struct ChebyshevStep {
-  float momentum, gain;
-
-  template <class Float>
-  PSK_HD PSK_INLINE Float next(const Float& value, const Float& before, const Float& residual,
-                               const Float& diagonal) const {
-    return value + (gain * (residual / diagonal) + momentum * (value - before));
-  }
-};
 
 /// One iteration a brick at a time. A GPU has a kernel of its own for it (solve_kernel.cuh).
 struct RelaxBricks {
@@ -35,7 +24,7 @@ struct RelaxBricks {
       if ((unknowns >> s & 1) == 0) continue;
       const float value = around.at(octree::slot_x(s), octree::slot_y(s), octree::slot_z(s));
       float& out = next[8 * brick + s];
-      out = chebyshev.next(value, out, r.corner[s].residual, r.corner[s].diagonal);
+      out = chebyshev.next(value, out, r.corner[s].residual / r.corner[s].diagonal);
     }
   }
 
@@ -51,7 +40,7 @@ struct RelaxBricks {
     residual_lanes(system, brick, around, r);
     float* out = next + 8 * brick;
     const Float8 before = load8(out);
-    store8(select(mask_of_bits(unknowns), chebyshev.next(around(0, 0, 0), before, r.residual, r.diagonal), before),
+    store8(select(mask_of_bits(unknowns), chebyshev.next(around(0, 0, 0), before, r.residual / r.diagonal), before),
            out);
   }
 #endif

@@ -66,6 +66,7 @@ struct EvenOut {
 };
 
 struct Union {
+  static constexpr bool kAnyOrder = true;
   PSK_HD std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const { return a | b; }
 };
 

@@ -39,6 +39,9 @@ struct Collapse {
     sum.z += weight * local.z;
     sum.weight += weight;
   }
+  PSK_HD friend Collapse operator+(const Collapse& a, const Collapse& b) {
+    return {{a.sum.x + b.sum.x, a.sum.y + b.sum.y, a.sum.z + b.sum.z, a.sum.weight + b.sum.weight}};
+  }
   [[nodiscard]] PSK_HD CollapsedSample mean() const {
     if (!(sum.weight > 0)) return {};
     return {sum.x / sum.weight, sum.y / sum.weight, sum.z / sum.weight, sum.weight};
@@ -67,6 +70,27 @@ struct CollapsePoints {
     const float share = sampled_share(samples.splat_depths[p], level.depth);
     const float area = samples.areas[p] * share * share;
     return samples.trust.empty() ? area : trust_at(samples.trust[p], samples.splat_depths[p], level.depth) * area;
+  }
+};
+
+/// The same where cells hold many samples: kLanes threads share them.
+struct CollapseManyPoints {
+  using Sum = Collapse;
+  static constexpr int kLanes = 8;
+  CollapsePoints cells;
+
+  [[nodiscard]] PSK_HD Collapse part(std::int64_t cell, int lane) const {
+    const octree::LevelView& level = cells.level;
+    Collapse collapse{};
+    if (cells.brick_index[cell >> 3] < 0) return collapse;
+    const octree::Coordinates at = octree::decode(level.node_key(static_cast<std::int32_t>(cell)));
+    for (std::int32_t p = level.point_begin[cell] + lane; p < level.point_begin[cell + 1]; p += kLanes)
+      collapse.add(octree::local_in_cell(cells.samples.positions[p], at, level.depth), cells.weight(p));
+    return collapse;
+  }
+  PSK_HD void finish(std::int64_t cell, const Collapse& collapse) const {
+    const std::int32_t place = cells.brick_index[cell >> 3];
+    if (place >= 0) cells.out[8 * std::int64_t{place} + (cell & 7)] = collapse.mean();
   }
 };
 
@@ -172,8 +196,11 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
     const octree::LevelView& level = view.levels[d];
     const std::int64_t cells = std::int64_t{8} * level.cell_bricks;
     const std::int32_t* brick_index = result.view(d).brick_index;
-    if (d >= samples.coarsest_splat_depth)
-      for_each(ex, "screening.collapse", cells, CollapsePoints{level, samples, brick_index, result.samples.data()});
+    const CollapsePoints collapse{level, samples, brick_index, result.samples.data()};
+    if (d >= std::max(samples.coarsest_splat_depth, view.depth - 1))
+      for_each(ex, "screening.collapse", cells, collapse);
+    else if (d >= samples.coarsest_splat_depth)
+      for_each_by_lanes(ex, "screening.collapse", cells, CollapseManyPoints{collapse});
     else
       for_each(ex, "screening.collapse", cells,
                CollapseChildren{level, brick_index, result.view(d + 1).brick_index, result.samples.data()});

@@ -7,6 +7,7 @@
 
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
+#include "poisson/complete_solve.hpp"
 #include "poisson/operator.hpp"
 #include "poisson/previous_detail.hpp"
 #include "poisson/relax_bricks.hpp"
@@ -84,48 +85,11 @@ struct Plus {
   }
 };
 
-/// How long and on which part of the spectrum a level is iterated.
-struct Schedule {
-  int iterations;
-  double lower;  ///< eigenvalues of diagonal^-1 A in [lower, 1] are damped evenly
-};
-
-/// Complete levels are iterated longer: they carry the far field, and the surface over holes, and they are cheap. All but the
-/// last over their whole spectrum, whose lower end is about 2 / cells^2; levels 0 and 1 only give the next ones a start. The
-/// last, whose start is good, three times as long as finer levels, which only have to resolve what their own cells add to the
-/// interpolated field.
-Schedule schedule_for(int depth, int iterations) {
-  if (depth > octree::kCompleteDepth)
-    return {iterations, std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5)};
-  const int cells = 1 << depth;  // along an axis
-  if (depth == octree::kCompleteDepth) {
-    const double count = 3.0 * iterations;
-    return {3 * iterations, std::clamp(4.5 / (count * count), 0.004, 0.5)};
-  }
-  const int asked = depth < 2 ? iterations / 4 : iterations;
-  return {std::max(asked, 2 * cells), std::min(0.1, 2.0 / (cells * cells))};
+/// Levels finer than the complete ones only have to resolve what their own cells add to the interpolated field. The lower end of
+/// the part of the spectrum that is damped follows from how long they are iterated.
+double lower_end(int iterations) {
+  return std::clamp(4.0 / (static_cast<double>(iterations) * iterations), 0.005, 0.5);
 }
-
-/// Coefficients of Chebyshev iterations on [lower, 1].
-class Chebyshev {
- public:
-  explicit Chebyshev(double lower) : theta_((1 + lower) / 2), delta_((1 - lower) / 2), rho_(delta_ / theta_) {}
-
-  ChebyshevStep next() {
-    if (first_) {
-      first_ = false;
-      return {0, static_cast<float>(1 / theta_)};
-    }
-    const double rho = 1 / (2 * theta_ / delta_ - rho_);
-    const ChebyshevStep step{static_cast<float>(rho * rho_), static_cast<float>(2 * rho / delta_)};
-    rho_ = rho;
-    return step;
-  }
-
- private:
-  double theta_, delta_, rho_;
-  bool first_ = true;
-};
 
 template <exec::Space Exec>
 double residual_norm(Exec& ex, const LevelSystem& system, const float* u) {
@@ -142,42 +106,36 @@ requires(!Exec::kOwnKernels) void relax(Exec& ex, const LevelSystem& system, con
   }
 }
 
-/// The iterations of a schedule; the result ends in `u`.
+/// Iterates a level; the result ends in `u`. Both arrays hold the interpolated values before.
 template <exec::Space Exec>
-void iterate(Exec& ex, const LevelSystem& system, const Schedule& schedule, float* u, float* other) {
-  Chebyshev chebyshev(schedule.lower);
-  std::vector<ChebyshevStep> steps(static_cast<std::size_t>(schedule.iterations));
+void iterate(Exec& ex, const LevelSystem& system, int iterations, float* u, float* other) {
+  Chebyshev chebyshev(lower_end(iterations));
+  std::vector<ChebyshevStep> steps(static_cast<std::size_t>(iterations));
   std::generate(steps.begin(), steps.end(), [&] { return chebyshev.next(); });
-  const bool even = schedule.iterations % 2 == 0;
+  const bool even = iterations % 2 == 0;
   relax(ex, system, steps, even ? u : other, even ? other : u);
 }
 
-/// Iterates one level; the result ends in `u`. Both arrays hold the interpolated values before.
+/// Fills both arrays of a level: from the level above, and from the field before, if there is one; 0 where it is held there.
+/// @param unknowns  of the level, those that are held among them
 template <exec::Space Exec>
-LevelSolve solve_level(Exec& ex, const LevelSystem& system, const SolveOptions& options, float* u, float* other) {
-  const octree::LevelView& level = system.level;
-  const Schedule schedule = schedule_for(level.depth, options.iterations);
-  LevelSolve report{level.depth, 0, schedule.iterations};
-  if (options.residuals) {
-    report.unknowns =
-        exec::reduce<std::int64_t>(ex, "solve.unknowns", level.bricks, CountUnknowns{level.unknowns}, Plus{});
-    report.residual_before = residual_norm(ex, system, u);
-  }
-  iterate(ex, system, schedule, u, other);
-  if (options.residuals) report.residual_after = residual_norm(ex, system, u);
-  return report;
-}
-
-/// Fills both arrays of a level: from the level above, and from the field before, if there is one.
-template <exec::Space Exec>
-void start_level(Exec& ex, const PreviousField& before, const Prolong& prolong) {
+void start_level(Exec& ex, const PreviousField& before, const std::uint8_t* unknowns, const Prolong& prolong) {
   const octree::LevelView& level = prolong.level;
-  if (before.u == nullptr) return for_each(ex, "solve.prolong", level.nodes(), prolong);
-  const octree::LevelView& old = before.tree.levels[level.depth];
-  const octree::LevelView& above = before.tree.levels[level.depth - 1];
-  const Detail detail{
-      level, old, above, before.u + old.first_node, before.u + above.first_node, before.bricks + level.first_node / 8};
-  for_each(ex, "solve.start", level.nodes(), ProlongWithDetail{prolong, detail});
+  if (before.u == nullptr) {
+    for_each(ex, "solve.prolong", level.nodes(), prolong);
+  } else {
+    const octree::LevelView& old = before.tree.levels[level.depth];
+    const octree::LevelView& above = before.tree.levels[level.depth - 1];
+    const Detail detail{level,
+                        old,
+                        above,
+                        before.u + old.first_node,
+                        before.u + above.first_node,
+                        before.bricks + level.first_node / 8};
+    for_each(ex, "solve.start", level.nodes(), ProlongWithDetail{prolong, detail});
+  }
+  if (unknowns != level.unknowns)
+    for_each(ex, "solve.hold", level.bricks, HoldAtZero{unknowns, level.unknowns, prolong.u, prolong.other});
 }
 
 struct SumOfValues {
@@ -214,35 +172,100 @@ struct ValuesInCell {
   }
 };
 
+/// The systems of all levels of one solve, and their values.
+template <exec::Space Exec>
+class Levels {
+ public:
+  Levels(Exec& ex, const octree::OctreeView& tree, ArrayView<const float> b, const Screening& screening,
+         const SolveOptions& options, ArrayView<float> u)
+      : ex_(ex), tree_(tree), b_(b), screening_(screening), options_(options), u_(u) {}
+
+  /// The unknowns are those to solve for.
+  [[nodiscard]] LevelSystem system(int d) const {
+    octree::LevelView level = tree_.levels[d];
+    if (!options_.free_unknowns.empty()) level.unknowns = options_.free_unknowns.data + level.first_node / 8;
+    LevelSystem system{level, b_.data + level.first_node, {}, 0, make_axis_rows_f()};
+    if (options_.screening > 0) {
+      system.screening = screening_.view(d);
+      system.screening_scale = static_cast<float>(std::ldexp(options_.screening, 2 * (d - tree_.depth)));
+    }
+    return system;
+  }
+
+  /// Levels 0..last.
+  void solve_complete(int last, std::vector<LevelSolve>& done) {
+    CompleteLevels levels;
+    levels.top = last;
+    for (int d = 0; d <= last; ++d) {
+      levels.fields[d] = system(d);
+      levels.unknowns[d] = tree_.levels[d].unknowns;
+    }
+    const CompleteScratch scratch = allocate_complete_levels(ex_, u_, levels);
+    const int iterations = solve_complete_levels(ex_, levels, options_.iterations, options_.previous);
+    for (int d = 0; d <= last; ++d) report(levels.fields[d], d == last ? iterations : kFirstIterations, done);
+  }
+
+  void solve(int d, std::vector<LevelSolve>& done) {
+    const LevelSystem level = system(d);
+    auto other = exec::make_buffer<float>(ex_, level.level.nodes());
+    start(level, values(d), other.view());
+    iterate(ex_, level, options_.iterations, values(d).data, other.data());
+    report(level, options_.iterations, done);
+  }
+
+ private:
+  [[nodiscard]] ArrayView<float> values(int d) const {
+    return u_.part(tree_.levels[d].first_node, tree_.levels[d].nodes());
+  }
+
+  void start(const LevelSystem& system, ArrayView<float> u, ArrayView<float> other) {
+    const octree::LevelView& above = tree_.levels[system.level.depth - 1];
+    start_level(ex_, options_.previous, tree_.levels[system.level.depth].unknowns,
+                Prolong{system.level, above, u_.data + above.first_node, u, other});
+  }
+
+  /// Residuals are measured where they are asked for: that of the start, which is made once more, and that of the result.
+  void report(const LevelSystem& system, int iterations, std::vector<LevelSolve>& done) {
+    const octree::LevelView& level = system.level;
+    LevelSolve solved{level.depth, 0, iterations};
+    if (options_.residuals) {
+      auto begin = exec::make_buffer<float>(ex_, level.nodes());
+      if (level.depth == 0)
+        exec::fill(ex_, begin.view(), 0.0F);
+      else
+        start(system, begin.view(), begin.view());
+      solved.unknowns =
+          exec::reduce<std::int64_t>(ex_, "solve.unknowns", level.bricks, CountUnknowns{level.unknowns}, Plus{});
+      solved.residual_before = residual_norm(ex_, system, begin.data());
+      solved.residual_after = residual_norm(ex_, system, values(level.depth).data);
+    }
+    done.push_back(solved);
+  }
+
+  Exec& ex_;
+  const octree::OctreeView& tree_;
+  ArrayView<const float> b_;
+  const Screening& screening_;
+  const SolveOptions& options_;
+  ArrayView<float> u_;
+};
+
 }  // namespace
 
 template <exec::Space Exec>
 Solution solve_poisson(Exec& ex, const octree::OctreeView& tree, ArrayView<const float> b, const Screening& screening,
                        const SolveOptions& options) {
   Solution solution{exec::make_buffer<float>(ex, tree.nodes), {}};
-  const ArrayView<float> all = solution.u.view();
-  for (int d = 0; d <= tree.depth; ++d) {
+  Levels<Exec> levels(ex, tree, b, screening, options, solution.u.view());
+  const auto announce = [&](int d) {
     if (options.before_level) options.before_level(d);
-    octree::LevelView level = tree.levels[d];
-    const bool holds = !options.free_unknowns.empty();
-    if (holds) level.unknowns = options.free_unknowns.data + level.first_node / 8;
-    LevelSystem system{level, b.data + level.first_node, {}, 0, make_axis_rows_f()};
-    if (options.screening > 0) {
-      system.screening = screening.view(d);
-      system.screening_scale = static_cast<float>(std::ldexp(options.screening, 2 * (d - tree.depth)));
-    }
-    const ArrayView<float> u = all.part(level.first_node, level.nodes());
-    auto other = exec::make_buffer<float>(ex, level.nodes());
-    if (d == 0) {
-      exec::fill(ex, u, 0.0F);
-      exec::fill(ex, other.view(), 0.0F);
-    } else {
-      const octree::LevelView& above = tree.levels[d - 1];
-      start_level(ex, options.previous, Prolong{level, above, all.data + above.first_node, u, other.view()});
-    }
-    if (holds)
-      for_each(ex, "solve.hold", level.bricks, HoldAtZero{tree.levels[d].unknowns, level.unknowns, u, other.view()});
-    solution.levels.push_back(solve_level(ex, system, options, u.data, other.data()));
+  };
+  const int complete = std::min(tree.depth, octree::kCompleteDepth);
+  for (int d = 0; d <= complete; ++d) announce(d);
+  levels.solve_complete(complete, solution.levels);
+  for (int d = complete + 1; d <= tree.depth; ++d) {
+    announce(d);
+    levels.solve(d, solution.levels);
   }
   return solution;
 }

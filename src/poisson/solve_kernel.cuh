@@ -28,7 +28,7 @@ struct RelaxCorners {
     float value;
     const CornerResidual r = corner.residual(u[round & 1], value);
     float& out = u[~round & 1][n];
-    out = steps[round].next(value, out, r.residual, r.diagonal);
+    out = steps[round].next(value, out, r.residual / r.diagonal);
   }
 };
 
@@ -113,7 +113,7 @@ struct RelaxTile {
     CornerResidual r;
     r.residual = b - laplacian_at(system, key, lane & 7, false, values);
     if ((screened >> lane & 1) != 0) screen(system, shared.samples, lane, values, r);
-    next[n] = chebyshev.next(values(0, 0, 0), before, r.residual, r.diagonal);
+    next[n] = chebyshev.next(values(0, 0, 0), before, r.residual / r.diagonal);
   }
 };
 

@@ -42,7 +42,10 @@ void weigh_trust(Exec& ex, const octree::OctreeData& tree, Samples& samples) {
   constexpr int kLevelsAbove = 2;  // the cells over which samples are pooled hold 16 of their own on a surface
   constexpr int kDepths = 3;       // sparser samples take the finest of these: a thread should not have too many
   const octree::OctreeView view = tree.view();
-  samples.trust = exec::make_buffer<float>(ex, samples.positions.size());
+  if (samples.trust.empty()) {
+    samples.trust = exec::make_buffer<float>(ex, samples.positions.size());
+    exec::fill(ex, samples.trust.view(), 1.0F);
+  }
   for (int i = 0; i < kDepths && i <= view.depth; ++i) {
     const int depth = view.depth - i;
     const bool last = i == std::min(kDepths - 1, view.depth);

@@ -21,7 +21,7 @@ struct Scatter {
   }
 };
 
-inline constexpr int kLanes = 8;
+inline constexpr int kLanes = 32;
 
 /// Trust in the samples of the cells of `level` that are splatted at `depth` and above it, below `depth` + 1; at the
 /// last depth also in all sparser ones.
@@ -56,7 +56,10 @@ struct TrustInCells {
     const float squared_cells = finer > 0 ? 1 + 3 * finer : 1.0F;
     const float variance = (kPriorPairs * kPriorVariance + squared_cells * scatter.sum) / (kPriorPairs + scatter.pairs);
     const float value = kTrustScale / (kCleanVariance + variance);
-    return value > kSmallestTrust ? value : kSmallestTrust;
+    const float urged = trust[sample] * value;
+    const float most = value > kMostUrged ? value : kMostUrged;
+    const float kept = urged < most ? urged : most;
+    return kept > kSmallestTrust ? kept : kSmallestTrust;
   }
 };
 

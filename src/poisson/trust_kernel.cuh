@@ -1,4 +1,4 @@
-// Trust on a GPU, eight lanes a cell, with the bits of TrustInCell.
+// Trust on a GPU, a warp a cell, with the bits of TrustInCell.
 #pragma once
 
 #include <cstdint>

@@ -103,8 +103,8 @@ DeviceMesh FieldImpl::extract_and_release(RunReport& report) {
 
 void Engine::limit_memory(std::int64_t bytes) const { workspace_.data().space.pool()->set_limit(bytes); }
 
-std::shared_ptr<FieldImpl> Engine::solve(const Input& input, const Options& options, bool keep_all,
-                                         RunReport& report) const {
+std::shared_ptr<FieldImpl> Engine::solve(const Input& input, const Options& options, bool keep_all, RunReport& report,
+                                         const std::optional<Bounds>& core) const {
   return exec::visit(workspace_.data().space, [&](auto& ex) {
     ex.pool()->reset_peak();
     std::shared_ptr<const envelope::Envelope> envelope = make_envelope(ex, options, input.origin());
@@ -113,7 +113,8 @@ std::shared_ptr<FieldImpl> Engine::solve(const Input& input, const Options& opti
     clock.lap(report.upload_ms);
     clock.read();
     FieldData data =
-        fit_field(ex, points, {.envelope = std::move(envelope), .keep_all = keep_all, .look = true}, options, report);
+        fit_field(ex, points, {.core = core, .envelope = std::move(envelope), .keep_all = keep_all, .look = true},
+                  options, report);
     for (Vec3d& p : report.farthest_strays)
       for (std::size_t a = 0; a < 3; ++a) p[a] += input.origin()[a];
     report.device_peak_bytes = ex.pool()->peak_bytes();

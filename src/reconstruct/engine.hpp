@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -47,6 +48,9 @@ class PSK_HIDDEN FieldImpl {
   /// What was counted of the samples and the field and, after extract_and_release, of the surface.
   [[nodiscard]] const diagnose::Counts& seen() const { return data_.seen; }
 
+  /// FieldData::core.
+  [[nodiscard]] const std::optional<Bounds>& core() const { return data_.core; }
+
  private:
   [[nodiscard]] Options with(const ExtractOptions& options) const;
 
@@ -67,8 +71,9 @@ class Engine {
   /// Gives memory that is kept for the next run back to the system.
   void release_memory() const { workspace_.release_memory(); }
   /// @param keep_all  FitSetup::keep_all
+  /// @param core      FitSetup::core
   [[nodiscard]] std::shared_ptr<FieldImpl> solve(const Input& input, const Options& options, bool keep_all,
-                                                 RunReport& report) const;
+                                                 RunReport& report, const std::optional<Bounds>& core = {}) const;
   /// Up to `count` of the points that a run uses, evenly spread over their Morton order, with their normals.
   [[nodiscard]] Cloud thin(const Input& input, const Options& options, std::int64_t count) const;
   /// @throws Error as measure_detail

@@ -13,9 +13,8 @@
 namespace pointskin::detail {
 
 inline void report_strays(const octree::StrayPoints& strays, RunReport& report) {
-  constexpr std::size_t kListed = 10;
   report.strays = strays.size();
-  for (std::size_t i = 0; i < std::min(kListed, strays.positions.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(octree::kMostReported, strays.positions.size()); ++i) {
     const Vec3f& p = strays.positions[i];
     report.farthest_strays.push_back({p.x, p.y, p.z});
   }
@@ -31,6 +30,18 @@ octree::Frame fit_cube(Exec& ex, PointBuffers& points, const Options& options, R
   report_strays(strays, report);
   leave_out(ex, strays, points);
   return octree::frame_around(strays.core, options.scale);
+}
+
+/// The working cube around FitSetup::core; leaves the points outside of it out of those that are used.
+template <exec::Space Exec>
+octree::Frame cube_around(Exec& ex, const Bounds& core, PointBuffers& points, const Options& options,
+                          RunReport& report) {
+  report.farthest_strays.clear();
+  const octree::Frame cube = octree::frame_around(core, options.scale);
+  const octree::StrayPoints outside = octree::find_outside(ex, points.positions.cview(), cube, core);
+  report_strays(outside, report);
+  leave_out(ex, outside, points);
+  return cube;
 }
 
 }  // namespace pointskin::detail

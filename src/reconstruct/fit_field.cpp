@@ -14,6 +14,7 @@
 #include "diagnose/verdict.hpp"
 #include "exec/this_space.hpp"
 #include "field/distance.hpp"
+#include "octree/bounding_box.hpp"
 #include "poisson/boundary.hpp"
 #include "poisson/divergence.hpp"
 #include "poisson/screening.hpp"
@@ -119,6 +120,32 @@ void look_at_fit(Exec& ex, const poisson::Samples& samples, const Options& optio
   field.seen = diagnose::read_counts(ex, field.counts);
 }
 
+/// The box of a sample, and none of an outlier.
+struct BoxOfInlier {
+  ArrayView<const Vec3f> positions;
+  ArrayView<const float> areas;
+  PSK_HD Bounds operator()(std::int64_t i) const {
+    constexpr float kFar = 2;  // beyond the unit cube
+    if (areas[i] > 0) return {positions[i], positions[i]};
+    return {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  }
+};
+
+/// FieldData::core. Waits where some samples are lonely; elsewhere nothing is done.
+template <exec::Space Exec>
+std::optional<Bounds> find_core(Exec& ex, const poisson::Samples& samples, const Options& options,
+                                const FieldData& field) {
+  constexpr double kWorthIt = 0.95;  // of the cube's side
+  if (diagnose::findings_of(field.seen).lonely <= 0) return std::nullopt;
+  const Bounds box =
+      exec::reduce<Bounds>(ex, "octree.core", samples.areas.size(),
+                           BoxOfInlier{samples.positions.cview(), samples.areas.cview()}, octree::JoinBoxes{});
+  const Bounds core{field.frame.to_world(box.lower), field.frame.to_world(box.upper)};
+  if (!(box.lower.x < box.upper.x) || octree::frame_around(core, options.scale).size > kWorthIt * field.frame.size)
+    return std::nullopt;
+  return core;
+}
+
 /// The tangent planes of the samples that are no outliers.
 struct Planes {
   exec::Buffer<Vec3f> normals;
@@ -162,7 +189,10 @@ void fit_samples(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   look_at_samples(ex, samples, setup, options, field);
   const bool keeps_density = options.density || options.weakness || options.trim != 0 || setup.keep_all;
   if (!keeps_density && !setup.look && !setup.drop_specks) field.density.counts.reset();
-  if (options.screening > 0 && !options.fixed_screening) poisson::weigh_trust(ex, field.tree, samples);
+  if (options.screening > 0 && !options.fixed_screening)
+    poisson::weigh_trust(ex, field.tree, samples);
+  else
+    samples.trust.reset();
   exec::Buffer<float> divergence = poisson::splat_divergence(ex, field.tree, samples.view(), field.resolution);
   if (setup.keeps_samples()) field.samples.normals = std::move(samples.normals);
   samples.normals.reset();
@@ -195,6 +225,8 @@ void fit_samples(Exec& ex, SortedSamples& sorted, const FitSetup& setup, const O
   field.values = std::move(solution.u);
   if (is_distance) measure_distances(ex, samples.positions.cview(), planes, field);
   if (!field.counts.empty()) look_at_fit(ex, samples, options, field);
+  if (setup.look && !setup.cube && !setup.core && !options.keep_strays)
+    field.core = find_core(ex, samples, options, field);
   if (!keeps_density && !picks_pieces_by_support(field, options)) field.density.counts.reset();
   if (setup.keeps_samples()) keep_samples(ex, samples, std::move(sorted.added), field.samples);
   if (options.weakness)
@@ -220,7 +252,9 @@ FieldData fit_to_points(Exec& ex, PointBuffers& points, const FitSetup& setup, c
   field.keeps_all = setup.keep_all;
   field.drops_specks = setup.drop_specks;
   announce(options.progress, "octree", 0.05);
-  field.frame = setup.cube ? *setup.cube : fit_cube(ex, points, options, report);
+  field.frame = setup.cube   ? *setup.cube
+                : setup.core ? cube_around(ex, *setup.core, points, options, report)
+                             : fit_cube(ex, points, options, report);
   report.points = points.used_count();
   SortedSamples sorted = sort_into_cube(ex, points, field.frame);
   field.attributes = std::move(sorted.attributes);

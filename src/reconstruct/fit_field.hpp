@@ -48,6 +48,8 @@ struct FieldData {
   WeaknessScale weakness;                 ///< with Options::weakness; not with keeps_all
   exec::Buffer<diagnose::Counts> counts;  ///< with FitSetup::look
   diagnose::Counts seen{};                ///< these, as they were read last
+  /// With FitSetup::look, if the cube was made for outliers: the box of the samples that are none. A cube for it shows more.
+  std::optional<Bounds> core;
 
   [[nodiscard]] field::FieldView view(DomainFaces faces) const { return view(faces, isovalue); }
   [[nodiscard]] field::FieldView view(DomainFaces faces, double at) const {
@@ -60,6 +62,8 @@ struct FieldData {
 struct FitSetup {
   bool keep_points = false;             ///< false: `points` are freed once they are sorted
   std::optional<octree::Frame> cube{};  ///< the working cube, for all points; unset: fitted, and strays are left out
+  /// What FieldData::core said of a fit of these points: the cube is made for it, and points outside are left out.
+  std::optional<Bounds> core{};
   std::shared_ptr<const envelope::Envelope> envelope{};  ///< made ready from Options::envelope, or null
   bool keep_samples = false;                             ///< fill FieldData::samples
   bool keep_all = false;                                 ///< whatever any ExtractOptions need: they come later

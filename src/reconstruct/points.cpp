@@ -59,6 +59,7 @@ struct FindFlaws {
   }
 };
 struct AddFlaws {
+  static constexpr bool kAnyOrder = true;
   PSK_HD Flaws operator()(const Flaws& a, const Flaws& b) const {
     return {a.not_finite + b.not_finite, a.with_normal + b.with_normal};
   }

@@ -14,6 +14,8 @@ using diagnose::NormalsVerdict;
 
 namespace {
 
+constexpr double kSolved = 0.8;  // what a solve calls the whole of its part, and where extraction begins
+
 double flipped_share(const NormalReport& report) {
   return static_cast<double>(report.flipped) / std::max(1.0, static_cast<double>(report.given));
 }
@@ -31,7 +33,6 @@ void Run::next_part(double until) {
 }
 
 bool Run::tell(const Progress& progress) {
-  constexpr double kSolved = 0.8;  // what a solve calls the whole of its part
   const double share = std::min(1.0, progress.fraction / kSolved);
   return options_.progress({progress.phase, from_ + share * (until_ - from_)});
 }
@@ -43,9 +44,14 @@ std::shared_ptr<FieldImpl> Run::fit(const Input& input) {
   report.normals = std::move(report_.normals);
   report.normals_done = report_.normals_done;
   report_ = std::move(report);
-  std::shared_ptr<FieldImpl> field = engine_.solve(input, engine_options_, keep_all_, report_);
+  std::shared_ptr<FieldImpl> field = engine_.solve(input, engine_options_, keep_all_, report_, core_);
+  report_.fits = ++fits_;
   side_ = field->cube_size_world();
-  return field;
+  if (!field->core()) return field;
+  core_ = field->core();  // found but once: a fit that is told of a core looks for none
+  field.reset();
+  next_part(until_ + (kSolved - until_) / 2);
+  return fit(input);
 }
 
 NormalsVerdict Run::judge(const FieldImpl& field) const {

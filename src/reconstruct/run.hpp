@@ -52,9 +52,11 @@ class Run {
   Options engine_options_;  // these, with a progress of the part that runs
   RunReport& report_;
   double from_ = 0, until_ = 0.8;
-  double side_ = 0;  // of the working cube
-  Cloud own_;        // with normals that are not the caller's; or empty
+  double side_ = 0;             // of the working cube
+  std::optional<Bounds> core_;  // FitSetup::core
+  Cloud own_;                   // with normals that are not the caller's; or empty
   bool keep_all_ = false;
+  int fits_ = 0;
 };
 
 }  // namespace pointskin::detail

@@ -13,13 +13,14 @@
 
 namespace pointskin::test {
 
-/// A tree whose levels are all complete: a point in every cell of depth 5.
-inline SmallTree complete_tree() {
+/// A tree whose levels are all complete: a point in every cell of the finest, at most 5.
+inline SmallTree complete_tree(int depth) {
+  const int side = 1 << depth;
+  const auto middle = [&](int i) { return (static_cast<float>(i) + 0.5F) / static_cast<float>(side); };
   std::vector<Vec3f> centres;
-  for (int i = 0; i < 32 * 32 * 32; ++i)
-    centres.push_back({(static_cast<float>(i / 1024) + 0.5F) / 32, (static_cast<float>(i / 32 % 32) + 0.5F) / 32,
-                       (static_cast<float>(i % 32) + 0.5F) / 32});
-  return {centres, {}, 5};
+  for (int i = 0; i < side * side * side; ++i)
+    centres.push_back({middle(i / (side * side)), middle(i / side % side), middle(i % side)});
+  return {centres, {}, depth};
 }
 
 /// integral f phi_i / h with f = 3 pi^2 u over the cells of a complete level, by three Gauss points an axis.

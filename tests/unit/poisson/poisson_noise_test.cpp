@@ -1,4 +1,4 @@
-// Splat depths follow the noise of a cloud, its bends, and the way it was scanned.
+// Normals are averaged over as many samples as the noise of a cloud, its bends and the way it was scanned ask for.
 #include "poisson/noise.hpp"
 
 #include <gtest/gtest.h>
@@ -48,17 +48,51 @@ double shift_of_sphere(std::int64_t count, double noise) {
 }
 
 TEST(Noise, LeavesCleanSamplesOfBendsFinerDepths) {
-  EXPECT_GT(shift_of_sphere(300, 0), 0.7);  // neighbours 12 degrees apart
-  EXPECT_LE(shift_of_sphere(300, 0), poisson::kFiner);
+  EXPECT_GT(shift_of_sphere(300, 0), 0.2);  // neighbours 12 degrees apart: half of the samples
+  EXPECT_GT(shift_of_sphere(100, 0), 0.7);  // 20 degrees
+  EXPECT_LE(shift_of_sphere(20, 0), 0.5 * std::log2(poisson::kUsual / poisson::kFinest));
 }
 
-TEST(Noise, LeavesCleanSamplesOfSlowBendsTheirs) { EXPECT_NEAR(shift_of_sphere(30'000, 0), 0, 0.01); }
+TEST(Noise, LeavesCleanSamplesOfSlowBendsTheirs) { EXPECT_NEAR(shift_of_sphere(30'000, 0), 0, 0.02); }
 
-TEST(Noise, OfAQuarterOfTheSpacingKeepsDepths) { EXPECT_NEAR(shift_of_sphere(300, 0.25), 0, 0.05); }
+TEST(Noise, OfSlowBendsIsAveragedOverMoreSamplesThanThatOfFastOnes) {
+  EXPECT_LT(shift_of_sphere(30'000, 0.25), -0.5);
+  EXPECT_NEAR(shift_of_sphere(300, 0.25), 0, 0.25);
+}
 
-TEST(Noise, AsWideAsTheSpacingMakesDepthsCoarser) {
-  EXPECT_LT(shift_of_sphere(30'000, 1), -0.3);  // neighbours within thick noise scatter less than all of it
-  EXPECT_GE(shift_of_sphere(30'000, 1), -poisson::kCoarser);
+TEST(Noise, AsWideAsTheSpacingMakesDepthsAsCoarseAsTheyGet) {
+  EXPECT_LT(shift_of_sphere(30'000, 1), -0.9);
+  EXPECT_GE(shift_of_sphere(30'000, 1), -0.5 * std::log2(poisson::kMost / poisson::kUsual) - 0.01);
+}
+
+TEST(Averaging, FollowsNoiseAndBend) {
+  const poisson::Averaging clean{0, poisson::kFinest};
+  EXPECT_EQ(clean.samples(0), poisson::kUsual);
+  EXPECT_NEAR(clean.samples(0.06F), poisson::kUsual / 2, 1e-6);
+  EXPECT_EQ(clean.samples(10), poisson::kFinest);
+  const poisson::Averaging noisy{0.04F, 0.7F};
+  EXPECT_EQ(noisy.samples(0), poisson::kMost);
+  EXPECT_NEAR(noisy.samples(0.02F), 1.4 * std::sqrt(2.0), 1e-5);
+  float last = poisson::kMost;
+  for (float bend = 1e-5F; bend < 10; bend *= 1.3F) {
+    EXPECT_LE(noisy.samples(bend), last);
+    EXPECT_GE(noisy.samples(bend), clean.samples(bend));
+    last = noisy.samples(bend);
+  }
+}
+
+TEST(Averaging, OverFourTimesTheSamplesIsALevelCoarser) {
+  EXPECT_EQ(poisson::Averaging::levels_finer(poisson::kUsual), 0);
+  EXPECT_NEAR(poisson::Averaging::levels_finer(poisson::kUsual / 4), 1, 1e-6);
+  EXPECT_NEAR(poisson::Averaging::levels_finer(4 * poisson::kUsual), -1, 1e-6);
+  for (float m = 0.2F; m < 8; m += 0.1F)
+    EXPECT_NEAR(poisson::Averaging::levels_finer(m), 0.5 * std::log2(1.5 / static_cast<double>(m)), 0.05);
+}
+
+TEST(Averaging, OverFewSamplesTrustsTheirPositionsMore) {
+  EXPECT_EQ(poisson::Averaging::urge(8), 1);
+  EXPECT_EQ(poisson::Averaging::urge(1), 2);
+  EXPECT_EQ(poisson::Averaging::urge(poisson::kFinest), poisson::kMostUrge);
 }
 
 TEST(Noise, DoesNotTellTheDistanceBetweenScanLines) {

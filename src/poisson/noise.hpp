@@ -21,8 +21,8 @@ namespace pointskin::poisson {
 inline constexpr float kSmoothing = 1.4F, kSharp = 0.036F, kClean = 0.03F;
 inline constexpr float kUsual = 1.5F, kFinest = 0.22F, kPerNoise = 4, kMost = 8;
 
-/// Where so few samples are averaged, the shape bends more than noise hides: positions are trusted more, by kUrgent over
-/// the number of samples, at most kMostUrge times (trust.hpp).
+/// Where few samples are averaged, the shape bends more than noise hides; where many are, noise hides the shape. Positions are
+/// trusted by kUrgent over the number of samples, at most kMostUrge times (trust.hpp).
 inline constexpr float kUrgent = 2, kMostUrge = 3;
 
 /// On scan lines the fourth sample after one is often more than sqrt(kAlongLines) = 3.5 times as far away as the next:
@@ -98,7 +98,7 @@ struct Averaging {
 
   PSK_HD static float urge(float samples) {
     const float urge = kUrgent / samples;
-    return urge < 1 ? 1.0F : urge > kMostUrge ? kMostUrge : urge;
+    return urge > kMostUrge ? kMostUrge : urge;
   }
 };
 

@@ -91,9 +91,23 @@ TEST(Averaging, OverFourTimesTheSamplesIsALevelCoarser) {
 }
 
 TEST(Averaging, OverFewSamplesTrustsTheirPositionsMoreAndOverManyLess) {
-  EXPECT_EQ(poisson::Averaging::urge(8), 0.25F);
-  EXPECT_EQ(poisson::Averaging::urge(1), 2);
-  EXPECT_EQ(poisson::Averaging::urge(poisson::kFinest), poisson::kMostUrge);
+  EXPECT_EQ(poisson::Averaging::urge(8, 0), 0.25F);
+  EXPECT_EQ(poisson::Averaging::urge(1, 0), 2);
+  EXPECT_EQ(poisson::Averaging::urge(poisson::kFinest, 0), poisson::kMostUrge);
+}
+
+TEST(Averaging, LeavesPositionsTrustedWhereTheFinestLevelAveragesMore) {
+  constexpr float kMany = 8;
+  const float alone = poisson::Averaging::urge(kMany, -1);
+  EXPECT_FLOAT_EQ(alone, poisson::kUrgent / kMany);
+  float last = alone;
+  for (float beyond = 0; beyond <= 1; beyond += 0.0625F) {
+    const float urge = poisson::Averaging::urge(kMany, beyond);
+    EXPECT_GE(urge, last);
+    EXPECT_FLOAT_EQ(poisson::Averaging::urge(0.5F, beyond), poisson::Averaging::urge(0.5F, 0));  // few count alone
+    last = urge;
+  }
+  EXPECT_FLOAT_EQ(last, 1);
 }
 
 TEST(Noise, DoesNotTellTheDistanceBetweenScanLines) {

@@ -90,6 +90,10 @@ void RunMemory::check(const MemoryEstimate& estimate) const {
 
 std::int64_t RunMemory::limit_of_run() const { return limit_ == 0 ? 0 : std::max<std::int64_t>(1, most() - beside_); }
 
+void RunMemory::limit(const Workspace& workspace) const {
+  workspace.limit_memory(limit_ > 0 ? limit_of_run() : workspace.device().available_bytes() / 5 * 4);
+}
+
 void RunMemory::throw_named(const Error& error) const {
   const auto text = [](std::int64_t bytes) { return format_bytes(static_cast<double>(bytes)); };
   const std::string beside =

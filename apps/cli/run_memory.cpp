@@ -80,7 +80,9 @@ void RunMemory::check(const Cloud& cloud) const {
 
 MemoryEstimate RunMemory::estimate(const Cloud& cloud, const Options& options) const {
   const std::int64_t peak = so_far();
-  return {estimate_device_bytes(cloud, options, device_.threads), beside_, peak};
+  Options limited = options;
+  limited.max_memory_bytes = device_.kind == DeviceKind::cpu ? limit_of_run() : 0;  // it is counted on the host
+  return {within_limit([&] { return estimate_device_bytes(cloud, limited, device_.threads); }), beside_, peak};
 }
 
 void RunMemory::check(const MemoryEstimate& estimate) const {

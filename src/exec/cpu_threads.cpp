@@ -59,7 +59,7 @@ int try_to_make(int count) {
 /// What was tried so far.
 struct Known {
   std::mutex mutex;
-  int possible = 1;         ///< so many are possible
+  int possible = 1;          ///< so many are possible
   bool met_a_limit = false;  ///< no more than that
 };
 

@@ -20,9 +20,9 @@ class LimitedThreads : public testing::Test {
   }
 
   Result reconstruct(const std::string& limit, const std::string& output, const std::string& threads) {
-    return run_shell(limit + "exec \"$P\" reconstruct in.ply -q --depth 6 --device cpu --threads " + threads + " -o " +
-                         output,
-                     folder_ / "");
+    return run_shell(
+        limit + "exec \"$P\" reconstruct in.ply -q --depth 6 --device cpu --threads " + threads + " -o " + output,
+        folder_ / "");
   }
 
   TemporaryFolder folder_;

@@ -89,8 +89,13 @@ BooleanResult compute(const BooleanArgs& args, const Solid& a, const Solid& b, B
 void write_outputs(const BooleanArgs& args, const BooleanResult& result, BooleanRecord& record) {
   throw_if_interrupted();
   const Stopwatch watch;
-  if (!args.cloud.empty()) write_cloud(args.cloud, result.cloud, args.threads);
+  if (!args.cloud.empty()) {
+    write_cloud(args.cloud, result.cloud, args.threads);
+    file_was_written();
+  }
   write_mesh(args.output, result.mesh, args.threads);
+  file_was_written();
+  if (args.report.empty()) ignore_interrupts();
   record.write_ms = watch.ms();
 }
 

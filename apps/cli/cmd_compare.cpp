@@ -176,6 +176,7 @@ int run(const CompareArgs& args) {
   on_interrupt(OnInterrupt::remember);
   throw_if_interrupted();
   if (!args.heat.empty()) write_heat(args, comparison, heat);
+  ignore_interrupts();
   write_stdout(args.json ? json_text(to_json(args, comparison)) : human_text(args, comparison));
   return 0;
 }

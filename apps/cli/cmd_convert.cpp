@@ -61,6 +61,7 @@ int run(const ConvertArgs& args) {
   on_interrupt(OnInterrupt::remember);
   throw_if_interrupted();
   const std::string written = std::visit([&](const auto& held) { return write(args, held); }, content);
+  ignore_interrupts();
   if (!args.quiet) print_note(file_words(args.output) + written);
   return 0;
 }

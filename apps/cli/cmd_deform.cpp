@@ -1,4 +1,5 @@
 // pointskin deform: a cloud bent by handles and lattices, frame after frame.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,8 @@ OptionGroup file_options(DeformArgs& args) {
 }
 
 OptionTable deform_options(DeformArgs& args) {
-  return {file_options(args), fit_options(args), device_options(args), quiet_option(args.quiet)};
+  return {file_options(args), fit_options(args), device_options(args), memory_options(args.options.max_memory_bytes),
+          quiet_option(args.quiet)};
 }
 
 std::string file_of(const DeformArgs& args, const std::string& pattern, int frame) {
@@ -131,10 +133,20 @@ class Frames {
     frame_ms_.push_back(watch.ms());
     const Stopwatch writing;
     throw_if_interrupted();
-    if (!args_.output.empty()) write_mesh(file_of(args_, args_.output, frame), mesh_, args_.threads);
-    if (!args_.cloud.empty()) write_cloud(file_of(args_, args_.cloud, frame), deformer_.cloud(), args_.threads);
-    if (args_.given.has("--frames")) frame_was_written();
+    write_frame(frame);
+    if (args_.given.has("--frames"))
+      frame_was_written();
+    else
+      file_was_written();
     if (!args_.report.empty()) json_.push_back(describe(share, frame_ms_.back(), writing.ms()));
+  }
+
+  void write_frame(int frame) const {
+    if (!args_.output.empty()) write_mesh(file_of(args_, args_.output, frame), mesh_, args_.threads);
+    if (args_.cloud.empty()) return;
+    std::optional<UndisturbedScope> whole;  // a frame is both of its files
+    if (!args_.output.empty()) whole.emplace();
+    write_cloud(file_of(args_, args_.cloud, frame), deformer_.cloud(), args_.threads);
   }
 
   [[nodiscard]] Json describe(double share, double total_ms, double write_ms) const {
@@ -205,7 +217,12 @@ int run(const DeformArgs& args) {
 
   on_interrupt(OnInterrupt::remember);
   options.progress = [](const Progress&) { return !interrupted(); };
-  Deformer deformer(cloud, options, device);
+  const RunMemory memory(device, options, options.max_memory_bytes);
+  memory.check(cloud);
+  options.max_memory_bytes = memory.limit_of_run();
+  const Workspace workspace(device);
+  memory.limit(workspace);
+  Deformer deformer = memory.within_limit([&] { return Deformer(cloud, options, workspace); });
   const RunReport& at_rest = deformer.report().run;
   if (at_rest.strays > 0) print_warning(strays_text(at_rest.strays, at_rest.farthest_strays.front()));
   Json json = {{"version", 1}, {"command", "deform"}};
@@ -218,7 +235,7 @@ int run(const DeformArgs& args) {
   cloud = Cloud();
 
   Frames frames(args, deformer, deformation);
-  frames.run_all();
+  memory.within_limit([&] { frames.run_all(); });
   const DeformReport& report = deformer.report();
   json["frames"] = frames.json();
   json["ms"] = {

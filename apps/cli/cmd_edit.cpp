@@ -55,6 +55,7 @@ OptionTable edit_options(EditArgs& args) {
   return {file_options(args),
           fit_options(args).without({"--offset"}),  // a session has none
           device_options(args),
+          memory_options(args.options.max_memory_bytes),
           {kSurfaceGroup,
            {option("--cold", "solve every surface anew, instead of from the one before", negated(args.warm_start),
                    {"warm_start", 24})}},
@@ -243,9 +244,19 @@ scene::SceneOptions scene_options(const EditArgs& args, const Options& reconstru
 
 void write_outputs(const scene::Scene& scene, const scene::Document& document, const EditArgs& args) {
   throw_if_interrupted();
-  if (!args.cloud.empty()) write_points(scene, args);
-  if (!args.save.empty()) save(scene, document, args);
-  if (!args.output.empty()) write_mesh(args.output, scene.mesh(), args.threads);
+  if (!args.cloud.empty()) {
+    write_points(scene, args);
+    file_was_written();
+  }
+  if (!args.save.empty()) {
+    save(scene, document, args);
+    file_was_written();
+  }
+  if (!args.output.empty()) {
+    write_mesh(args.output, scene.mesh(), args.threads);
+    file_was_written();
+  }
+  if (args.report.empty()) ignore_interrupts();
 }
 
 int run(const EditArgs& given) {
@@ -267,8 +278,14 @@ int run(const EditArgs& given) {
   json["ms"]["read"] = watch.ms();
 
   on_interrupt(OnInterrupt::remember);
-  scene::Scene scene(std::move(base), scene_options(args, reconstruction), device);
-  run_document(document, args, scene);
+  const RunMemory memory(device, reconstruction, reconstruction.max_memory_bytes);
+  memory.check(base);
+  reconstruction.max_memory_bytes = memory.limit_of_run();
+  const Workspace workspace(device);
+  memory.limit(workspace);
+  scene::Scene scene = memory.within_limit(
+      [&] { return scene::Scene(std::move(base), scene_options(args, reconstruction), workspace); });
+  memory.within_limit([&] { run_document(document, args, scene); });
   write_outputs(scene, document, args);
   const double total_ms = watch.ms();
   json["ms"]["total"] = total_ms;

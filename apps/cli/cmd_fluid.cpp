@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -90,7 +91,11 @@ class Worker {
     const Stopwatch writing;
     write_mesh(frame.output, mesh_, threads_);
     frame.write_ms = writing.ms();
-    if (!frame.input.number.empty()) frame_was_written();
+    if (!frame.input.number.empty())
+      frame_was_written();
+    else
+      file_was_written();
+    if (frame.input.number.empty() && args_.report.empty()) ignore_interrupts();
     frame.total_ms = start.ms();
     if (!args_.report.empty()) frame.mesh = measure(mesh_, threads_);
     if (frame.is_last && !args_.quiet)
@@ -162,6 +167,7 @@ class Sequence {
     std::vector<std::exception_ptr> failures(frames_.size());
     std::atomic<std::size_t> next{1};
     const auto work = [&] {
+      const InterruptScope scope;
       std::size_t i = 0;
       try {
         Worker worker(args_, options_, share);
@@ -175,7 +181,11 @@ class Sequence {
       }
     };
     std::vector<std::thread> workers;
-    for (int w = 0; w < at_once_; ++w) workers.emplace_back(work);
+    try {
+      for (int w = 1; w < at_once_; ++w) workers.emplace_back(work);
+    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): those that could be made do all the work
+    }
+    work();
     for (std::thread& worker : workers) worker.join();
     for (const std::exception_ptr& failure : failures)
       if (failure) std::rethrow_exception(failure);

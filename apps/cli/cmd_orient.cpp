@@ -99,6 +99,8 @@ int run(const OrientArgs& args) {
   throw_if_interrupted();
   const Stopwatch writing;
   write_cloud(args.output, cloud, {.ascii = args.ascii, .threads = args.threads});
+  file_was_written();
+  if (args.report.empty()) ignore_interrupts();
   times.write_ms = writing.ms();
   times.total_ms = watch.ms();
   if (!args.report.empty())

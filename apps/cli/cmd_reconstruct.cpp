@@ -161,6 +161,8 @@ void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record)
   if (args.output.empty()) return;
   const Stopwatch watch;
   write_mesh(args.output, mesh, {.ascii = args.ascii, .threads = args.threads});
+  file_was_written();
+  if (args.report.empty() && args.pictures.folder.empty()) ignore_interrupts();
   record.write_ms = watch.ms();
 }
 

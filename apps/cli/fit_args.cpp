@@ -102,10 +102,25 @@ Device DeviceArgs::chosen() const { return parse_device(device, threads); }
 std::string needs_a_name(const std::string& file) { return file.empty() ? "needs the name of a file" : ""; }
 std::string needs_a_value(const std::string& text) { return text.empty() ? "needs a value" : ""; }
 
+Binding memory_limit(std::int64_t& bytes, const std::string& unit) {
+  const auto settle = [&bytes, unit](const std::string& text) {
+    const bool unlimited = unit.empty() ? text.empty() : parse_number(text) == 0;
+    bytes = unlimited ? 0 : parse_bytes(text + unit, "--max-memory");
+    return std::string();
+  };
+  return text_for("", settle, [&bytes] { return bytes; });
+}
+
 OptionGroup device_options(DeviceArgs& args) {
   return {
       kDeviceGroup,
       {option("--device DEV", "auto, cpu, cuda or cuda:N", &args.device, {"device", 30}), threads_row(args.threads)}};
+}
+
+OptionGroup memory_options(std::int64_t& bytes) {
+  return {kDeviceGroup,
+          {option("--max-memory SIZE", "memory that the process may take, e.g. 8G [default: most of what is free]",
+                  memory_limit(bytes))}};
 }
 
 OptionGroup fit_options(FitArgs& args) {

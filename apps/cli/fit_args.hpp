@@ -2,6 +2,7 @@
 // many commands have.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,13 @@ struct FitArgs {
 inline constexpr char kDeviceGroup[] = "Device and limits";
 inline constexpr char kSurfaceGroup[] = "Surface";
 
+/// What --max-memory sets, in bytes; 0: no limit.
+/// @param unit  behind the text; "G" for a number of 2^30 bytes, of which 0 is no limit
+Binding memory_limit(std::int64_t& bytes, const std::string& unit = "");
+
 OptionGroup device_options(DeviceArgs& args);
+/// --max-memory of commands that hold a surface from one step to the next; see RunMemory::limit.
+OptionGroup memory_options(std::int64_t& bytes);
 OptionGroup fit_options(FitArgs& args);
 /// Those of fit_options about the mesh and not the field.
 inline constexpr std::initializer_list<const char*> kBeyondSolve = {

@@ -1,5 +1,6 @@
 #include "fluid_simulate.hpp"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -137,11 +138,16 @@ class Frames {
     const Stopwatch writing;
     if (!output_.output.empty())
       write_mesh(scene::frame_file(output_.output, frame, args_.frames), mesh_, output_.device.threads);
-    if (!args_.particles_out.empty())
-      write_cloud(scene::frame_file(args_.particles_out, frame, args_.frames), cloud_of(fluid_.particles()),
-                  output_.device.threads);
+    if (!args_.particles_out.empty()) write_particles(frame);
     frame_was_written();
     if (!output_.report.empty()) add_line(describe(writing.ms()));
+  }
+
+  void write_particles(int frame) {
+    std::optional<UndisturbedScope> whole;  // a frame is both of its files
+    if (!output_.output.empty()) whole.emplace();
+    write_cloud(scene::frame_file(args_.particles_out, frame, args_.frames), cloud_of(fluid_.particles()),
+                output_.device.threads);
   }
 
   /// As text: many frames would make a tree of values that outgrows the simulation.

@@ -17,6 +17,7 @@ namespace pointskin::cli {
 namespace {
 
 int guarded_main(const std::vector<std::string>& args) {
+  const InterruptScope scope;
   try {
     return run_command_line(all_commands(), join_optional_values(args));
   } catch (const Error& error) {

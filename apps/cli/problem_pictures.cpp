@@ -92,6 +92,7 @@ std::vector<PictureNames> write_problem_pictures(const Mesh& mesh, const std::ve
       throw_if_interrupted();
       const std::string name = (fs::path(args.folder) / fmt::format("problem_{:0{}}_{}.png", r + 1, digits, v + 1));
       write_png(name, render_problem(mesh, regions[r], v, options, caption_of(regions, r, v)));
+      file_was_written();
       names[r].push_back(name);
       line.update({"pictures", (static_cast<double>(r) + static_cast<double>(v + 1) / 3) / static_cast<double>(drawn)});
     }

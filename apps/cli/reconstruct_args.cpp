@@ -55,16 +55,6 @@ OptionGroup normals_policy(ReconstructArgs& args) {
                   estimate_by(args.normals.options.method, o.point_normals), {}, {.excludes = "--normals"})}};
 }
 
-/// @param unit  behind the text; "G" for a number of 2^30 bytes, of which 0 is no limit
-Binding memory_limit(std::int64_t& bytes, const std::string& unit = "") {
-  const auto settle = [&bytes, unit](const std::string& text) {
-    const bool unlimited = unit.empty() ? text.empty() : parse_number(text) == 0;
-    bytes = unlimited ? 0 : parse_bytes(text + unit, "--max-memory");
-    return std::string();
-  };
-  return text_for("", settle, [&bytes] { return bytes; });
-}
-
 OptionGroup limits(ReconstructArgs& args) {
   return {kDeviceGroup,
           {option("--max-memory BYTES", "refuse to start above this estimate, e.g. 8G [default no limit]",

@@ -80,7 +80,9 @@ void RunMemory::check(const Cloud& cloud) const {
 
 MemoryEstimate RunMemory::estimate(const Cloud& cloud, const Options& options) const {
   const std::int64_t peak = so_far();
-  return {estimate_device_bytes(cloud, options, device_.threads), beside_, peak};
+  Options limited = options;
+  limited.max_memory_bytes = device_.kind == DeviceKind::cpu ? limit_of_run() : 0;  // it is counted on the host
+  return {within_limit([&] { return estimate_device_bytes(cloud, limited, device_.threads); }), beside_, peak};
 }
 
 void RunMemory::check(const MemoryEstimate& estimate) const {
@@ -89,6 +91,10 @@ void RunMemory::check(const MemoryEstimate& estimate) const {
 }
 
 std::int64_t RunMemory::limit_of_run() const { return limit_ == 0 ? 0 : std::max<std::int64_t>(1, most() - beside_); }
+
+void RunMemory::limit(const Workspace& workspace) const {
+  workspace.limit_memory(limit_ > 0 ? limit_of_run() : workspace.device().available_bytes() / 5 * 4);
+}
 
 void RunMemory::throw_named(const Error& error) const {
   const auto text = [](std::int64_t bytes) { return format_bytes(static_cast<double>(bytes)); };

@@ -8,6 +8,7 @@
 #include <pointskin/device.hpp>
 #include <pointskin/error.hpp>
 #include <pointskin/reconstruct.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin::cli {
 
@@ -47,6 +48,9 @@ class RunMemory {
 
   /// Options::max_memory_bytes for the run.
   [[nodiscard]] std::int64_t limit_of_run() const;
+
+  /// Limits a workspace for good: to limit_of_run(), or, without --max-memory, to 4/5 of what its device has left.
+  void limit(const Workspace& workspace) const;
 
   /// Calls work(), whose options have that limit. Errors about it name --max-memory.
   template <class Work>

@@ -98,7 +98,7 @@ int run(const StudioArgs& args) {
   studio::Studio session(session_options(args));
   studio::server::Server server(server_options(args), session);
   warn_about_hosts(args);
-  on_interrupt(OnInterrupt::remember);
+  on_interrupt(OnInterrupt::announce);
   write_stdout(server.url() + "\n");
   if (!args.no_browser) studio::open_browser(server.url_for_browser());
   // A signal handler may do no more than to set a flag.

@@ -5,6 +5,7 @@
 #include <pointskin/attribute.hpp>
 #include <pointskin/boolean.hpp>
 #include <pointskin/camera.hpp>
+#include <pointskin/cancel.hpp>
 #include <pointskin/cloud.hpp>
 #include <pointskin/components.hpp>
 #include <pointskin/deform.hpp>

@@ -279,7 +279,8 @@ class Reconstructor {
 /// more, and is left undone where Options::max_memory_bytes does not allow it. What a Field of solve() keeps beyond
 /// that (see there) and the host's own copy of the cloud are not in it.
 /// @param threads  CPU threads that count, 0: all
-/// @throws Error usage (an option out of range), over_limit (a level beyond 32-bit node ids)
+/// @throws Error usage (an option out of range), over_limit (a level beyond 32-bit node ids; counting itself would pass
+///         Options::max_memory_bytes)
 /// Takes less memory than it predicts and a fraction of the run's time. O(n log n + nodes log nodes).
 std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, int threads = 0);
 

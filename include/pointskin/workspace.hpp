@@ -41,6 +41,10 @@ class Workspace {
   /// Gives memory that is kept for the next run back to the system.
   void release_memory() const;
 
+  /// What all arrays in the workspace may hold together from now on, in bytes; 0: no limit. What would pass it ends with
+  /// Error over_limit. Options::max_memory_bytes of a run counts besides.
+  void limit_memory(std::int64_t bytes) const;
+
   /// What all arrays in the workspace hold together now, in bytes.
   [[nodiscard]] std::int64_t held_bytes() const;
 

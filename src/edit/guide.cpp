@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "exec/this_space.hpp"
@@ -144,10 +145,45 @@ exec::Buffer<T> upload(Exec& ex, const std::vector<T>& from) {
   return buffer;
 }
 
+/// 1 for a candidate that is kept, of those that are looked at for a first guess.
+template <class Shape>
+struct CountKept {
+  IsKept<Shape> is_kept;
+  double step;  ///< from one to the next
+  PSK_HD std::int64_t operator()(std::int64_t i) const {
+    return is_kept(static_cast<std::int64_t>(static_cast<double>(i) * step)) ? 1 : 0;
+  }
+};
+
+struct AddCounts {
+  PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
+};
+
+/// Refuses what the memory that is allowed cannot hold, by the share of evenly spread candidates that are kept: looking
+/// at all of them takes minutes where they are billions.
+template <exec::Space Exec, class Shape>
+void check_room(Exec& ex, const IsKept<Shape>& is_kept, std::int64_t candidates) {
+  constexpr std::int64_t kBytesPerPoint = 24 + 68;  // as guides and as points that are sorted: less than any run takes
+  constexpr std::int64_t kLookedAt = 1 << 16;
+  constexpr double kSure = 0.9;  // of the guess
+  if (ex.pool()->limit() == 0 || candidates <= kLookedAt) return;
+  const double step = static_cast<double>(candidates) / static_cast<double>(kLookedAt);
+  const auto kept =
+      exec::reduce<std::int64_t>(ex, "guide.guess", kLookedAt, CountKept<Shape>{is_kept, step}, AddCounts{});
+  const double points = static_cast<double>(kept) * step;
+  const double least_bytes = kSure * points * static_cast<double>(kBytesPerPoint);
+  if (least_bytes <= static_cast<double>(ex.pool()->limit() - ex.pool()->held_bytes())) return;
+  throw Error(ErrorCode::over_limit,
+              "the guide would make about " + std::to_string(static_cast<std::int64_t>(points)) +
+                  " points, which do not fit into the memory that is allowed; choose a larger interval");
+}
+
 template <exec::Space Exec, class Shape>
 GuidePoints keep_points(Exec& ex, const Shape& shape, std::int64_t candidates, const KeepInside& keep,
                         bool stroke_normals) {
-  const exec::Buffer<std::int32_t> kept = select(ex, "guide.keep", candidates, IsKept<Shape>{shape, keep});
+  const IsKept<Shape> is_kept{shape, keep};
+  check_room(ex, is_kept, candidates);
+  const exec::Buffer<std::int32_t> kept = select(ex, "guide.keep", candidates, is_kept);
   GuidePoints points{exec::make_buffer<Vec3f>(ex, kept.size()),
                      exec::make_buffer<Vec3f>(ex, stroke_normals ? kept.size() : 0)};
   for_each(ex, "guide.write", kept.size(),

@@ -1,6 +1,7 @@
 #include <pointskin/edit.hpp>
 #include <pointskin/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,12 @@ const EditOptions& checked(const EditOptions& options) {
   return options;
 }
 
+/// Where memory is limited, states for undo take no more than a quarter of it.
+EditOptions leave_room(EditOptions options, std::int64_t limit) {
+  if (limit > 0) options.undo_bytes = std::min(options.undo_bytes, limit / 4);
+  return options;
+}
+
 /// Components, genus and Euler number. O(t log t), on the host.
 Topology topology_of(const Mesh& mesh, int threads) {
   const MeshReport report = measure(mesh, threads);
@@ -50,8 +57,9 @@ Operation settled(Operation operation, const edit::State& before) {
 class PSK_HIDDEN EditSession::Impl {
  public:
   Impl(const Cloud& base, const EditOptions& options, Workspace workspace) : workspace_(std::move(workspace)) {
+    const EditOptions with_room = leave_room(checked(options), space().pool()->limit());
     edit::Beginning beginning =
-        exec::visit(space(), [&](auto& ex) { return edit::begin_session(ex, base, checked(options)); });
+        exec::visit(space(), [&](auto& ex) { return edit::begin_session(ex, base, with_room); });
     settings_ = std::move(beginning.settings);
     states_.push_back(std::move(beginning.state));
     show(*states_.front());

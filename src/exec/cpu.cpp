@@ -3,19 +3,23 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "exec/cancel.hpp"
 #include "exec/cpu_pool.hpp"
+#include "exec/cpu_threads.hpp"
 
 #ifdef POINTSKIN_STD_THREAD
-#include <atomic>
-#include <thread>
+#include <system_error>
 #else
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
@@ -39,9 +43,11 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
   std::atomic<std::int64_t> next{0};
   std::exception_ptr failure;
   std::mutex failure_mutex;
+  const std::atomic<bool>* const cancelled = cancel_flag();
   const auto work = [&] {
     for (std::int64_t i = next++; i < count; i = next++) {
       try {
+        throw_if_cancelled(cancelled);
         block(i);
       } catch (...) {
         const std::lock_guard lock(failure_mutex);
@@ -52,8 +58,11 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
   };
   // A thread is started for 16 blocks at least: starting one takes longer than a block.
   std::vector<std::thread> helpers;
-  for (std::int64_t t = 1; t < std::min<std::int64_t>(workers_->threads, 1 + count / 16); ++t)
-    helpers.emplace_back(work);
+  try {
+    for (std::int64_t t = 1; t < std::min<std::int64_t>(workers_->threads, 1 + count / 16); ++t)
+      helpers.emplace_back(work);
+  } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): those that could be made do all the work
+  }
   work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);
@@ -98,11 +107,29 @@ class IdleArenas {
   std::map<int, Arenas> idle_;  // by number of threads
 };
 
+/// Has oneTBB make its threads now, by work that no thread ends before all have come. oneTBB makes threads when it first
+/// needs them, and ends the process if the system then refuses.
+void make_threads_now(tbb::task_arena& arena, int count) {
+  constexpr std::chrono::milliseconds kLongest{200};
+  const auto give_up = std::chrono::steady_clock::now() + kLongest;
+  std::atomic<int> here{0};
+  const auto meet = [&](const tbb::blocked_range<int>& /*one*/) {
+    ++here;
+    while (here < count && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
+  };
+  arena.execute([&] { tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), meet, tbb::simple_partitioner()); });
+}
+
 struct Cpu::Workers {
   explicit Workers(int count) : threads(count), arena(IdleArenas::instance().take(count)) {
     // oneTBB would ignore, and complain on stderr about, more threads than cores. The smallest of all living limits
     // counts, so limits are only ever raised: no space slows another one down.
     if (count > available_threads()) more_threads.emplace(tbb::global_control::max_allowed_parallelism, count);
+    if (count == 1 || !threads_are_limited()) return;
+    static std::atomic<int> made_already{1};
+    if (made_already >= count) return;
+    make_threads_now(*arena, count);
+    made_already = count;
   }
   ~Workers() { IdleArenas::instance().put_back(threads, std::move(arena)); }
   Workers(const Workers&) = delete;
@@ -114,15 +141,22 @@ struct Cpu::Workers {
 };
 
 void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block) {
+  const std::atomic<bool>* const cancelled = cancel_flag();
   if (threads_ == 1 || count <= 1) {  // nothing to share: a launch would cost more than a small block
-    for (std::int64_t i = 0; i < count; ++i) block(i);
+    for (std::int64_t i = 0; i < count; ++i) {
+      throw_if_cancelled(cancelled);
+      block(i);
+    }
     return;
   }
   workers_->arena->execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::int64_t>(0, count, 1),
         [&](const tbb::blocked_range<std::int64_t>& range) {
-          for (std::int64_t i = range.begin(); i < range.end(); ++i) block(i);
+          for (std::int64_t i = range.begin(); i < range.end(); ++i) {
+            throw_if_cancelled(cancelled);
+            block(i);
+          }
         },
         tbb::simple_partitioner());
   });
@@ -130,8 +164,13 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
 
 #endif
 
-Cpu::Cpu(int threads) : threads_(threads > 0 ? threads : available_threads()), pool_(make_cpu_pool()) {
-  if (threads < 0) throw Error(ErrorCode::usage, "the number of threads must not be negative");
+static int number_of_threads(int wanted) {
+  if (wanted < 0) throw Error(ErrorCode::usage, "the number of threads must not be negative");
+  const int available = available_threads();
+  return threads_that_can_be_made(wanted > 0 ? wanted : available, available);
+}
+
+Cpu::Cpu(int threads) : threads_(number_of_threads(threads)), pool_(make_cpu_pool()) {
   workers_ = std::make_unique<Workers>(threads_);
 }
 

@@ -14,7 +14,8 @@ namespace pointskin::exec {
 /// results are the same for any number of threads.
 class Cpu {
  public:
-  /// @param threads  > 0, or 0 for all that the process may use
+  /// @param threads  > 0, or 0 for all that the process may use; fewer where the system does not let so many be made,
+  ///                 and 256 at most unless the machine has more cores
   /// @throws Error usage if `threads` is negative
   explicit Cpu(int threads = 0);
   ~Cpu();
@@ -32,7 +33,8 @@ class Cpu {
   [[nodiscard]] const std::shared_ptr<MemoryPool>& pool() const noexcept { return pool_; }
 
   /// Calls block(i) once for every i in [0, count), on any thread, in any order; returns when all are done.
-  /// An exception of one call is rethrown here after the others have stopped. Must not be nested.
+  /// An exception of one call is rethrown here after the others have stopped. Must not be nested. Before every call the
+  /// flag of the calling thread's CancelScope is asked.
   void run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block);
 
   /// There is none.

@@ -205,7 +205,7 @@ class CpuPool final : public MemoryPool {
   }
   void set_limit(std::int64_t bytes) noexcept override {
     MemoryPool::set_limit(bytes);
-    large_.set_limit(static_cast<std::size_t>(bytes));
+    large_.set_limit(static_cast<std::size_t>(limit()));
   }
   void release_cached(std::int64_t bytes) noexcept override { large_.release(static_cast<std::size_t>(bytes)); }
 

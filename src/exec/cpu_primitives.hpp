@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "core/array_view.hpp"
+#include "exec/cancel.hpp"
 #include "exec/cpu.hpp"
 #include "exec/lanes.hpp"
 #include "exec/memory.hpp"
@@ -28,6 +30,9 @@ inline constexpr std::int64_t kCpuBlock = 2048;
 /// beside the keys.
 inline std::int64_t cpu_sort_block(std::int64_t n) { return std::clamp<std::int64_t>(n / 64, 1 << 12, 1 << 16); }
 
+/// Indices of for_each between two looks at the flag of a CancelScope: some functors take a millisecond an index.
+inline constexpr std::int64_t kCancelBlock = 256;
+
 inline std::int64_t block_count(std::int64_t n, std::int64_t block) { return (n + block - 1) / block; }
 
 /// Calls f(i) for every i in [0, n). f must not depend on the order of the calls. Functors with a `wide` body use it
@@ -37,7 +42,14 @@ void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
   if (n <= 0) return;
   // Heavy functors over few indices still spread over the threads.
   const std::int64_t block = std::clamp<std::int64_t>(n / 64, 16, kCpuBlock);
-  ex.run_blocks(block_count(n, block), [&](std::int64_t b) { run_range(f, b * block, std::min(n, (b + 1) * block)); });
+  const std::atomic<bool>* const cancelled = cancel_flag();
+  ex.run_blocks(block_count(n, block), [&](std::int64_t b) {
+    const std::int64_t end = std::min(n, (b + 1) * block);
+    for (std::int64_t i = b * block; i < end; i += kCancelBlock) {
+      throw_if_cancelled(cancelled);
+      run_range(f, i, std::min(end, i + kCancelBlock));
+    }
+  });
 }
 
 /// The same: on a CPU an index has its thread to itself.
@@ -105,9 +117,11 @@ Buffer<std::int32_t> select(Cpu& ex, const char* /*label*/, std::int64_t n, cons
   const std::int64_t blocks = block_count(n, kCpuBlock);
   Buffer<std::uint64_t> bits(ex.pool(), words);
   std::vector<std::int64_t> first(static_cast<std::size_t>(blocks) + 1, 0);
+  const std::atomic<bool>* const cancelled = cancel_flag();
   ex.run_blocks(blocks, [&](std::int64_t b) {
     std::int64_t count = 0;
     for (std::int64_t w = b * kWords; w < std::min(words, (b + 1) * kWords); ++w) {
+      throw_if_cancelled(cancelled);
       bits.data()[w] = detail::kept_bits(w * detail::kBitsPerWord, n, keep);
       count += std::popcount(bits.data()[w]);
     }

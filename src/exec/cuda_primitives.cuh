@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core/array_view.hpp"
+#include "exec/cancel.hpp"
 #include "exec/cuda.hpp"
 #include "exec/cuda_check.cuh"
 #include "exec/lanes.hpp"
@@ -20,7 +21,11 @@ namespace pointskin::exec {
 inline constexpr int kThreadsPerBlock = 128;
 inline constexpr int kWarp = 32;
 
-inline cudaStream_t stream_of(const Cuda& ex) { return static_cast<cudaStream_t>(ex.stream()); }
+/// Where the next launch or copy goes. All of them ask for it, so it asks the flag of the thread's CancelScope.
+inline cudaStream_t stream_of(const Cuda& ex) {
+  throw_if_cancelled();
+  return static_cast<cudaStream_t>(ex.stream());
+}
 
 template <class F>
 __global__ void __launch_bounds__(kThreadsPerBlock) for_each_kernel(std::int64_t n, const F f) {

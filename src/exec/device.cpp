@@ -132,6 +132,10 @@ void Workspace::synchronize() const {
 void Workspace::release_memory() const {
   exec::visit(data_->space, [](auto& ex) { ex.pool()->trim(); });
 }
+void Workspace::limit_memory(std::int64_t bytes) const {
+  if (bytes < 0) throw Error(ErrorCode::usage, "a limit of memory must not be negative");
+  data_->space.pool()->set_lasting_limit(bytes);
+}
 std::int64_t Workspace::held_bytes() const { return data_->space.pool()->held_bytes(); }
 
 }  // namespace pointskin

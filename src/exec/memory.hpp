@@ -29,8 +29,16 @@ class MemoryPool {
   /// elsewhere.
   virtual void release_cached(std::int64_t /*bytes*/) noexcept {}
 
-  /// What all blocks may hold together, in bytes; 0: no limit. What is held already stays.
-  virtual void set_limit(std::int64_t bytes) noexcept { limit_ = bytes; }
+  /// What all blocks may hold together, in bytes; 0: no limit but the lasting one. What is held already stays.
+  virtual void set_limit(std::int64_t bytes) noexcept {
+    limit_ = bytes > 0 && (lasting_limit_ == 0 || bytes < lasting_limit_) ? bytes : lasting_limit_;
+  }
+  /// The same, for every run from now on; 0: none.
+  void set_lasting_limit(std::int64_t bytes) noexcept {
+    lasting_limit_ = bytes;
+    set_limit(bytes);
+  }
+  [[nodiscard]] std::int64_t limit() const noexcept { return limit_; }
 
   [[nodiscard]] std::int64_t held_bytes() const noexcept { return held_; }
   [[nodiscard]] std::int64_t peak_bytes() const noexcept { return peak_; }
@@ -43,6 +51,7 @@ class MemoryPool {
   std::int64_t held_ = 0;
   std::int64_t peak_ = 0;
   std::int64_t limit_ = 0;
+  std::int64_t lasting_limit_ = 0;
 };
 
 /// An array of trivially copyable T, uninitialised, in the space of its pool, which it keeps alive; or one of somebody

@@ -42,6 +42,8 @@ struct OffsetField {
 ///
 /// Samples are laid on the triangles, kPieceCells apart at most, and sorted into an octree. Cells whose distance from
 /// the surface may be the offset are found from the complete levels down; an octree is built of those of level `depth`.
+/// An offset farther than 4 cells has pieces sqrt(offset_cells / 2) times as large, and tries the triangles of the four
+/// nearest samples: the farther a place, the more samples are about as near as the nearest one (0051).
 /// A corner's distance is that to the triangle of its nearest sample. It is never too small; where the true nearest
 /// point, s cells away, lies inside of a triangle it is too large by at most 0.46^2 / (2 s) cells, at an edge by 0.46.
 /// Its sign is that of the field at its place; outside of the field's cube is outside.

@@ -140,8 +140,41 @@ struct SurfaceDistance {
   ArrayView<const Vec3f> positions;
   ArrayView<const std::int32_t> owners;
   Corners corners;
+  bool is_coarse = false;  ///< samples are far apart: some of them are tried
 
-  [[nodiscard]] PSK_HD double squared(const Vec3f& q) const {
+  [[nodiscard]] PSK_HD double squared(const Vec3f& q) const { return is_coarse ? least_of_some(q) : of_nearest(q); }
+
+  /// To the triangles of the kTried nearest samples.
+  [[nodiscard]] PSK_HD double least_of_some(const Vec3f& q) const {
+    constexpr int kTried = 4;
+    float least[kTried];
+    std::int32_t nearest[kTried];
+    int count = 0;
+    const auto prune = [&](float d) { return count == kTried && d > least[kTried - 1]; };
+    octree::walk({tree, positions, {}}, q, prune, [&](std::int32_t begin, std::int32_t end) {
+      for (std::int32_t i = begin; i < end; ++i) {
+        const float d = octree::squared_distance(q, positions[i]);
+        if (count == kTried && d > least[kTried - 1]) continue;
+        const auto before = [&](int k) { return d < least[k] || (d == least[k] && i < nearest[k]); };
+        if (count == kTried && !before(kTried - 1)) continue;
+        int place = count == kTried ? kTried - 1 : count++;
+        for (; place > 0 && before(place - 1); --place) {
+          least[place] = least[place - 1];
+          nearest[place] = nearest[place - 1];
+        }
+        least[place] = d;
+        nearest[place] = i;
+      }
+    });
+    double squared = 0;
+    for (int k = 0; k < count; ++k) {
+      const double d = to_triangle_of(nearest[k], q);
+      if (k == 0 || d < squared) squared = d;
+    }
+    return squared;
+  }
+
+  [[nodiscard]] PSK_HD double of_nearest(const Vec3f& q) const {
     float least = 0;
     std::int32_t nearest = -1;
     const auto prune = [&](float d) { return nearest >= 0 && d > least; };
@@ -153,18 +186,24 @@ struct SurfaceDistance {
         nearest = i;
       }
     });
-    const std::int32_t t = owners[nearest];
+    return to_triangle_of(nearest, q);
+  }
+
+  [[nodiscard]] PSK_HD double to_triangle_of(std::int32_t sample, const Vec3f& q) const {
+    const std::int32_t t = owners[sample];
     return squared_to_triangle(q, corners(t, 0), corners(t, 1), corners(t, 2));
   }
 };
 
+/// @param wider  how many times larger than kPieceCells pieces may be, >= 1
 /// @throws Error over_limit if there are 2^31 samples or more
 template <exec::Space Exec>
-TriangleSamples lay_samples(Exec& ex, const Corners& corners, int depth) {
+TriangleSamples lay_samples(Exec& ex, const Corners& corners, int depth, double wider) {
   const std::int64_t triangles = corners.triangles.size;
   auto counts = exec::make_buffer<std::int32_t>(ex, triangles);
-  for_each(ex, "offset.pieces", triangles,
-           CountPieces{corners, static_cast<float>(1 << depth) / kPieceCells, counts.view()});
+  for_each(
+      ex, "offset.pieces", triangles,
+      CountPieces{corners, static_cast<float>(1 << depth) / (kPieceCells * static_cast<float>(wider)), counts.view()});
   const std::int64_t samples = exec::sum_counts(ex, "offset.pieces", counts.cview());
   if (samples > std::numeric_limits<std::int32_t>::max())
     throw Error(ErrorCode::over_limit, "the surface is too large to be offset at this depth; choose a smaller depth");
@@ -184,8 +223,9 @@ TriangleSamples lay_samples(Exec& ex, const Corners& corners, int depth) {
   result.owners = exec::make_buffer<std::int32_t>(ex, samples);
   exec::gather<Vec3f>(ex, positions.cview(), sorted.order.cview(), result.positions.view());
   exec::gather<std::int32_t>(ex, owners.cview(), sorted.order.cview(), result.owners.view());
-  result.tree =
-      octree::build_octree(ex, sorted.keys.cview(), std::max(1, depth - 1));  // about 30 samples a finest cell
+  result.tree = octree::build_octree(
+      ex, sorted.keys.cview(),
+      std::max(1, depth - 1 - static_cast<int>(std::log2(wider))));  // about 30 samples a finest cell
   return result;
 }
 

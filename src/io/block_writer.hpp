@@ -1,6 +1,7 @@
 // Blocks made by several threads at once, in a file or a stream in their order.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -27,7 +28,7 @@ class BlockWriter {
   void run(exec::Cpu& ex);
 
  private:
-  void work();
+  void work(const std::atomic<bool>* cancelled);
   std::optional<std::int64_t> take();
   /// Waits until all blocks before `b` have their place. @returns the place of `b`; none if writing has stopped
   std::optional<std::int64_t> wait_for_place(std::int64_t b);
@@ -35,7 +36,7 @@ class BlockWriter {
   void pass_turn(std::size_t bytes);
   void stop();
   void write_to_file(const std::string& bytes, std::int64_t place) const;
-  void write_to_stream(const std::string& bytes) const;
+  void write_to_stream(const std::string& bytes, const std::atomic<bool>* cancelled) const;
 
   const Blocks& blocks_;
   const int fd_;

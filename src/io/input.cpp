@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "exec/cancel.hpp"
 #include "io/file_descriptor.hpp"
 
 namespace pointskin::io {
@@ -30,7 +31,7 @@ Input::Input(const std::string& path) : name_(path == "-" ? "stdin" : path) {
   if (path == "-") {
     read_all(STDIN_FILENO);
   } else {
-    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // no waiting for pipes
     if (!file.valid()) fail_to_read(name_, errno);
     struct stat status {};
     if (::fstat(file.get(), &status) != 0) fail_to_read(name_, errno);
@@ -64,10 +65,13 @@ void Input::read_all(int fd) {
   while (true) {
     if (used == memory_.size()) memory_.resize(std::max(kFirstStep, 2 * used));
     // Signals are taken while waiting here: ThreadSanitizer holds them back during read.
+    constexpr int kLookEveryMs = 100;
     pollfd input = {fd, POLLIN, 0};
-    if (::poll(&input, 1, -1) < 0 && errno == EINTR) continue;
+    const int ready = ::poll(&input, 1, kLookEveryMs);
+    exec::throw_if_cancelled();
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
     const ssize_t got = ::read(fd, memory_.data() + used, memory_.size() - used);
-    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (got < 0) fail_to_read(name_, errno);
     if (got == 0) break;
     used += static_cast<std::size_t>(got);

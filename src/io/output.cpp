@@ -4,6 +4,7 @@
 #include <pointskin/io.hpp>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,6 +19,7 @@
 #include <optional>
 #include <system_error>
 
+#include "exec/cancel.hpp"
 #include "io/block_writer.hpp"
 #include "io/file_descriptor.hpp"
 #include "io/source.hpp"
@@ -104,7 +106,9 @@ class TemporaryFile {
 
   /// Brings the bytes to the disk before the name: a crash in between must not leave an empty file.
   void rename_to(const std::string& target) {
-    if (::fsync(fd()) != 0 && errno != EINVAL) fail_to_write(path_, errno);  // EINVAL: nothing to synchronise
+    while (::fsync(fd()) != 0 && errno != EINVAL)  // EINVAL: nothing to synchronise
+      if (errno != EINTR) fail_to_write(path_, errno);
+    exec::throw_if_cancelled();
     if (fd_.close() != 0 && errno != EINTR) fail_to_write(path_, errno);
     if (::rename(name_.c_str(), target.c_str()) != 0) fail_to_write(path_, errno);
     name_.clear();
@@ -142,10 +146,24 @@ void write_to(exec::Cpu& ex, const std::string& path, BlockWriter&& writer) {
   }
 }
 
+/// Opens a device, or a pipe as soon as somebody reads it; never blocks.
+int open_stream(const std::string& path) {
+  constexpr int kLookEveryMs = 50;
+  while (true) {
+    const int fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd >= 0) return fd;
+    const int error = errno;
+    const auto status = status_of(path);
+    const bool nobody_reads = error == ENXIO && status && S_ISFIFO(status->st_mode);
+    if (!nobody_reads && error != EINTR) fail_to_write(path, error);
+    exec::throw_if_cancelled();
+    ::poll(nullptr, 0, kLookEveryMs);
+  }
+}
+
 void write_stream(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
   if (path == "-") return write_to(ex, path, {blocks, STDOUT_FILENO, BlockWriter::Target::stream});
-  FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (!file.valid()) fail_to_write(path, errno);
+  FileDescriptor file(open_stream(path));
   write_to(ex, path, {blocks, file.get(), BlockWriter::Target::stream});
   if (file.close() != 0 && errno != EINTR) fail_to_write(path, errno);
 }

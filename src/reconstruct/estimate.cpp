@@ -111,10 +111,14 @@ std::int64_t estimate_device_bytes(const Cloud& cloud, const Options& options, i
     return estimate_device_bytes(cloud, settled, threads);
   }
   exec::Cpu ex(threads);
+  // What counting takes, a run takes as well.
+  ex.pool()->set_limit(options.max_memory_bytes);
   detail::RunSize size;
   try {
     size = measure_run(ex, cloud, options);
   } catch (const Error& error) {
+    if (error.code() == ErrorCode::over_limit && options.max_memory_bytes > 0)
+      throw error.while_doing("the cells of the octree were counted; choose a smaller depth or allow more");
     if (error.code() != ErrorCode::empty_result) throw;
     return detail::uploaded_bytes(cloud.size(), kept_attributes(cloud, options));  // the run ends here, too
   }

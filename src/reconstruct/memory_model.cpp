@@ -54,9 +54,10 @@ constexpr std::int64_t kPieces = 4 + 8;  // trimming: piece, its area
 constexpr std::int64_t kNodesPerTenVertices = 75;
 constexpr std::int64_t kTrianglesPerVertex = 2;
 
-/// Vertices a sample where samples are sparse: cells that they do not resolve have none. Complete levels have some
-/// anyway.
+/// Vertices a sample where samples are sparse, with the default samples per node: cells that they do not resolve have
+/// none. Complete levels have some anyway.
 constexpr std::int64_t kVerticesPerPoint = 10;
+constexpr double kUsualSamplesPerNode = 1.5;
 constexpr std::int64_t kCompleteVertices = 5000;
 
 /// Sums over the levels.
@@ -100,7 +101,21 @@ struct Model {
     // Of a complete finest level, a surface meets fewer cells than of a band around it.
     const std::int64_t near = depth() > octree::kCompleteDepth ? bricks : 3 * bricks / 4;
     if (is_distance()) return 80 * near / kNodesPerTenVertices;
-    return std::min(80 * bricks / kNodesPerTenVertices, kVerticesPerPoint * points + kCompleteVertices);
+    const std::int64_t sheet = 80 * bricks / kNodesPerTenVertices;
+    if (options.samples_per_node >= kUsualSamplesPerNode)
+      return std::min(sheet, kVerticesPerPoint * points + kCompleteVertices);
+    return std::max(sheet, rough_vertices());
+  }
+  /// Where samples that are alone in their cells count as well, a field may change sign around each of them: up to half
+  /// a vertex a node, less where cells share samples.
+  [[nodiscard]] std::int64_t rough_vertices() const {
+    constexpr double kVerticesPerBrick = 4;
+    const double samples = std::max<double>(1, static_cast<double>(points));
+    const double alone = std::min(1.0, static_cast<double>(level(depth()).occupied_cells) / samples);
+    const double resolved = kUsualSamplesPerNode / std::max(options.samples_per_node, 1e-3);
+    return static_cast<std::int64_t>(std::min(alone * kVerticesPerBrick * static_cast<double>(bricks),
+                                              resolved * static_cast<double>(kVerticesPerPoint * points)) +
+                                     static_cast<double>(kCompleteVertices));
   }
   [[nodiscard]] std::int64_t vertex() const { return options.normals || trims() ? 2 * kPosition : kPosition; }
   [[nodiscard]] std::int64_t mesh() const { return (vertex() + kTrianglesPerVertex * kTriangle) * vertices(); }

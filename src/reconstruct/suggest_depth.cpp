@@ -1,9 +1,26 @@
 #include "reconstruct/suggest_depth.hpp"
 
+#include <pointskin/error.hpp>
+
 #include "diagnose/warnings.hpp"
 
 namespace pointskin {
 namespace detail {
+
+namespace {
+
+/// Whether the run fits into `memory`; not if counting its cells does not.
+bool fits(const Engine& engine, const Input& input, Options options, std::int64_t memory) {
+  options.max_memory_bytes = memory;
+  try {
+    return bytes_of_run(engine, input, options) <= memory;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::over_limit) throw;
+    return false;
+  }
+}
+
+}  // namespace
 
 DepthSuggestion suggest_depth(const Engine& engine, const Input& input, const Options& options) {
   const Device& device = engine.workspace().device();
@@ -20,7 +37,7 @@ DepthSuggestion suggest_depth(const Engine& engine, const Input& input, const Op
     tried.depth = suggestion.depth;
     // The estimate from the points themselves sorts them: only where that from their number is not clearly enough.
     if (estimate_device_bytes(input.size(), tried) <= memory / 2) break;
-    if (bytes_of_run(engine, input, tried) <= memory) break;
+    if (fits(engine, input, tried, memory)) break;
   }
   return suggestion;
 }

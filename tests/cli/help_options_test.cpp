@@ -264,6 +264,7 @@ TEST_F(HelpOptions, OfEdit) {
                  {"--overwrite",
                   {{"--script", "ops.json", "--save", "ops.json", "--overwrite"},
                    {"--script", "ops.json", "--save", "ops.json"}}},
+                 {"--max-memory", {{"--max-memory", "1"}, {}, true}},
                  {"--cold", {{"--cold", "--iterations", "3"}, {"--iterations", "3"}}}});
   try_all("edit", {"edit", "scan.ply"}, behind({"--script", "ops.json", "-o", "out.ply"}, trials, kOutputs));
 }
@@ -275,6 +276,7 @@ TEST_F(HelpOptions, OfDeform) {
       {{"--script", {{"--script", "hold.json", "-o", "out.ply"}, bend}},
        {"--output", {{"--script", "bend.json", "-o", "a.ply"}, {"--script", "bend.json", "--cloud", "c.ply"}}},
        {"--cloud", {{"--cloud", "c.ply"}}},
+       {"--max-memory", {{"--max-memory", "1"}, {}, true}},
        {"--overwrite",
         {{"--script", "bend.json", "-o", "scan.ply", "--overwrite"}, {"--script", "bend.json", "-o", "scan.ply"}}},
        {"--frames",

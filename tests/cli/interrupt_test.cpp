@@ -1,4 +1,5 @@
 // Signals, closed pipes, kills and terminals.
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -56,6 +57,46 @@ TEST(Interrupt, WhileWorkingLeavesNothingBehind) {
     }
   }
   EXPECT_GT(interrupted, 0);
+}
+
+/// Nobody writes to the pipe, or reads from it: the program waits when the signal comes.
+TEST(Interrupt, IsHeardWhileAPipeIsWaitedFor) {
+  const TemporaryFolder folder;
+  write_file(folder / "in.ply", ply_bytes(sphere(3000)));
+  ASSERT_EQ(mkfifo((folder / "p_1.ply").c_str(), 0600), 0);
+  for (const std::vector<std::string>& args : std::vector<std::vector<std::string>>{
+           {"fluid", folder / "p_1.ply", "-o", folder / "out.ply", "-r", "0.1"},
+           {"fluid", folder / "p_{}.ply", "-o", folder / "out_{}.ply", "-r", "0.1"},
+           {"reconstruct", folder / "p_1.ply", "-o", folder / "out.ply"},
+           {"reconstruct", folder / "in.ply", "-o", folder / "p_1.ply", "--depth", "4"}}) {
+    Start start;
+    start.args = args;
+    start.signal = SIGTERM;
+    start.signal_after = milliseconds(2000);
+    const Result result = run_program(start);
+    EXPECT_EQ(result.exit_code, 130) << args[0] << result.signal << result.err;
+    EXPECT_FALSE(result.timed_out);
+    EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"in.ply", "p_1.ply"}));
+  }
+}
+
+/// One step of these takes far longer than the bound, which is many times what it takes to hear the signal.
+TEST(Interrupt, IsHeardWithinAStep) {
+  const TemporaryFolder folder;
+  write_file(folder / "in.ply", ply_bytes(sphere(200000)));
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+           {"--field", "distance", "--depth", "11"}, {"--depth", "11", "--iterations", "1000"}}) {
+    Start start;
+    start.args = {"reconstruct", folder / "in.ply", "-o", folder / "out.ply", "--threads", "1", "--device", "cpu"};
+    start.args.insert(start.args.end(), more.begin(), more.end());
+    start.signal = SIGINT;
+    start.signal_after = milliseconds(4000);
+    const Result result = run_program(start);
+    EXPECT_EQ(result.exit_code, 130) << result.signal << result.err;
+    EXPECT_LT(result.seconds, 4 + 10 * kSlowdown);
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"in.ply"});
+  }
 }
 
 TEST(ClosedPipe, IsOutputNotWritten) {

@@ -50,6 +50,33 @@ class ProcessMemory : public testing::Test {
   std::string report_ = folder_ / "report.json";
 };
 
+TEST_F(ProcessMemory, OfAGuideWithFarTooManyPointsIsNotAskedFor) {
+  const std::string cloud = write(sphere_cloud(60, 1), "cloud.ply");
+  const std::string script = folder_ / "ops.json";
+  write_file(script, R"({"version": 1, "operations": [{"op": "guide", "camera": {"azimuth": 0, "elevation": 0},
+    "area": [[[100, 100], [900, 100], [900, 700], [100, 700]]], "interval": 0.002, "inside_only": false}]})");
+  const Result result = pointskin_run(
+      {"edit", cloud, "--script", script, "-o", output_, "--device", "cpu", "--max-memory", "400M", "--depth", "6"});
+  expect_error(result, 6, "--max-memory");
+  EXPECT_NE(result.err.find("interval"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(output_));
+}
+
+TEST_F(ProcessMemory, OfEditAndDeformIsLimited) {
+  const std::string cloud = write(sphere_cloud(20'000, 1), "cloud.ply");
+  const std::string ops = folder_ / "ops.json";
+  write_file(ops, R"({"version": 1, "operations": []})");
+  const std::string bend = folder_ / "bend.json";
+  write_file(bend, R"({"handles": [{"region": {"half_space": {"point": [0, 0, 0], "normal": [0, -1, 0]}}}]})");
+  for (const auto& [command, script] : {std::pair{"edit", ops}, std::pair{"deform", bend}}) {
+    Args args = {command, cloud, "--script", script, "-o", output_, "--device", "cpu", "--depth", "8", "-q"};
+    args.insert(args.end(), {"--max-memory", "24M"});
+    expect_error(pointskin_run(args), 6, "--max-memory");
+    args.back() = "8G";
+    EXPECT_EQ(pointskin_run(args).exit_code, 0) << command;
+  }
+}
+
 TEST_F(ProcessMemory, IsWhatTheDryRunSaysWithin5PercentFrom64MiBOn) {
   struct Case {
     Cloud cloud;

@@ -1,6 +1,7 @@
 // The primitives on the CPU: the bodies that all spaces share, and what only threads can get wrong.
 #include "unit/exec/primitives_tests.hpp"
 
+#include <pointskin/cancel.hpp>
 #include <pointskin/error.hpp>
 
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "exec/cpu_threads.hpp"
 #include "exec/host_array.hpp"
 
 namespace pointskin::test {
@@ -50,6 +52,72 @@ Results run_all(int threads, std::int64_t n) {
   results.unique = to_host(ex, exec::sort_unique(ex, "test", std::move(keys), 16));
   results.sum = exec::reduce<float>(ex, "test", n, RandomFloat{}, AddFloats{});
   return results;
+}
+
+TEST(CpuThreads, AreAtMost256UnlessTheMachineHasMore) {
+  EXPECT_LE(exec::Cpu(100'000).threads(), std::max<int>(256, exec::Cpu().threads()));
+  EXPECT_EQ(exec::threads_that_can_be_made(1, 8), 1);
+  EXPECT_GE(exec::threads_that_can_be_made(3, 1), 1);
+}
+
+/// Runs work() and tells how it ended.
+template <class Work>
+ErrorCode code_of(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  return ErrorCode{};
+}
+
+TEST(CancelScope, StopsWorkWithinTheNextFewHundredIndices) {
+  constexpr std::int64_t kIndices = 10'000'000;
+  constexpr std::int64_t kUntil = 5'000;
+  for (const int threads : {1, 3}) {
+    exec::Cpu ex(threads);
+    std::atomic<bool> stop{false};
+    std::atomic<std::int64_t> calls{0};
+    const auto count = [&](std::int64_t /*i*/) {
+      if (++calls == kUntil) stop = true;
+    };
+    const CancelScope scope(stop);
+    EXPECT_EQ(code_of([&] { for_each(ex, "test", kIndices, count); }), ErrorCode::interrupted);
+    EXPECT_LE(calls, kUntil + threads * exec::kCancelBlock) << threads;
+  }
+}
+
+TEST(CancelScope, BeginsNothingOnceTheFlagIsSet) {
+  exec::Cpu ex(2);
+  const std::atomic<bool> stop{true};
+  std::atomic<std::int64_t> calls{0};
+  const auto count = [&](std::int64_t /*i*/) { ++calls; };
+  {
+    const CancelScope scope(stop);
+    EXPECT_EQ(code_of([&] { for_each(ex, "test", 100'000, count); }), ErrorCode::interrupted);
+    EXPECT_EQ(code_of([&] { (void)select(ex, "test", 100'000, [](std::int64_t) { return true; }); }),
+              ErrorCode::interrupted);
+    const std::atomic<bool> never{false};
+    const CancelScope inner(never);
+    EXPECT_NO_THROW(for_each(ex, "test", 10, count));
+  }
+  EXPECT_EQ(calls, 10);
+  EXPECT_NO_THROW(for_each(ex, "test", 10, count));
+  EXPECT_EQ(calls, 20);
+}
+
+TEST(MemoryPool, HoldsTheTighterOfTheTwoLimits) {
+  exec::Cpu ex(1);
+  ex.pool()->set_lasting_limit(1000);
+  EXPECT_EQ(ex.pool()->limit(), 1000);
+  ex.pool()->set_limit(2000);
+  EXPECT_EQ(ex.pool()->limit(), 1000);
+  ex.pool()->set_limit(500);
+  EXPECT_EQ(ex.pool()->limit(), 500);
+  ex.pool()->set_limit(0);
+  EXPECT_EQ(code_of([&] { (void)exec::make_buffer<char>(ex, 1001); }), ErrorCode::over_limit);
+  ex.pool()->set_lasting_limit(0);
+  EXPECT_NO_THROW((void)exec::make_buffer<char>(ex, 1001));
 }
 
 TEST(PrimitivesOnThreads, GiveTheSameBitsForAnyNumberOfThreads) {

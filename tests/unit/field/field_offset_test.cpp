@@ -63,7 +63,7 @@ TEST(LaySamples, CoversEveryTriangle) {
   Mesh mesh = test::icosphere_mesh(1, 0.4, {0.5, 0.5, 0.5});
   test::append(mesh, test::icosphere_mesh(4, 0.1, {0.5, 0.5, 0.5}));
   exec::Cpu ex(2);
-  const field::offset::TriangleSamples samples = field::offset::lay_samples(ex, corners_of(mesh), 5);
+  const field::offset::TriangleSamples samples = field::offset::lay_samples(ex, corners_of(mesh), 5, 1);
   const double cell = 1.0 / 32;
   test::Random random(2);
   for (int i = 0; i < 2'000; ++i) {
@@ -97,7 +97,7 @@ TEST(SurfaceDistance, IsTooLargeByWhatSamplesAreApartAtMost) {
   Mesh moved = mesh;
   for (Vec3f& v : moved.vertices) v = {v.x + 0.5F, v.y + 0.5F, v.z + 0.5F};
   exec::Cpu ex(2);
-  const field::offset::TriangleSamples samples = field::offset::lay_samples(ex, corners_of(moved), 6);
+  const field::offset::TriangleSamples samples = field::offset::lay_samples(ex, corners_of(moved), 6, 1);
   const field::offset::SurfaceDistance distance{samples.tree.view(), samples.positions.cview(), samples.owners.cview(),
                                                 corners_of(moved)};
   const double cell = 1.0 / 64;
@@ -109,6 +109,34 @@ TEST(SurfaceDistance, IsTooLargeByWhatSamplesAreApartAtMost) {
     ASSERT_GE(found, truth - 1e-9);
     ASSERT_LE(found, truth + 0.47 * cell);
   }
+}
+
+/// An offset of s cells has pieces w = sqrt(s / 2) times as large, and distances too large by 0.46^2 w^2 / (2 s) cells.
+TEST(SurfaceDistance, OfCoarseSamplesIsAlmostRightFarAway) {
+  constexpr double kOffsetCells = 12;
+  constexpr double kWider = 2.449;
+  const Mesh mesh = test::torus_mesh(40, 20, 0.25, 0.08);
+  Mesh moved = mesh;
+  for (Vec3f& v : moved.vertices) v = {v.x + 0.5F, v.y + 0.5F, v.z + 0.5F};
+  exec::Cpu ex(2);
+  const auto samples = field::offset::lay_samples(ex, corners_of(moved), 6, kWider);
+  EXPECT_LT(samples.positions.size(), field::offset::lay_samples(ex, corners_of(moved), 6, 1).positions.size());
+  const field::offset::SurfaceDistance distance{samples.tree.view(), samples.positions.cview(), samples.owners.cview(),
+                                                corners_of(moved), true};
+  const double cell = 1.0 / 64;
+  test::Random random(3);
+  int far = 0;
+  for (int i = 0; i < 1'000; ++i) {
+    const Vec3f centred = point_in(random, 0.5);
+    const Vec3f q{centred.x + 0.5F, centred.y + 0.5F, centred.z + 0.5F};
+    const double truth = brute_distance(moved, q);
+    if (truth < kOffsetCells * cell) continue;
+    ++far;
+    const double found = std::sqrt(distance.squared(q));
+    ASSERT_GE(found, truth - 1e-9);
+    ASSERT_LE(found, truth + 0.06 * cell);
+  }
+  EXPECT_GT(far, 100);
 }
 
 }  // namespace

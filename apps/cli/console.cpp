@@ -53,6 +53,11 @@ void print_error(const std::string& story) {
   write_line(fmt::format("{} {}", name, one_line(story)));
 }
 
+void print_out_of_memory() noexcept {
+  constexpr std::string_view kStory = "pointskin: out of memory; use a smaller --depth or fewer points\n";
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kStory.data(), kStory.size());
+}
+
 void print_warning(const std::string& story) {
   const std::string line = one_line(story);
   warnings().push_back(line);

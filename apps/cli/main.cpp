@@ -1,8 +1,15 @@
 // The program pointskin: reads the command line, runs one command, turns errors into one line and an exit code.
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include <pointskin/error.hpp>
 
@@ -25,12 +32,38 @@ int guarded_main(const std::vector<std::string>& args) {
     print_error(error.code() == ErrorCode::interrupted ? interrupted_text() : error.what());
     return static_cast<int>(error.code());
   } catch (const std::bad_alloc&) {
-    print_error("out of memory; use a smaller --depth or fewer points");
-    return static_cast<int>(ErrorCode::over_limit);
+    throw;
+  } catch (const std::filesystem::filesystem_error& error) {  // as where the working folder has been removed
+    print_error(fmt::format("{}: cannot be found, {}; check the path and the working folder", error.path1().string(),
+                            error.code().message()));
+    return static_cast<int>(ErrorCode::invalid_input);
   } catch (const std::exception& error) {
     print_error(std::string("internal error: ") + error.what());
     return static_cast<int>(ErrorCode::internal);
   }
+}
+
+/// Also where telling of another error takes memory that is not there.
+int without_memory() noexcept {
+  print_out_of_memory();
+  return static_cast<int>(ErrorCode::over_limit);
+}
+
+std::atomic<bool> memory_ran_out{false};
+std::terminate_handler library_terminate = std::abort;  ///< tells of other exceptions
+
+/// Called by operator new.
+void remember_and_throw() {
+  memory_ran_out.store(true);
+  throw std::bad_alloc();
+}
+
+/// Where an exception leaves a function that may throw none, as there are in libraries, or cannot be thrown for want of
+/// memory, nothing can be unwound: tell what was the matter, and end.
+[[noreturn]] void end_at_once() {
+  if (memory_ran_out.load()) _exit(without_memory());
+  library_terminate();
+  std::abort();
 }
 
 }  // namespace
@@ -39,5 +72,11 @@ int guarded_main(const std::vector<std::string>& args) {
 int main(int argc, char** argv) {
   pointskin::cli::hold_standard_files();
   pointskin::cli::install_signal_handlers();
-  return pointskin::cli::guarded_main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  std::set_new_handler(pointskin::cli::remember_and_throw);
+  pointskin::cli::library_terminate = std::set_terminate(pointskin::cli::end_at_once);
+  try {
+    return pointskin::cli::guarded_main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  } catch (const std::bad_alloc&) {
+    return pointskin::cli::without_memory();
+  }
 }

@@ -59,12 +59,12 @@ void check_problem_pictures(const ProblemPictureArgs& args) {
   if (args.most < 1 || args.most > 999) throw_usage(fmt::format("--pictures-most: {} is not in [1, 999]", args.most));
   if (args.folder.empty()) return;
   std::error_code ignored;
-  fs::path place = fs::absolute(args.folder);
+  fs::path place = fs::absolute(args.folder, ignored);
   while (!fs::exists(place, ignored) && place.has_parent_path() && place != place.root_path())
     place = place.parent_path();
   if (!fs::is_directory(place, ignored))
     throw Error(ErrorCode::output_not_written,
-                fmt::format("{}: pictures need a folder, and {} is a file", args.folder, place.string()));
+                fmt::format("{}: pictures need a folder, and {} is none", args.folder, place.string()));
   check_replaceable((place / "problem_01_1.png").string());
 }
 

@@ -141,8 +141,14 @@ Json to_json(const Document& document, const fs::path& folder) {
 }
 
 void write_document(const std::string& path, const Document& document) {
-  const fs::path folder = fs::absolute(path).parent_path();
-  write_file_atomically(path, json_text(to_json(document, folder), 2) + "\n");
+  std::string text;
+  try {
+    text = json_text(to_json(document, fs::absolute(path).parent_path()), 2) + "\n";
+  } catch (const fs::filesystem_error& error) {
+    throw Error(ErrorCode::output_not_written, fmt::format("{}: cannot be written, the way from it to {}: {}", path,
+                                                           error.path1().string(), error.code().message()));
+  }
+  write_file_atomically(path, text);
 }
 
 std::vector<std::string> check_clouds(const Base& base) {

@@ -54,8 +54,9 @@ std::string extension_list(bool FormatInfo::*can, std::span<const FormatInfo> fo
 std::string format_names(bool FormatInfo::*can, std::span<const FormatInfo> formats = file_formats());
 
 /// True if read_mesh may find faces in the file `path`: it is of a format of meshes by its first bytes, else by its
-/// name, and if it is a PLY, its header announces some. False also if it cannot be opened: the reader tells why. "-" is
-/// stdin, which must be seekable and stays where it is. Reads 64 KiB at most; does not wait for pipes.
+/// name, and if it is a PLY, its header announces some. "-" is stdin, which must be seekable and stays where it is. Reads
+/// 64 KiB at most; does not wait for pipes.
+/// @throws Error invalid_input if it cannot be opened or read: a mesh must not be taken for a cloud then
 bool may_hold_faces(const std::string& path);
 
 }  // namespace pointskin

@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,50 +12,50 @@
 #include <system_error>
 
 #include "exec/cancel.hpp"
-#include "io/file_descriptor.hpp"
 
 namespace pointskin::io {
-namespace {
 
-[[noreturn]] void fail_to_read(const std::string& name, int error) {
+void fail_to_read(const std::string& name, int error) {
   const char* advice = error == ENOENT   ? "check the path"
                        : error == EACCES ? "check the permissions"
                                          : "check the disk and the path";
   fail({name, {}}, "cannot be read, " + std::generic_category().message(error), advice);
 }
 
-}  // namespace
+/// Does not wait until somebody opens a pipe to write into it; -1 for stdin.
+static int open_input(const std::string& path) {
+  return path == "-" ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+}
 
-Input::Input(const std::string& path) : name_(path == "-" ? "stdin" : path) {
+Input::Input(const std::string& path) : name_(path == "-" ? "stdin" : path), file_(open_input(path)) {
   if (path == "-") {
     read_all(STDIN_FILENO);
   } else {
-    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // no waiting for pipes
-    if (!file.valid()) fail_to_read(name_, errno);
+    if (!file_.valid()) fail_to_read(name_, errno);
     struct stat status {};
-    if (::fstat(file.get(), &status) != 0) fail_to_read(name_, errno);
+    if (::fstat(file_.get(), &status) != 0) fail_to_read(name_, errno);
     if (S_ISDIR(status.st_mode)) fail({name_, {}}, "is a folder", "name a file in it");
-    if (S_ISREG(status.st_mode) && status.st_size > 0) {
-      const auto size = static_cast<std::size_t>(status.st_size);
-      void* mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
-      if (mapping != MAP_FAILED) {
-        mapping_ = mapping;
-        mapped_bytes_ = size;
-      }
-    }
+    if (S_ISREG(status.st_mode) && status.st_size > 0)
+      mapping_.map(file_.get(), static_cast<std::size_t>(status.st_size));
     // Some file systems cannot map, and files of /proc claim to be empty.
-    if (mapping_ == nullptr) read_all(file.get());
+    if (!mapping_.mapped()) read_all(file_.get());
   }
   if (source().bytes.empty()) fail({name_, {}}, "is empty", "check the program that wrote it");
 }
 
-Input::~Input() {
-  if (mapping_ != nullptr) ::munmap(mapping_, mapped_bytes_);
+Source Input::source() const {
+  if (mapping_.mapped()) return {name_, mapping_.bytes()};
+  return {name_, memory_};
 }
 
-Source Input::source() const {
-  if (mapping_ != nullptr) return {name_, {static_cast<const char*>(mapping_), mapped_bytes_}};
-  return {name_, memory_};
+void Input::check_whole() const {
+  if (!mapping_.mapped()) return;
+  struct stat status {};
+  const bool cut =
+      ::fstat(file_.get(), &status) == 0 && static_cast<std::size_t>(status.st_size) < mapping_.bytes().size();
+  if (cut) fail({name_, {}}, "was cut short while it was read", "check the program that writes it");
+  if (mapping_.lost_bytes())
+    fail({name_, {}}, "could not be read to its end", "check the disk, and what writes the file");
 }
 
 void Input::read_all(int fd) {

@@ -1,33 +1,41 @@
 // The bytes of an input: a mapped file, or memory where a file cannot be mapped.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 
+#include "io/file_descriptor.hpp"
+#include "io/mapped_file.hpp"
 #include "io/source.hpp"
 
 namespace pointskin::io {
 
+/// @throws Error invalid_input with the system's words for `error`, an errno
+[[noreturn]] void fail_to_read(const std::string& name, int error);
+
 /// Opens `path` ("-": stdin) and holds its bytes. Regular files are mapped read-only; pipes, devices and stdin are
-/// read to their end. A file that another program shortens meanwhile ends the process with SIGBUS, as with any mapping.
+/// read to their end.
 class Input {
  public:
   /// @throws Error invalid_input if `path` is missing, a directory, unreadable or empty
   explicit Input(const std::string& path);
-  ~Input();
+  ~Input() = default;
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
   [[nodiscard]] Source source() const;
+
+  /// To be called when the bytes have been used: a mapped file may have lost some since, which then read as zeros.
+  /// @throws Error invalid_input if it did
+  void check_whole() const;
 
  private:
   void read_all(int fd);
 
   std::string name_;
   std::string memory_;
-  void* mapping_ = nullptr;
-  std::size_t mapped_bytes_ = 0;
+  FileDescriptor file_;
+  MappedFile mapping_;
 };
 
 }  // namespace pointskin::io

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <new>
 #include <stdexcept>
 
@@ -14,12 +15,25 @@
 namespace pointskin {
 namespace {
 
+/// What was cut off while it was read looks like a mistake in the file, or like none: that it was cut is what is told.
+template <class Read>
+auto use(const io::Input& input, const Read& read) {
+  try {
+    auto content = read(input.source());
+    input.check_whole();
+    return content;
+  } catch (const Error&) {
+    input.check_whole();
+    throw;
+  }
+}
+
 /// Runs `read` on the file's bytes; memory that runs out becomes an Error like any other.
 template <class Read>
 auto read_file(const std::string& path, const Read& read) {
   try {
     const io::Input input(path);
-    return read(input.source());
+    return use(input, read);
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::over_limit, "out of memory; while reading " + io::printable(path));
   } catch (const std::length_error&) {
@@ -27,11 +41,19 @@ auto read_file(const std::string& path, const Read& read) {
   }
 }
 
-std::string start_of(int file) {
+/// The first bytes of what can be read twice. Pipes cannot, and have none here; of folders the readers tell.
+std::string start_of(const std::string& path, int file) {
   constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 16;
   std::string start(kMostHeaderBytes, '\0');
-  const ssize_t count = ::pread(file, start.data(), start.size(), 0);
-  start.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  std::size_t used = 0;
+  while (used < start.size()) {
+    const ssize_t count = ::pread(file, start.data() + used, start.size() - used, static_cast<off_t>(used));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && errno != ESPIPE && errno != EISDIR && errno != EBADF) io::fail_to_read(path, errno);
+    if (count <= 0) break;
+    used += static_cast<std::size_t>(count);
+  }
+  start.resize(used);
   return start;
 }
 
@@ -46,9 +68,10 @@ Mesh read_mesh(const std::string& path, const ReadOptions& options) {
 }
 
 bool may_hold_faces(const std::string& path) {
-  if (path == "-") return io::may_hold_faces(path, start_of(STDIN_FILENO));
+  if (path == "-") return io::may_hold_faces(path, start_of("stdin", STDIN_FILENO));
   const io::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // no waiting for pipes
-  return io::may_hold_faces(path, file.valid() ? start_of(file.get()) : "");
+  if (!file.valid()) io::fail_to_read(path, errno);
+  return io::may_hold_faces(path, start_of(path, file.get()));
 }
 
 }  // namespace pointskin

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Lets single calls of the program into the C library fail, one run a call, and looks at what is left.
+
+    inject_faults.py PROGRAM SHIM [--long] [--commands NAME...] [--kinds KIND...]
+
+Counts the calls of a run first. Then the n-th fails alone, and from the n-th on all fail; reads and writes are cut short
+as well. --long takes every n. Of allocations, of which each run makes tens of thousands, these are all of one command that
+does little more than read its arguments, and of every other command all that it makes beyond so many. Exit 1, and a line
+per finding.
+"""
+import argparse
+import collections
+import shlex
+import sys
+import tempfile
+
+import runs
+
+FEW = {"once": 14, "from": 8}  # calls chosen of each command and kind where not all are taken
+MANY_FROM = 200
+ARGUMENTS_ONLY = "formats"
+
+
+def chosen_calls(count, mode, everything, first):
+    """@param first  calls before it are tried with another command"""
+    if not everything:
+        return runs.spread(count, FEW[mode])
+    if mode == "from":
+        return runs.spread(count, MANY_FROM)
+    return sorted({*runs.spread(min(first, count), FEW[mode]), *range(first, count + 1)})
+
+
+def faults_of(counts, kinds, everything, first_allocation):
+    for kind in kinds:
+        first = first_allocation if kind == "alloc" else 1
+        calls = [(mode, call) for mode in FEW for call in chosen_calls(counts[kind], mode, everything, first)]
+        if kind in ("read", "write") and counts[kind] > 0:
+            calls.append(("short", 1))
+        for mode, call in calls:
+            yield {"FAULT_KIND": kind, "FAULT_AT": str(call), "FAULT_MODE": mode}
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("shim")
+    parser.add_argument("--long", action="store_true")
+    parser.add_argument("--commands", nargs="*")
+    parser.add_argument("--kinds", nargs="*", default=runs.KINDS, choices=runs.KINDS)
+    args = parser.parse_args()
+    findings = collections.defaultdict(list)
+    injected = 0
+    with tempfile.TemporaryDirectory(prefix="pointskin-faults-") as root:
+        bench = runs.Bench(args.program, args.shim, root)
+        of_arguments = bench.run(runs.COMMANDS[ARGUMENTS_ONLY]).counts["alloc"]
+        for name, one in runs.chosen(args.commands).items():
+            good = bench.run(one)
+            problems = bench.judge(one, good, good)
+            if good.code != 0 or problems:
+                raise SystemExit(f"{name}: without a fault: exit code {good.code}: {good.err} {problems}")
+            first = 1 if name == ARGUMENTS_ONLY else of_arguments
+            faults = list(faults_of(good.counts, args.kinds, args.long, first))
+            results = runs.in_parallel(faults, lambda fault: bench.run(one, fault))
+            codes = collections.Counter()
+            for fault, result in zip(faults, results):
+                injected += result.failed > 0
+                codes[result.code] += 1
+                for wrong in bench.judge(one, result, good):
+                    variables = " ".join(f"{key}={value}" for key, value in fault.items())
+                    findings[f"{name}: {wrong}"].append(f"{variables} {shlex.join(one.words)}")
+            told = " ".join(f"{kind}:{good.counts[kind]}" for kind in args.kinds)
+            ends = ", ".join(f"{code}: {number}" for code, number in sorted(codes.items(), key=str))
+            print(f"{name}: {len(faults)} runs with a fault; calls {told}; exit codes {ends}", flush=True)
+    for finding, examples in findings.items():
+        print(f"WRONG ({len(examples)} times) {finding}\n    first: {examples[0]}\n    last: {examples[-1]}")
+    print(f"{injected} faults injected, {len(findings)} findings")
+    return 1 if findings or injected == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

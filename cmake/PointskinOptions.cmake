@@ -21,6 +21,9 @@ option(POINTSKIN_STD_THREAD "Run CPU work on std::thread instead of oneTBB (Thre
 option(POINTSKIN_FUZZ "Build the fuzz programs under tests/fuzz (needs clang; see the preset `fuzz`)" OFF)
 set(POINTSKIN_SANITIZE "" CACHE STRING "Sanitizers to build with: address, undefined, thread, or a comma-separated list")
 
+option(POINTSKIN_HARDEN "Stop the process at overruns: stack protector, fortified calls, RELRO, BIND_NOW, PIE" ON)
+option(POINTSKIN_ASSERTIONS "Check what containers of the C++ library are asked for (_GLIBCXX_ASSERTIONS)" OFF)
+
 set(POINTSKIN_HAS_CUDA OFF)
 if(NOT POINTSKIN_CUDA STREQUAL "OFF")
   include(CheckLanguage)
@@ -54,4 +57,19 @@ if(POINTSKIN_SANITIZE)
   target_compile_options(pointskin_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${POINTSKIN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
   target_link_options(pointskin_flags INTERFACE -fsanitize=${POINTSKIN_SANITIZE})
+endif()
+if(POINTSKIN_HARDEN)
+  include(CheckPIESupported)
+  check_pie_supported(LANGUAGES CXX)  # CMAKE_POSITION_INDEPENDENT_CODE then counts for linking programs, too
+  target_compile_options(pointskin_flags INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-fstack-protector-strong> $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-fstack-protector-strong>)
+  target_link_options(pointskin_flags INTERFACE LINKER:-z,relro,-z,now)
+  if(NOT POINTSKIN_SANITIZE)  # the sanitizers know the plain calls, and nothing is fortified without optimisation
+    set(optimised $<CONFIG:Release,RelWithDebInfo,MinSizeRel>)
+    target_compile_options(pointskin_flags INTERFACE
+      $<$<AND:$<COMPILE_LANGUAGE:CXX>,${optimised}>:-U_FORTIFY_SOURCE$<SEMICOLON>-D_FORTIFY_SOURCE=3>)
+  endif()
+endif()
+if(POINTSKIN_ASSERTIONS)
+  target_compile_definitions(pointskin_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:_GLIBCXX_ASSERTIONS>)
 endif()

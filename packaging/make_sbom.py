@@ -4,6 +4,7 @@
 Debian packages whose shared libraries are loaded or whose headers and archives are compiled in, and the npm packages that the
 page of the studio bundles, with versions and licences, from what is installed and from the lock file."""
 import datetime
+import hashlib
 import json
 import os
 import pathlib
@@ -45,15 +46,13 @@ def debian(name, relation):
 
 def loaded(build):
     """Debian packages of the shared libraries that program and library load."""
-    names = set()
+    candidates = set()
     for file in (build / "bin" / "pointskin", build / "lib" / "libpointskin.so.0"):
-        for path in bundle.needed(file).values():
-            if path:
-                for candidate in {path, str(pathlib.Path(path).resolve()), path.replace("/lib/", "/usr/lib/", 1)}:
-                    owner = query("-S", candidate).split(":")[0]
-                    if owner:
-                        names.add(owner)
-    return sorted(names)
+        for path in filter(None, bundle.needed(file).values()):
+            candidates |= {path, str(pathlib.Path(path).resolve()), path.replace("/lib/", "/usr/lib/", 1)}
+    # One search for all: each reads the lists of every package. It fails for the names that no package owns.
+    done = subprocess.run(["dpkg-query", "-S", *sorted(candidates)], capture_output=True, text=True, check=False)
+    return sorted({line.split(":")[0] for line in done.stdout.splitlines() if not line.startswith("diversion ")})
 
 
 def npm_packages(build):
@@ -84,9 +83,11 @@ def main(build, version, dist):
         packages.append({"SPDXID": identifier, "downloadLocation": "NOASSERTION", "filesAnalyzed": False,
                          "licenseConcluded": "NOASSERTION", "copyrightText": "NOASSERTION", **part})
     document = {"spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT", "name": f"pointskin-{version}",
-                "documentNamespace": f"https://spdx.org/spdxdocs/pointskin-{version}",
                 "creationInfo": {"created": moment.strftime("%Y-%m-%dT%H:%M:%SZ"), "creators": ["Tool: pointskin-make_sbom"]},
                 "packages": packages, "relationships": relations}
+    # Other contents have another name space, as SPDX asks, and the same contents the same.
+    digest = hashlib.sha256(json.dumps(document).encode()).hexdigest()
+    document["documentNamespace"] = f"https://spdx.org/spdxdocs/pointskin-{version}-{digest[:32]}"
     target = pathlib.Path(dist) / f"pointskin-{version}.spdx.json"
     target.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
     print(f"{target}: {len(packages) - 1} parts")

@@ -217,6 +217,11 @@ struct RunReport {
 
 /// Fits fields to points and makes meshes of them, run after run, in a workspace. Not safe for two threads at once;
 /// several reconstructors may live side by side, each with a workspace of its own or, on one thread, with a shared one.
+///
+/// After fork() the child may use what its parent made on the CPU and make more: the same bytes, but only the thread
+/// that forked works, since the others are not there. While a process forks, no other of its threads may be in a call
+/// of the library: the child would wait for locks of threads that it does not have. A GPU that the parent has used does
+/// not answer in the child (Error device_unavailable).
 class Reconstructor {
  public:
   /// @param workspace  a Device will do where nothing is to be shared

@@ -1,0 +1,63 @@
+// What this process holds of the system: memory, open files, threads.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <ostream>
+
+namespace pointskin::test {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kOwnMalloc = false;  // the sanitizer's, which keeps what is freed
+#else
+constexpr bool kOwnMalloc = true;
+#endif
+
+struct ProcessState {
+  std::int64_t resident_bytes = 0;   ///< in memory, of all that is mapped
+  std::int64_t allocated_bytes = 0;  ///< by malloc and not freed
+  std::int64_t descriptors = 0;
+  std::int64_t threads = 0;
+};
+
+inline std::int64_t entries_of(const char* folder) {
+  return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
+}
+
+inline ProcessState process_state() {
+  if (kOwnMalloc) ::malloc_trim(0);
+  ProcessState state;
+  std::int64_t mapped_pages = 0, resident_pages = 0;
+  std::ifstream("/proc/self/statm") >> mapped_pages >> resident_pages;
+  state.resident_bytes = resident_pages * ::sysconf(_SC_PAGESIZE);
+  const struct mallinfo2 blocks = ::mallinfo2();
+  state.allocated_bytes = static_cast<std::int64_t>(blocks.uordblks + blocks.hblkhd);
+  state.descriptors = entries_of("/proc/self/fd");
+  state.threads = entries_of("/proc/self/task");
+  return state;
+}
+
+inline std::ostream& operator<<(std::ostream& out, const ProcessState& state) {
+  return out << state.resident_bytes << " bytes resident, " << state.allocated_bytes << " allocated, "
+             << state.descriptors << " descriptors, " << state.threads << " threads";
+}
+
+/// Nothing has grown, but for what threads of the pool keep to themselves, and pages that blocks lie across.
+inline void expect_no_growth(const ProcessState& before, const ProcessState& after) {
+  std::cout << "before: " << before << "\nafter:  " << after << "\n";
+  EXPECT_LE(after.descriptors, before.descriptors);
+  EXPECT_LE(after.threads, before.threads);
+  if (!kOwnMalloc) return;
+  EXPECT_LE(after.allocated_bytes, before.allocated_bytes + (std::int64_t{64} << 10));
+  EXPECT_LE(after.resident_bytes, before.resident_bytes + (std::int64_t{2} << 20));
+}
+
+}  // namespace pointskin::test

@@ -99,7 +99,11 @@ struct NormalOfVertex {
       z += ux * wy - uy * wx;
     });
     const double length = std::sqrt(x * x + y * y + z * z);
-    const double inverse = length > 0 ? 1 / length : 0;
+    if (!(length > 0)) {  // smoothing has drawn the piece together: all directions are alike there
+      normals[v] = {0, 0, 1};
+      return;
+    }
+    const double inverse = 1 / length;
     normals[v] = {static_cast<float>(x * inverse), static_cast<float>(y * inverse), static_cast<float>(z * inverse)};
   }
 };

@@ -51,12 +51,14 @@ Mesh FluidSurfacer::surface(const Cloud& particles, const FluidOptions& options)
 }
 
 void FluidSurfacer::surface(const Cloud& particles, const FluidOptions& options, Mesh& mesh) {
+  check_origin(particles.origin, options);
   impl_->surface(particles, options, [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
     fluid::download_surface(ex, std::move(made), names, particles.origin, mesh, impl_->report);
   });
 }
 
 DeviceMesh FluidSurfacer::surface(const DevicePoints& particles, const FluidOptions& options) {
+  check_origin(particles.origin, options);
   return impl_->surface(
       particles, options, [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
         impl_->report.device_peak_bytes = ex.pool()->peak_bytes();

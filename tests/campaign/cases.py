@@ -369,8 +369,8 @@ def render(r):
         _cloud(r, case, "a.ply", normals=r.random() < 0.7)
     _inputs(r, case, ["a.ply"], ["-o", "picture.png"], ["--size", r.choice(("1x1", "64x48", "200x150"))])
     _options(r, case, TABLES["render"])
-    if case.points:  # points have no edges: a usage error
-        case.beyond = case.beyond or case.has("--wireframe")
+    # Points have no edges, and a mesh has no points: usage errors.
+    case.beyond = case.beyond or case.has("--wireframe" if case.points else "--point-size")
     return case
 
 

@@ -99,7 +99,7 @@ def _read_ascii(ply, elements, body):
             if at + width * count > len(words):
                 raise Malformed("the vertices are cut off")
             for place, (title, kind) in enumerate(properties):
-                convert = float if TYPES[kind[0]] in "fd" else int
+                convert = (lambda word, k=kind[0]: round_to(k, float(word))) if TYPES[kind[0]] in "fd" else int
                 ply.types[title] = kind[0]
                 ply.columns[title] = [convert(word) for word in words[at + place:at + width * count:width]]
             at += width * count

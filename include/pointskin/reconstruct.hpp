@@ -66,9 +66,9 @@ struct SolveOptions {
   FieldKind field = FieldKind::poisson;
   double screening = 2;  ///< weight of the point constraints, in [0, 1e6]; 0 is the unscreened problem of the paper
   bool fixed_screening = false;   ///< true: all samples weigh alike; false: samples that scatter across the surface
-                                  ///< weigh less, those that agree more (0.05 to 9.9 times `screening`)
+                                  ///< weigh less, those that agree more (0.05 to 6.5 times `screening`)
   int iterations = 8;             ///< relaxations of every level finer than 5, in [1, 1000]; the coarser ones
-                                  ///< together have a multigrid cycle for every four of them, at least two
+                                  ///< together have a multigrid cycle for every four of them
   double scale = 1.1;             ///< working cube / bounding cube of the points used, in [1, 100]
   double samples_per_node = 1.5;  ///< samples that two cell faces of a level should hold; in [0, 100]. Sparser ones are
                                   ///< splatted coarser, and where they hold less than 0.42 of it the surface keeps to

@@ -89,7 +89,7 @@ struct Judge {
 struct Examine {
   Around around;
   ArrayView<const Cloudwide> found;
-  float cell_area, coarsest;
+  float cell_area, coarsest, finest;
   ArrayView<float> areas;
   ArrayView<float> bends_to_urges;
   ArrayView<float> own_side_to_depths;  // read, then written: others still look at the depths that were
@@ -123,7 +123,7 @@ struct Examine {
       const float near = bend.value();
       const float samples = cloud.averaging.samples(near > bends_to_urges[i] ? near : bends_to_urges[i]);
       depth += Averaging::levels_finer(samples);
-      urge = Averaging::urge(samples);
+      urge = Averaging::urge(samples, depth - finest);
     }
     bends_to_urges[i] = urge;
     own_side_to_depths[i] = depth > coarsest ? depth : coarsest;
@@ -156,8 +156,8 @@ void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_
   auto found = exec::make_buffer<Cloudwide>(ex, 1);
   for_each(ex, kLabel, 1, Judge{samples.lonely.data(), n, looked_at, cell_area, found.view()});
   for_each(ex, kLabel, n,
-           Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), samples.areas.view(), bends.view(),
-                   own_side.view(), samples.lonely.data() + kLonelyOnes});
+           Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), static_cast<float>(depth),
+                   samples.areas.view(), bends.view(), own_side.view(), samples.lonely.data() + kLonelyOnes});
   samples.splat_depths = std::move(own_side);
   samples.trust = std::move(bends);
 }

@@ -21,9 +21,9 @@ namespace pointskin::poisson {
 inline constexpr float kSmoothing = 1.4F, kSharp = 0.036F, kClean = 0.03F;
 inline constexpr float kUsual = 1.5F, kFinest = 0.22F, kPerNoise = 4, kMost = 8;
 
-/// Where so few samples are averaged, the shape bends more than noise hides: positions are trusted more, by kUrgent over
-/// the number of samples, at most kMostUrge times (trust.hpp).
-inline constexpr float kUrgent = 2, kMostUrge = 3;
+/// Where few samples are averaged, the shape bends more than noise hides; where many are, noise hides the shape. Positions are
+/// trusted by kUrgent over the number of samples, at most kMostUrge times (trust.hpp).
+inline constexpr float kUrgent = 2, kMostUrge = 3, kSurelyBeyond = 0.25F;
 
 /// On scan lines the fourth sample after one is often more than sqrt(kAlongLines) = 3.5 times as far away as the next:
 /// for half of the samples, but for one in three where they are spread over the surface. Density then says nothing of
@@ -96,9 +96,12 @@ struct Averaging {
   /// Levels that a normal is splatted finer at for that: four times the samples are under the kernel of the next coarser one.
   PSK_HD static float levels_finer(float samples) { return 0.5F * rough_log2(kUsual / samples); }
 
-  PSK_HD static float urge(float samples) {
+  /// @param beyond  levels that the normal would be splatted beyond the finest one, which averages over more samples: nothing is
+  ///                left to noise then
+  PSK_HD static float urge(float samples, float beyond) {
     const float urge = kUrgent / samples;
-    return urge < 1 ? 1.0F : urge > kMostUrge ? kMostUrge : urge;
+    if (urge < 1) return urge + ramp(beyond, 0, kSurelyBeyond) * (1 - urge);
+    return urge > kMostUrge ? kMostUrge : urge;
   }
 };
 

@@ -210,6 +210,7 @@ class Levels {
     auto other = exec::make_buffer<float>(ex_, level.level.nodes());
     start(level, values(d), other.view());
     iterate(ex_, level, options_.iterations, values(d).data, other.data());
+    other.reset();
     report(level, options_.iterations, done);
   }
 

@@ -14,13 +14,13 @@ namespace pointskin::poisson {
 inline constexpr float kPairAgreement = 0.9F;
 inline constexpr float kPairReach = 1.4142135F;
 
-/// Trust = kTrustScale / (kCleanVariance + variance), the variance in squared cells of the splat depth: 9.9 for clean
+/// Trust = kTrustScale / (kCleanVariance + variance), the variance in squared cells of the splat depth: 6.5 for clean
 /// samples, 1 at a standard deviation of 0.15 cells (docs/decisions/0017-noise-and-smoothness.md).
-inline constexpr float kTrustScale = 0.0247F;
-inline constexpr float kCleanVariance = 0.0025F;
+inline constexpr float kTrustScale = 0.0262F;
+inline constexpr float kCleanVariance = 0.004F;
 inline constexpr float kSmallestTrust = 0.05F;
 
-/// Where the shape bends more than noise hides, trust is more by the urge of noise.hpp, but not beyond this by it.
+/// Trust is multiplied by the urge of noise.hpp, but where that is above 1 not beyond this.
 inline constexpr float kMostUrged = 2;
 
 /// Pairs with the variance of trust 1 that are counted in: where there are few pairs, samples weigh as they are.
@@ -39,7 +39,8 @@ PSK_HD inline float trust_at(float trust, float splat_depth, int depth) {
   return there < 1 ? there : 1.0F;
 }
 
-/// Fills `samples.trust`, which holds the urges of examine.hpp before; empty: 1 everywhere. The variance is pooled over the cell of level D - 2 around a sample, for samples splatted one
+/// Fills `samples.trust`, which holds the urges of examine.hpp before; empty: 1 everywhere. The variance is pooled over the
+/// cell of level D - 2 around a sample, for samples splatted one
 /// or more levels above the finest over that of level D - 3 or D - 4.
 /// Half the mean over the pairs (p, n), (q, m) of ((n + m) / 2 . (p - q))^2; the mean normal of two points of a curve
 /// that bends evenly is perpendicular to the line between them, so that curvature does not count as scatter.

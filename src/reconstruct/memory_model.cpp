@@ -69,6 +69,7 @@ struct Model {
   std::int64_t occupied_bricks = 1;  // the root's
   std::int64_t most_bricks = 0;      // of one level
   std::int64_t counted_bricks = 0;   // of the levels that count samples
+  std::int64_t cycled_bricks = 0;    // of the complete levels, as often as the cycles have arrays of them
 
   Model(const RunSize& of, const Options& with) : size(of), options(with) {
     for (int d = 0; d <= depth(); ++d) {
@@ -78,6 +79,8 @@ struct Model {
       if (d < depth()) occupied_bricks += own.occupied_cells;
       most_bricks = std::max(most_bricks, own.bricks);
       if (d <= counted_depth()) counted_bricks += own.bricks;
+      if (d <= octree::kCompleteDepth)
+        cycled_bricks += (d == std::min(depth(), octree::kCompleteDepth) ? 5 : 6) * own.bricks;
     }
   }
 
@@ -162,13 +165,13 @@ struct Model {
            kNodeValue * (2 * bricks + 2 * level(depth()).bricks);
   }
 
-  /// Divergence and solution of all levels; the other solution of one level.
+  /// Divergence and solution of all levels; the other solution of one level, or the cycles' arrays.
   [[nodiscard]] std::int64_t solve() const {
     const std::int64_t screening =
         options.screening > 0 ? kScreening * bricks + kCollapsedSamples * occupied_bricks : 0;
     const std::int64_t free = options.boundary == Boundary::dirichlet || has_envelope() ? kFree * bricks : 0;
     return kCollapsed * points + planes() + kept() + kept_counts() + screening + free +
-           kNodeValue * (2 * bricks + most_bricks);
+           kNodeValue * (2 * bricks + std::max(most_bricks, cycled_bricks));
   }
 
   [[nodiscard]] std::int64_t isovalue() const {

@@ -200,7 +200,7 @@ TEST(FlippedNormals, OfABuildingKeepItsWalls) {
     EXPECT_EQ(repaired.report.normals_done, NormalsDone::repaired);
     const double off = compare(*cloud, repaired.mesh, {.samples = 100'000}).to_reference.rms;
     RecordProperty("points_off_" + std::to_string(share), std::to_string(off / off_clean));
-    EXPECT_LT(off, off_clean);
+    EXPECT_LT(off, off_clean);  // as near as with the normals that the file came with
   }
 }
 

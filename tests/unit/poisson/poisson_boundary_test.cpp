@@ -110,7 +110,7 @@ TEST(Boundary, EqualsTheDirectSolutionWithZeroOnTheFaces) {
   for (int d = octree::kCompleteDepth; d <= 6; ++d) {  // coarser levels are starting values
     octree::LevelView level = problem.tree.view.levels[d];
     level.unknowns = free.data() + level.first_node / 8;  // of the reference, too
-    const auto system = test::assemble(level, problem.screening.view(d), std::ldexp(w, 2 * (d - 5)));
+    const auto system = test::assemble(level, problem.screening.view(d), std::ldexp(w, 2 * (d - 6)));
     const auto nodes = static_cast<Eigen::Index>(level.nodes());
     Eigen::VectorXd u(nodes), b(nodes);
     for (Eigen::Index n = 0; n < nodes; ++n) {

@@ -24,8 +24,8 @@ void check_resolution(const Bounds& box, double cell) {
   if (reach * kStep > cell)
     throw Error(ErrorCode::invalid_input,
                 fmt::format("particles lie {:.3g} from the origin, where float coordinates are {:.3g} apart, but cells "
-                            "of the surface are {:.3g} wide; move the particles nearer to the origin, or give them as "
-                            "double or text, without --shift",
+                            "of the surface are {:.3g} wide; move the particles nearer to the origin, or leave the "
+                            "offset to --shift auto",
                             reach, reach * kStep, cell));
 }
 

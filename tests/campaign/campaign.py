@@ -125,22 +125,13 @@ def judge_file(case, name, data):
         return [f"is no whole PLY file: {problem}"]
     if name.startswith("mesh"):
         opened = case.has("--trim", "--open")
-        positive = (not case.has("--largest", "--min-component") and case.value("--shift") in (None, "auto")
-                    and not is_far(found))
+        positive = not case.has("--largest", "--min-component") and case.value("--shift") in (None, "auto")
         wrong = judge.mesh(found, not opened, positive)
     else:
         wrong = judge_points(case, found)
     # Points that a script adds have no values of the properties that only the others have.
     added = case.command() == "edit" and not name.startswith("mesh")
     return wrong + ([] if added else judge.attributes(found, doubtful(case)))
-
-
-def is_far(found):
-    """A mesh in float coordinates that lies 1000 times its extent or more from the origin: none was subtracted."""
-    axes = [found.columns[a] for a in "xyz"]
-    if found.types["x"] != "float" or not axes[0]:
-        return False
-    return max(abs(c) for axis in axes for c in axis) >= 1000 * max(max(axis) - min(axis) for axis in axes)
 
 
 def judge_points(case, found):

@@ -261,6 +261,8 @@ def shrink(case, wrong, runner, seconds):
 def smaller_cases(text):
     case = cases.Case.from_json(text)
     for k in range(len(case.arguments) - 1, case.fixed - 1, -1):
+        if case.beyond:  # what must be refused stays
+            break
         smaller = cases.Case.from_json(text)
         smaller.arguments.pop(k)
         yield smaller

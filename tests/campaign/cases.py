@@ -369,8 +369,9 @@ def render(r):
         _cloud(r, case, "a.ply", normals=r.random() < 0.7)
     _inputs(r, case, ["a.ply"], ["-o", "picture.png"], ["--size", r.choice(("1x1", "64x48", "200x150"))])
     _options(r, case, TABLES["render"])
-    # Points have no edges, and a mesh has no points: usage errors.
-    case.beyond = case.beyond or case.has("--wireframe" if case.points else "--point-size")
+    # Points have no edges, and a mesh has no points: usage errors. A size of 0 is the default.
+    refused = case.has("--wireframe") if case.points else case.value("--point-size") not in (None, "0")
+    case.beyond = case.beyond or refused
     return case
 
 

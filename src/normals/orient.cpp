@@ -91,10 +91,9 @@ struct TurnLines {
   }
 };
 
-/// A value of each sample to the cloud's order, times a factor and, if there are signs, the sign.
 constexpr float kLargestFloat = 3.4028234663852886e38F;
 
-/// Values times a factor, 3.4e38 at most, in the order of the cloud.
+/// A value of each sample to the cloud's order, times a factor and, if there are signs, the sign; 3.4e38 at most.
 struct Scatter {
   ArrayView<const std::int32_t> order, signs;
   ArrayView<const float> in;

@@ -76,9 +76,9 @@ PSK_HD inline Vec3f outward(const Vec3f& v) {
   constexpr float kLongest = 1e15F;
   const float size = length(v);
   if (size > kShortest && size < kLongest) return -v / size;
-  const float x = std::abs(v.x);
-  const float y = std::abs(v.y);
-  const float z = std::abs(v.z);
+  const float x = v.x < 0 ? -v.x : v.x;
+  const float y = v.y < 0 ? -v.y : v.y;
+  const float z = v.z < 0 ? -v.z : v.z;
   const float largest = x > y ? (x > z ? x : z) : (y > z ? y : z);
   if (!(largest > 0)) return {};
   const Vec3f scaled = v / largest;

@@ -371,7 +371,8 @@ def render(r):
     _options(r, case, TABLES["render"])
     # Points have no edges, and a mesh has no points: usage errors. A size of 0 is the default.
     refused = case.has("--wireframe") if case.points else case.value("--point-size") not in (None, "0")
-    case.beyond = case.beyond or refused
+    if refused and not case.beyond:
+        case.beyond, case.codes = True, [2, 3]  # a cloud without any finite point is refused first
     return case
 
 

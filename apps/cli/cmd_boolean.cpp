@@ -50,7 +50,7 @@ Solid read_solid(const std::string& path, const BooleanArgs& args, std::int64_t&
   const std::string name = path == "-" ? "stdin" : path;
   if (cloud->positions.empty())
     throw Error(cloud->dropped == 0 ? ErrorCode::empty_result : ErrorCode::invalid_input,
-                fmt::format("{}: holds no points with finite coordinates", name));
+                fmt::format("{}: holds no points with finite coordinates of at most 1e38", name));
   if (!cloud->has_normals())
     throw Error(ErrorCode::no_normals, fmt::format("{}: has no normals; it needs outward normals nx, ny, nz", name));
   drop_unusable(*cloud, name + ": ");

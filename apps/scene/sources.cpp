@@ -100,7 +100,7 @@ void check_not_empty(const Cloud& cloud, const std::string& name) {
   if (cloud.size() > 0) return;
   if (cloud.dropped == 0) throw Error(ErrorCode::empty_result, fmt::format("{}: holds no points", name));
   throw Error(ErrorCode::invalid_input,
-              fmt::format("{}: none of its {} points has finite coordinates", name, cloud.dropped));
+              fmt::format("{}: none of its {} points has finite coordinates of at most 1e38", name, cloud.dropped));
 }
 
 Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& options, MissingNormals missing,

@@ -1,6 +1,7 @@
 #include <pointskin/error.hpp>
 #include <pointskin/fluid.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -14,6 +15,23 @@
 #include "reconstruct/phase_clock.hpp"
 
 namespace pointskin {
+
+namespace {
+
+/// Particles so far away that double does not tell them apart, once the origin is put back, have no surface.
+void check_origin(const Vec3d& origin, const FluidOptions& options) {
+  constexpr double kStep = 0x1p-52;  // between doubles, of their magnitude
+  const double reach = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
+  const double cell = options.cube_size * options.particle_radius;
+  if (reach * kStep > cell)
+    throw Error(
+        ErrorCode::invalid_input,
+        fmt::format("particles lie {:.3g} from the origin, where coordinates are {:.3g} apart, but cells of the "
+                    "surface are {:.3g} wide; move the particles nearer to the origin, or take a larger radius",
+                    reach, reach * kStep, cell));
+}
+
+}  // namespace
 
 class PSK_HIDDEN FluidSurfacer::Impl {
  public:
@@ -51,12 +69,14 @@ Mesh FluidSurfacer::surface(const Cloud& particles, const FluidOptions& options)
 }
 
 void FluidSurfacer::surface(const Cloud& particles, const FluidOptions& options, Mesh& mesh) {
+  check_origin(particles.origin, options);
   impl_->surface(particles, options, [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
     fluid::download_surface(ex, std::move(made), names, particles.origin, mesh, impl_->report);
   });
 }
 
 DeviceMesh FluidSurfacer::surface(const DevicePoints& particles, const FluidOptions& options) {
+  check_origin(particles.origin, options);
   return impl_->surface(
       particles, options, [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
         impl_->report.device_peak_bytes = ex.pool()->peak_bytes();

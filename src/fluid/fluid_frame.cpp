@@ -13,9 +13,28 @@
 
 namespace pointskin::fluid {
 
+namespace {
+
+/// Particles so far from the origin that float does not tell neighbouring cells apart have no surface.
+void check_resolution(const Bounds& box, double cell) {
+  constexpr double kStep = 1.0 / (1 << 23);  // between floats, of their magnitude
+  double reach = 0;
+  for (const Vec3f& p : {box.lower, box.upper})
+    for (const float c : {p.x, p.y, p.z}) reach = std::max(reach, std::abs(double{c}));
+  if (reach * kStep > cell)
+    throw Error(ErrorCode::invalid_input,
+                fmt::format("particles lie {:.3g} from the origin, where float coordinates are {:.3g} apart, but cells "
+                            "of the surface are {:.3g} wide; move the particles nearer to the origin, or leave the "
+                            "offset to --shift auto",
+                            reach, reach * kStep, cell));
+}
+
+}  // namespace
+
 FluidFrame fit_frame(const Bounds& box, const FluidOptions& options, const std::optional<Bounds>& walls) {
   constexpr int kLeastDepth = 4;
   const double cell = options.cube_size * options.particle_radius;
+  check_resolution(box, cell);
   FluidFrame frame;
   frame.kernel_radius = 2 * options.smoothing_length * options.particle_radius;
   const double step = 4 * cell;

@@ -31,10 +31,14 @@ template <exec::Space Exec>
 void smooth(Exec& ex, const Fans& fans, ArrayView<const Triangle> triangles, ArrayView<const float> weights,
             int iterations, exec::Buffer<Vec3f>& positions);
 
-/// Unit normals at vertices, means of the triangles around weighted by their areas; zero where these cancel.
+/// Unit normals at vertices, means of the triangles around weighted by their areas; z where these cancel.
 template <exec::Space Exec>
 exec::Buffer<Vec3f> normals_of(Exec& ex, const Fans& fans, ArrayView<const Triangle> triangles,
                                ArrayView<const Vec3f> positions);
+
+/// True if a closed mesh encloses more than nothing, measured as below. O(triangles), one host round trip.
+template <exec::Space Exec>
+bool encloses_volume(Exec& ex, int depth, const surface::Surface& mesh);
 
 /// Removes the components of a closed mesh that enclose less than `least_cells` finest cells, inside out or not.
 /// Volumes are measured with vertices rounded to 1/16 of a cell, in integers.

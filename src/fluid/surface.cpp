@@ -70,6 +70,9 @@ void finish(Exec& ex, const SortedParticles& sorted, const Particles& particles,
     const double crowd = kBulk * std::pow(options.smoothing_length, 3);
     if (weighted) to_smoothing_weights(ex, static_cast<float>(crowd), weights.view());
     smooth(ex, fans, mesh.triangles.cview(), weights.cview(), options.smoothing_iterations, mesh.positions);
+    if (!encloses_volume(ex, frame.depth, mesh))
+      throw Error(ErrorCode::empty_result,
+                  "smoothing has drawn the surface together until it encloses nothing; choose fewer iterations");
   }
   if (options.normals) mesh.normals = normals_of(ex, fans, mesh.triangles.cview(), mesh.positions.cview());
   for_each(ex, "fluid.world", mesh.positions.size(), ToWorld{frame.cube, mesh.positions.view()});

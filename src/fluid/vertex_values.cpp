@@ -16,8 +16,8 @@ struct AverageAtVertex {
   PSK_HD void operator()(std::int64_t v) const {
     const Vec3f x = vertices[v];
     const float inverse = 1 / particles.radius;
-    float sum[kValuesAtOnce] = {};
-    float weight[kValuesAtOnce] = {};
+    double sum[kValuesAtOnce] = {};  // which holds several of the largest floats
+    double weight[kValuesAtOnce] = {};
     for_each_range_near(particles.tree, x, x, particles.radius, [&](std::int32_t first, std::int32_t last) {
       for (std::int32_t j = first; j < last; ++j) {
         const Vec3f p = particles.positions[j];
@@ -30,12 +30,13 @@ struct AverageAtVertex {
         for (int i = 0; i < means.count; ++i) {
           const float value = means.values[i][j];
           if (!(value - value == 0)) continue;
-          sum[i] += k * value;
+          sum[i] += static_cast<double>(k) * value;
           weight[i] += k;
         }
       }
     });
-    for (int i = 0; i < means.count; ++i) means.out[i][v] = weight[i] > 0 ? sum[i] / weight[i] : kNan;
+    for (int i = 0; i < means.count; ++i)
+      means.out[i][v] = weight[i] > 0 ? static_cast<float>(sum[i] / weight[i]) : kNan;
   }
 };
 

@@ -19,7 +19,7 @@ void Pieces::add(const PointTable& table, const std::vector<Triangle>& triangles
   for (const Triangle& t : triangles) triangles_.push_back({moved(t[0]), moved(t[1]), moved(t[2])});
   Cloud part = assemble(ex_, source_, table, options_.shift);
   if (part.dropped > 0 && !triangles_.empty())
-    fail(source_, "has a vertex that is not finite", "export the mesh again");
+    fail(source_, "has a vertex that is not finite, or beyond 1e38", "export the mesh again");
   merge_into(vertices_, std::move(part));
 }
 

@@ -225,7 +225,7 @@ bool is_coordinate(const std::string& name) { return name == "x" || name == "y" 
 Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, const std::optional<Vec3d>& shift) {
   if (shift) check_shift(*shift);
   const Roles roles = find_roles(source, table);
-  const bool wants_shift = !shift && !holds_floats(table, roles);
+  const bool wants_shift = !shift;
   const Survey found = survey(ex, table, roles, wants_shift);
   const auto kept = static_cast<std::size_t>(found.first.back());
   Cloud cloud;
@@ -233,7 +233,7 @@ Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, con
   if (shift)
     cloud.origin = *shift;
   else if (wants_shift && kept > 0)
-    cloud.origin = automatic_shift(found.runs, found.first.back(), table.resolution,
+    cloud.origin = automatic_shift(found.runs, found.first.back(), table.resolution, !holds_floats(table, roles),
                                    [&](const Box& box) { return points_beyond(ex, table, roles, box); });
   exec::resize(ex, cloud.positions, kept);
   if (roles.normal) exec::resize(ex, cloud.normals, kept);

@@ -40,7 +40,7 @@ bool is_finite(const Column& column, std::int64_t row) {
     return true;
   };
   while (is_good(bad)) ++bad;
-  fail(source, fmt::format("vertex {} has a coordinate that is not finite", bad),
+  fail(source, fmt::format("vertex {} has a coordinate that is not finite, or beyond 1e38", bad),
        "remove the vertex or export the mesh again");
 }
 

@@ -91,14 +91,17 @@ struct TurnLines {
   }
 };
 
-/// A value of each sample to the cloud's order, times a factor and, if there are signs, the sign.
+constexpr float kLargestFloat = 3.4028234663852886e38F;
+
+/// A value of each sample to the cloud's order, times a factor and, if there are signs, the sign; 3.4e38 at most.
 struct Scatter {
   ArrayView<const std::int32_t> order, signs;
   ArrayView<const float> in;
   float factor;
   ArrayView<float> out;
   PSK_HD void operator()(std::int64_t i) const {
-    out[order[i]] = factor * in[i] * (signs.empty() ? 1.0F : static_cast<float>(signs[i]));
+    const float value = factor * in[i] * (signs.empty() ? 1.0F : static_cast<float>(signs[i]));
+    out[order[i]] = value > kLargestFloat ? kLargestFloat : value < -kLargestFloat ? -kLargestFloat : value;
   }
 };
 
@@ -184,10 +187,11 @@ void write(Exec& ex, const Found& found, const NormalOptions& options, Cloud& cl
   report.given = report.kept + report.flipped + report.replaced;
   report.doubtful = counts.doubtful;
   if (options.confidence) set_attribute(cloud, "confidence", scattered(ex, points, found.confidence, {}, 1));
-  if (options.curvature)
-    set_attribute(
-        cloud, "curvature",
-        scattered(ex, points, found.lines.curvature, found.signs.cview(), static_cast<float>(1 / points.frame.size)));
+  if (options.curvature) {
+    const double per_unit = std::min<double>(1 / points.frame.size, kLargestFloat);
+    set_attribute(cloud, "curvature",
+                  scattered(ex, points, found.lines.curvature, found.signs.cview(), static_cast<float>(per_unit)));
+  }
   detail::download_array(ex, out, cloud.normals);
 }
 

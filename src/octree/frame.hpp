@@ -46,7 +46,8 @@ struct ToUnit {
 };
 
 /// Cube around a box, `scale` times as wide as its longest side, with the same centre.
-/// @throws Error empty_result if the box is one place, invalid_input if floats do not reach the cube's corners
+/// @throws Error empty_result if the box is one place, invalid_input if floats do not reach the cube's corners, or if the
+/// box is so small and so far from the origin that floats hardly divide it
 Frame frame_around(const Bounds& box, double scale);
 
 /// Smallest box around `positions`, of which there is at least one. O(n), exact.

@@ -71,12 +71,14 @@ bool is_worth_trimming(Exec& ex, const FieldData& field, const surface::Surface&
   return diagnose::findings_of(diagnose::read_counts(ex, counts)).far >= kLittle;
 }
 
-/// Samples per finest cell face to samples per unit of area.
+/// Samples per finest cell face to samples per unit of area; of cells so small that float does not hold it, what it holds.
 struct PerArea {
   double face;  // world units^2
   ArrayView<float> density;
   PSK_HD void operator()(std::int64_t i) const {
-    density[i] = static_cast<float>(static_cast<double>(density[i]) / face);
+    constexpr double kLargest = 3.4028234663852886e38;
+    const double per_area = static_cast<double>(density[i]) / face;
+    density[i] = static_cast<float>(per_area < kLargest ? per_area : kLargest);
   }
 };
 

@@ -70,10 +70,25 @@ PSK_HD inline float crossing_parameter(const field::FieldView& f, const CrossedE
   return t < kCrossingMargin ? kCrossingMargin : t > 1 - kCrossingMargin ? 1 - kCrossingMargin : t;
 }
 
-/// -v / |v|, or zero: values fall towards the outside.
+/// -v / |v|, or zero if v is: values fall towards the outside.
 PSK_HD inline Vec3f outward(const Vec3f& v) {
+  constexpr float kShortest = 1e-15F;  // squares of shorter ones have lost digits, of longer ones are not finite
+  constexpr float kLongest = 1e15F;
   const float size = length(v);
-  return size > 0 ? -v / size : Vec3f{};
+  if (size > kShortest && size < kLongest) return -v / size;
+  const float x = v.x < 0 ? -v.x : v.x;
+  const float y = v.y < 0 ? -v.y : v.y;
+  const float z = v.z < 0 ? -v.z : v.z;
+  const float largest = x > y ? (x > z ? x : z) : (y > z ? y : z);
+  if (!(largest > 0)) return {};
+  const Vec3f scaled = v / largest;
+  return -scaled / length(scaled);
+}
+
+/// The normal where gradients cancel: out along the edge from its inner end, the only slope that is known there.
+PSK_HD inline Vec3f outward_along(const field::FieldView& f, const EdgeOwner& owner, const octree::Coordinates& start) {
+  const float way = f.inside(owner.level, owner.node, start) ? 1.0F : -1.0F;
+  return {owner.axis == 0 ? way : 0.0F, owner.axis == 1 ? way : 0.0F, owner.axis == 2 ? way : 0.0F};
 }
 
 }  // namespace pointskin::surface

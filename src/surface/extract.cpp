@@ -143,7 +143,8 @@ struct EmitVertex {
     if (mesh.normals.empty()) return;
     const Vec3f g0 = field::gradient_at(f, owner.level, edge.start);
     const Vec3f g1 = field::gradient_at(f, owner.level, edge.end);
-    mesh.normals[vertex] = outward({g0.x + t * (g1.x - g0.x), g0.y + t * (g1.y - g0.y), g0.z + t * (g1.z - g0.z)});
+    const Vec3f normal = outward({g0.x + t * (g1.x - g0.x), g0.y + t * (g1.y - g0.y), g0.z + t * (g1.z - g0.z)});
+    mesh.normals[vertex] = normal == Vec3f{} ? outward_along(f, owner, c) : normal;
   }
 };
 
@@ -261,7 +262,10 @@ struct EmitTraced {
       }
       const float share = 1.0F / static_cast<float>(length);
       mesh.positions[centre] = position * share;
-      if (!mesh.normals.empty()) mesh.normals[centre] = outward(-normal);
+      if (!mesh.normals.empty()) {
+        const Vec3f mean = outward(-normal);
+        mesh.normals[centre] = mean == Vec3f{} ? mesh.normals[first_vertex] : mean;  // where they cancel, any of them
+      }
       mesh.keys[centre] = vertex_key(f.tree, place);
       ++centre;
     });

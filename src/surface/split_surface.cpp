@@ -128,6 +128,9 @@ struct Interpolate {
   bool normalise;
   ArrayView<Vec3f> out;
 
+  /// v / |v|, or `instead` where opposed normals cancel.
+  PSK_HD static Vec3f unit(const Vec3f& v, const Vec3f& instead) { return v == Vec3f{} ? instead : outward(-v); }
+
   PSK_HD void operator()(std::int64_t i) const {
     const auto a = static_cast<std::int32_t>(edges[i] >> 32);
     const auto b = static_cast<std::int32_t>(edges[i] & 0xffffffff);
@@ -135,7 +138,7 @@ struct Interpolate {
     const Vec3f& from = in[a];
     const Vec3f& to = in[b];
     const Vec3f v{from.x + t * (to.x - from.x), from.y + t * (to.y - from.y), from.z + t * (to.z - from.z)};
-    out[i] = normalise ? outward({-v.x, -v.y, -v.z}) : v;
+    out[i] = normalise ? unit(v, from) : v;
   }
 };
 

@@ -197,5 +197,27 @@ TEST(DistanceField, TakesTheMemoryThatIsEstimated) {
     }
 }
 
+/// Planes of opposed points at one place cancel, and the field is flat around them.
+TEST(DistanceField, HasNormalsOfUnitLengthWherePlanesCancel) {
+  Cloud opposed = test::sphere_cloud(600, 23);
+  const std::size_t n = opposed.positions.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    opposed.positions.push_back(opposed.positions[i]);
+    opposed.normals.push_back(-opposed.normals[i]);
+  }
+  Cloud corners;
+  for (int k = 0; k < 8; ++k) {
+    const Vec3f p{k & 1 ? 1.0F : -1.0F, k & 2 ? 1.0F : -1.0F, k & 4 ? 1.0F : -1.0F};
+    corners.positions.push_back(p);
+    corners.normals.push_back(p / std::sqrt(3.0F));
+  }
+  for (const Cloud* cloud : {&opposed, &corners}) {
+    Options options = distance_options(6);
+    options.point_normals = PointNormals::given;
+    for (const Vec3f& normal : reconstructed(*cloud, options).normals)
+      EXPECT_NEAR(std::sqrt(squared_length(normal)), 1, 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace pointskin

@@ -270,7 +270,7 @@ TEST_P(PlyReaderIn, KeepsTheMillimetresOfSurveyCoordinates) {
   }
 }
 
-TEST(PlyReader, LeavesFloatFilesWhereTheyAreAndTakesAGivenShift) {
+TEST(PlyReader, LeavesFloatsOfOnePlaceWhereTheyAreAndTakesAGivenShift) {
   Body body(Encoding::little);
   body.add<float>(500000.5f).add<float>(8).add<float>(9).end_row();
   const std::string bytes = body.with_header(std::string("element vertex 1\n") + kXyz);

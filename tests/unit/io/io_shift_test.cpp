@@ -118,5 +118,42 @@ TEST(AutomaticShift, OfPointsAtOnePlaceAndAStrayIsThatPlace) {
   EXPECT_EQ(read(points).origin, (Vec3d{2.6e6, 1.2e6, 400}));
 }
 
+/// x, y and z of all points as bytes.
+std::string floats_of(const std::vector<Vec3d>& points) {
+  std::string bytes;
+  for (const Vec3d& p : points)
+    for (std::size_t a = 0; a < 3; ++a) bytes += raw<float>(static_cast<float>(p[a]));
+  return bytes;
+}
+
+std::string ply_of_floats(const std::vector<Vec3d>& points) {
+  return "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.size()) +
+         "\nproperty float x\nproperty float y\nproperty float z\nend_header\n" + floats_of(points);
+}
+
+TEST(AutomaticShift, OfBinaryFloatsLosesNothingAndLeavesNearOnesWhereTheyAre) {
+  for (const double far : {2e3, 1e6, 1.6e7}) {
+    const std::vector<Vec3d> points = sphere_at({far, 0, -far}, 3'000, {});
+    const Cloud cloud = cloud_of("a.ply", ply_of_floats(points));
+    EXPECT_NEAR(cloud.origin[0], far, 1);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t a = 0; a < 3; ++a)
+        EXPECT_EQ(cloud.origin[a] + static_cast<double>(cloud.positions[i][a]), static_cast<float>(points[i][a]));
+  }
+  EXPECT_EQ(cloud_of("a.ply", ply_of_floats(sphere_at({900, 0, 0}, 3'000, {}))).origin, Vec3d{});
+}
+
+TEST(AutomaticShift, OfSmallThingsIsFinerThanWholeNumbers) {
+  for (const double size : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    std::vector<Vec3d> points = sphere_at({0, 0, 0}, 1'000, {});
+    for (Vec3d& p : points) p = {0.4 + size * p[0], size * p[1], 0.3 + size * p[2]};
+    const Cloud cloud = read(points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t a = 0; a < 3; ++a)
+        EXPECT_NEAR(cloud.origin[a] + static_cast<double>(cloud.positions[i][a]), points[i][a],
+                    0x1p-15 * size + 0x1p-53);
+  }
+}
+
 }  // namespace
 }  // namespace pointskin::test

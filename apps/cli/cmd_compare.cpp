@@ -142,7 +142,8 @@ Content read(const std::string& file, const CompareArgs& args) {
   const std::string name = file == "-" ? "stdin" : file;
   if (cloud != nullptr) warn_about_dropped(cloud->dropped, name + ": ");
   if (cloud != nullptr && cloud->positions.empty())
-    throw Error(ErrorCode::invalid_input, fmt::format("{}: holds no points with finite coordinates of at most 1e38", name));
+    throw Error(ErrorCode::invalid_input,
+                fmt::format("{}: holds no points with finite coordinates of at most 1e38", name));
   return content;
 }
 

@@ -135,8 +135,8 @@ class Sequence {
   void done(const FluidFrameRecord& frame) {
     const std::lock_guard lock(mutex_);
     if (frame.dropped > 0)
-      print_warning(
-          fmt::format("{}: {} particles were dropped: a coordinate is not finite, or beyond 1e38", frame.input.path, frame.dropped));
+      print_warning(fmt::format("{}: {} particles were dropped: a coordinate is not finite, or beyond 1e38",
+                                frame.input.path, frame.dropped));
     ++done_;
     line_.update({"frames", static_cast<double>(done_) / static_cast<double>(frames_.size())});
   }

@@ -21,7 +21,8 @@ Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& opti
 }
 
 void warn_about_dropped(std::int64_t count, const std::string& prefix) {
-  if (count > 0) print_warning(fmt::format("{}{} points were dropped: a coordinate is not finite, or beyond 1e38", prefix, count));
+  if (count > 0)
+    print_warning(fmt::format("{}{} points were dropped: a coordinate is not finite, or beyond 1e38", prefix, count));
 }
 
 void drop_unusable(Cloud& cloud, const std::string& prefix) {

@@ -24,10 +24,11 @@ void check_origin(const Vec3d& origin, const FluidOptions& options) {
   const double reach = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
   const double cell = options.cube_size * options.particle_radius;
   if (reach * kStep > cell)
-    throw Error(ErrorCode::invalid_input,
-                fmt::format("particles lie {:.3g} from the origin, where coordinates are {:.3g} apart, but cells of the "
-                            "surface are {:.3g} wide; move the particles nearer to the origin, or take a larger radius",
-                            reach, reach * kStep, cell));
+    throw Error(
+        ErrorCode::invalid_input,
+        fmt::format("particles lie {:.3g} from the origin, where coordinates are {:.3g} apart, but cells of the "
+                    "surface are {:.3g} wide; move the particles nearer to the origin, or take a larger radius",
+                    reach, reach * kStep, cell));
 }
 
 }  // namespace

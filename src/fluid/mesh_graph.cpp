@@ -251,8 +251,8 @@ exec::Buffer<Vec3f> normals_of(Exec& ex, const Fans& fans, ArrayView<const Trian
 
 template <exec::Space Exec>
 bool encloses_volume(Exec& ex, int depth, const surface::Surface& mesh) {
-  const auto six = exec::reduce<std::uint64_t>(ex, "fluid.volume", mesh.triangles.size(), volumes_of(depth, mesh),
-                                               AddModulo{});
+  const auto six =
+      exec::reduce<std::uint64_t>(ex, "fluid.volume", mesh.triangles.size(), volumes_of(depth, mesh), AddModulo{});
   return static_cast<std::int64_t>(six) > 0;
 }
 
@@ -267,8 +267,7 @@ std::int64_t remove_small_components(Exec& ex, int depth, double least_cells, su
   for_each(ex, kLabel, mesh.triangles.size(), UniteCorners{mesh.triangles.cview(), sets});
   auto volumes = exec::make_buffer<std::uint64_t>(ex, n);
   exec::fill(ex, volumes.view(), std::uint64_t{0});
-  for_each(ex, kLabel, mesh.triangles.size(),
-           AddVolumes{volumes_of(depth, mesh), sets, volumes.view()});
+  for_each(ex, kLabel, mesh.triangles.size(), AddVolumes{volumes_of(depth, mesh), sets, volumes.view()});
   constexpr double kLargest = 9e18;
   const IsKept keep{sets, volumes.cview(), static_cast<std::int64_t>(least < kLargest ? std::ceil(least) : kLargest)};
   const auto removed = exec::reduce<std::int64_t>(ex, kLabel, n, IsRemovedRoot{keep}, exec::detail::Plus{});

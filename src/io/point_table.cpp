@@ -233,8 +233,7 @@ Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, con
   if (shift)
     cloud.origin = *shift;
   else if (wants_shift && kept > 0)
-    cloud.origin = automatic_shift(found.runs, found.first.back(), table.resolution,
-                                   !holds_floats(table, roles),
+    cloud.origin = automatic_shift(found.runs, found.first.back(), table.resolution, !holds_floats(table, roles),
                                    [&](const Box& box) { return points_beyond(ex, table, roles, box); });
   exec::resize(ex, cloud.positions, kept);
   if (roles.normal) exec::resize(ex, cloud.normals, kept);

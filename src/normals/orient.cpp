@@ -189,9 +189,8 @@ void write(Exec& ex, const Found& found, const NormalOptions& options, Cloud& cl
   if (options.confidence) set_attribute(cloud, "confidence", scattered(ex, points, found.confidence, {}, 1));
   if (options.curvature) {
     const double per_unit = std::min<double>(1 / points.frame.size, kLargestFloat);
-    set_attribute(
-        cloud, "curvature",
-        scattered(ex, points, found.lines.curvature, found.signs.cview(), static_cast<float>(per_unit)));
+    set_attribute(cloud, "curvature",
+                  scattered(ex, points, found.lines.curvature, found.signs.cview(), static_cast<float>(per_unit)));
   }
   detail::download_array(ex, out, cloud.normals);
 }

@@ -23,10 +23,11 @@ void check_resolution(const Vec3d& lower, const Vec3d& upper) {
     extent = std::max(extent, upper[a] - lower[a]);
   }
   if (extent >= kFewSteps * kStep * reach) return;
-  throw Error(ErrorCode::invalid_input,
-              fmt::format("the points extend over {:.3g} and lie {:.3g} from the origin, where float coordinates are "
-                          "{:.3g} apart; subtract an offset nearer to them, as --shift auto does, or move them less far",
-                          extent, reach, reach * kStep));
+  throw Error(
+      ErrorCode::invalid_input,
+      fmt::format("the points extend over {:.3g} and lie {:.3g} from the origin, where float coordinates are "
+                  "{:.3g} apart; subtract an offset nearer to them, as --shift auto does, or move them less far",
+                  extent, reach, reach * kStep));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ namespace {
 
 /// Particles so far away that double does not tell them apart, once the origin is put back, have no surface.
 void check_origin(const Vec3d& origin, const FluidOptions& options) {
+  validate(options);
   constexpr double kStep = 0x1p-52;  // between doubles, of their magnitude
   const double reach = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
   const double cell = options.cube_size * options.particle_radius;

@@ -34,7 +34,6 @@ void check_resolution(const Bounds& box, double cell) {
 FluidFrame fit_frame(const Bounds& box, const FluidOptions& options, const std::optional<Bounds>& walls) {
   constexpr int kLeastDepth = 4;
   const double cell = options.cube_size * options.particle_radius;
-  check_resolution(box, cell);
   FluidFrame frame;
   frame.kernel_radius = 2 * options.smoothing_length * options.particle_radius;
   const double step = 4 * cell;
@@ -59,6 +58,7 @@ FluidFrame fit_frame(const Bounds& box, const FluidOptions& options, const std::
         fmt::format("the particles reach over {:.3g} cells of the surface, more than 2^{} along an axis; choose "
                     "larger cells, or leave far particles out",
                     side / cell, octree::kMaxDepth));
+  check_resolution(box, cell);
   frame.cube.size = std::ldexp(cell, frame.depth);
   return frame;
 }

@@ -16,8 +16,9 @@ struct AverageAtVertex {
   PSK_HD void operator()(std::int64_t v) const {
     const Vec3f x = vertices[v];
     const float inverse = 1 / particles.radius;
-    double sum[kValuesAtOnce] = {};  // which holds several of the largest floats
-    double weight[kValuesAtOnce] = {};
+    float sum[kValuesAtOnce] = {};
+    double wide[kValuesAtOnce] = {};  // the same, which holds several of the largest floats
+    float weight[kValuesAtOnce] = {};
     for_each_range_near(particles.tree, x, x, particles.radius, [&](std::int32_t first, std::int32_t last) {
       for (std::int32_t j = first; j < last; ++j) {
         const Vec3f p = particles.positions[j];
@@ -30,13 +31,17 @@ struct AverageAtVertex {
         for (int i = 0; i < means.count; ++i) {
           const float value = means.values[i][j];
           if (!(value - value == 0)) continue;
-          sum[i] += static_cast<double>(k) * value;
+          sum[i] += k * value;
+          wide[i] += static_cast<double>(k) * value;
           weight[i] += k;
         }
       }
     });
-    for (int i = 0; i < means.count; ++i)
-      means.out[i][v] = weight[i] > 0 ? static_cast<float>(sum[i] / weight[i]) : kNan;
+    for (int i = 0; i < means.count; ++i) {
+      const bool fits = sum[i] - sum[i] == 0;
+      const float mean = fits ? sum[i] / weight[i] : static_cast<float>(wide[i] / weight[i]);
+      means.out[i][v] = weight[i] > 0 ? mean : kNan;
+    }
   }
 };
 

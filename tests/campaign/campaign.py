@@ -15,6 +15,7 @@ import time
 
 import cases
 import judge
+import meshes
 import ply
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -94,6 +95,8 @@ def judge_run(case, result):
         wrong.append(f"exit code {code}, but {', '.join(made)} was written")
     if code == 0 and not frames and not case.has("--dry-run"):
         wrong += [f"{name} was not written" for name in case.outputs() if name not in made]
+    if code == 0 and frames and sum(name.startswith("mesh_") for name in made) != int(case.value("--frames")):
+        wrong.append("another number of frames was written than asked for")
     if case.has("--dry-run") and made:
         wrong.append("a dry run has written files")
     wrong += judge_memory(case, result)
@@ -117,15 +120,16 @@ def judge_file(case, name, data):
         return judge_json(data)
     if name.endswith(".png"):
         return judge.png(data)
-    if not name.endswith(".ply"):
-        return [] if data else ["is empty"]
+    if name.endswith((".stl", ".glb")):
+        return meshes.stl(data) if name.endswith(".stl") else meshes.glb(data)
+    read = {".obj": meshes.read_obj, ".off": meshes.read_off}.get(name[-4:], ply.read)
     try:
-        found = ply.read(data)
+        found = read(data)
     except (ply.Malformed, ValueError, KeyError, IndexError) as problem:
-        return [f"is no whole PLY file: {problem}"]
+        return [f"is no whole file of its format: {problem}"]
     if name.startswith("mesh"):
         opened = case.has("--trim", "--open")
-        positive = not case.has("--largest", "--min-component") and case.value("--shift") in (None, "auto")
+        positive = not case.has("--largest", "--min-component")
         wrong = judge.mesh(found, not opened, positive)
     else:
         wrong = judge_points(case, found)

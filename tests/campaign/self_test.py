@@ -5,6 +5,7 @@ import unittest
 
 import clouds
 import judge
+import meshes
 import ply
 
 PLACES, TRIANGLES = clouds.box_mesh([0, 0, 0], [1, 2, 3])
@@ -59,6 +60,28 @@ class JudgeOfMeshes(unittest.TestCase):
         data = ply.read(ply.write([["x", "float"], ["heat", "float"]], [(0, math.inf)]))
         self.assertEqual(judge.attributes(data, set()), ["the property heat is not finite"])
         self.assertEqual(judge.attributes(data, {"heat"}), [])
+
+
+class ReaderOfOtherMeshes(unittest.TestCase):
+    def test_obj_and_off_read_as_what_they_are(self):
+        obj = "".join(f"v {x} {y} {z}\n" for x, y, z in PLACES) + "".join("vn 0 0 1\n" for _ in PLACES)
+        obj += "".join(f"f {a + 1}//{a + 1} {b + 1}//{b + 1} {c + 1}//{c + 1}\n" for a, b, c in TRIANGLES)
+        off = "NOFF\n8 12 0\n" + "".join(f"{x} {y} {z} 0 0 1\n" for x, y, z in PLACES)
+        off += "".join(f"3 {a} {b} {c}\n" for a, b, c in TRIANGLES)
+        for found in (meshes.read_obj(obj.encode()), meshes.read_off(off.encode())):
+            self.assertEqual(judge.mesh(found, True, True), [])
+            self.assertEqual((found.count(), found.triangles), (8, TRIANGLES))
+        self.assertRaises(ply.Malformed, meshes.read_off, off[:-8].encode())
+        self.assertRaises(ply.Malformed, meshes.read_obj, obj.replace("f 1//1", "f 1//2").encode())
+
+    def test_stl_and_glb_that_are_cut_off_are_found(self):
+        whole = bytes(80) + (1).to_bytes(4, "little") + bytes(50)
+        self.assertEqual(meshes.stl(whole), [])
+        self.assertTrue(meshes.stl(whole[:-1]))
+        self.assertTrue(meshes.stl(whole[:84] + b"\xff" * 50))
+        whole = b"glTF" + (2).to_bytes(4, "little") + (24).to_bytes(4, "little") + (4).to_bytes(4, "little") + b"JSON{}  "
+        self.assertEqual(meshes.glb(whole), [])
+        self.assertTrue(meshes.glb(whole[:-1]))
 
 
 class JudgeOfMessages(unittest.TestCase):

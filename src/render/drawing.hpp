@@ -31,7 +31,8 @@ class Drawing {
   virtual void draw(std::int64_t id, Band& band) const = 0;
   /// What a sample at a place (steps) inside of a part sees.
   [[nodiscard]] virtual Seen seen(std::int32_t id, std::int64_t x, std::int64_t y) const = 0;
-  /// True if seen() knows the normal everywhere, alone.
+  /// True if seen() knows the normal alone; but of single points it may not: those with a normal of no length, or square to the
+  /// way to the viewer, are seen as balls.
   [[nodiscard]] virtual bool knows_normals() const = 0;
 };
 

@@ -148,7 +148,7 @@ class Painter {
   }
 
   [[nodiscard]] Vec3d normal_of(const Seen& seen, const CellBlend& cells) const {
-    if (seen.relief >= 1) return seen.normal;
+    if (seen.relief >= 1 || normals_.empty()) return seen.normal;
     const Vec3f smooth = cells.of(normals_, Vec3f{0, 0, 1});
     return normalized(seen.relief * seen.normal + (1 - seen.relief) * Vec3d{smooth.x, smooth.y, smooth.z});
   }

@@ -350,6 +350,7 @@ def run_regressions(options, paths):
 def unpack(options):
     """Writes the inputs of a case beside each other and prints the command."""
     case = cases.Case.from_json(pathlib.Path(options.cases_given[0]).read_text())
+    pathlib.Path(options.unpack).mkdir(parents=True, exist_ok=True)
     for name, data in case.inputs.items():
         (pathlib.Path(options.unpack) / name).write_bytes(data)
     print(f"cd {options.unpack} && {options.program} {' '.join(case.words())}")

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include <pointskin/error.hpp>
 #include <pointskin/formats.hpp>
 
 #include "support/io_files.hpp"
@@ -118,7 +119,7 @@ TEST(MayHoldFaces, GoesByTheNameElsewhere) {
   for (const char* path : {"a.xyz", "a.pcd", "a.json", "a", "a.step", "-"})
     EXPECT_FALSE(io::may_hold_faces(path, "1 2 3")) << path;
   EXPECT_FALSE(io::may_hold_faces("a.obj", "# .PCD v0.7\n")) << "PCD by its first bytes";
-  EXPECT_FALSE(may_hold_faces("/no/such/file.ply"));
+  EXPECT_THROW((void)may_hold_faces("/no/such/file.ply"), Error);
 }
 
 }  // namespace

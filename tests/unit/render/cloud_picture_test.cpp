@@ -60,6 +60,18 @@ TEST(CloudPicture, OfPointsAtOnePlaceIsThatOfOne) {
   EXPECT_EQ(differing(render(many, front_view()), render(one_point(), front_view())), 0);
 }
 
+/// Where no shadows are cast, no normals are worked out from the depths either.
+TEST(CloudPicture, WithoutShadowsShowsPointsWhoseNormalSaysNothing) {
+  RenderOptions options = front_view(300, 300);
+  options.projection = Projection::orthographic;
+  options.shadows = false;
+  for (const Vec3f& normal : {Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}}) {
+    const PixelBox box = box_of(one_point(normal), options);
+    EXPECT_GT(box.width(), 3);
+    EXPECT_NEAR(box.width(), box.height(), 1);
+  }
+}
+
 TEST(CloudPicture, OfNoPointsIsTheBackground) {
   EXPECT_EQ(differing(render(Cloud{}, front_view()), background_of(front_view())), 0);
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,6 +24,16 @@
 namespace pointskin::cli {
 namespace {
 
+int told(const std::exception& error) {
+  const auto* const of_system = dynamic_cast<const std::system_error*>(&error);
+  if (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) {
+    print_error("the system does not let more threads be made; use fewer --threads");
+    return static_cast<int>(ErrorCode::over_limit);
+  }
+  print_error(std::string("internal error: ") + error.what());
+  return static_cast<int>(ErrorCode::internal);
+}
+
 int guarded_main(const std::vector<std::string>& args) {
   const InterruptScope scope;
   try {
@@ -38,8 +49,7 @@ int guarded_main(const std::vector<std::string>& args) {
                             error.code().message()));
     return static_cast<int>(ErrorCode::invalid_input);
   } catch (const std::exception& error) {
-    print_error(std::string("internal error: ") + error.what());
-    return static_cast<int>(ErrorCode::internal);
+    return told(error);
   }
 }
 

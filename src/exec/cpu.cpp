@@ -10,6 +10,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -107,6 +109,19 @@ class IdleArenas {
   std::map<int, Arenas> idle_;  // by number of threads
 };
 
+/// oneTBB makes threads when it first needs them. The system may refuse one that it allowed a moment before.
+template <class Work>
+void with_threads(const Work& work) {
+  try {
+    work();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    if (!std::string_view(error.what()).starts_with("pthread_create")) throw;
+    throw Error(ErrorCode::over_limit, "the system does not let more threads be made; use fewer threads");
+  }
+}
+
 /// Has oneTBB make its threads now, by work that no thread ends before all have come. oneTBB makes threads when it first
 /// needs them, and ends the process if the system then refuses.
 void make_threads_now(tbb::task_arena& arena, int count) {
@@ -117,7 +132,9 @@ void make_threads_now(tbb::task_arena& arena, int count) {
     ++here;
     while (here < count && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
   };
-  arena.execute([&] { tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), meet, tbb::simple_partitioner()); });
+  with_threads([&] {
+    arena.execute([&] { tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), meet, tbb::simple_partitioner()); });
+  });
 }
 
 struct Cpu::Workers {
@@ -149,16 +166,18 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
     }
     return;
   }
-  workers_->arena->execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<std::int64_t>(0, count, 1),
-        [&](const tbb::blocked_range<std::int64_t>& range) {
-          for (std::int64_t i = range.begin(); i < range.end(); ++i) {
-            throw_if_cancelled(cancelled);
-            block(i);
-          }
-        },
-        tbb::simple_partitioner());
+  with_threads([&] {
+    workers_->arena->execute([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<std::int64_t>(0, count, 1),
+          [&](const tbb::blocked_range<std::int64_t>& range) {
+            for (std::int64_t i = range.begin(); i < range.end(); ++i) {
+              throw_if_cancelled(cancelled);
+              block(i);
+            }
+          },
+          tbb::simple_partitioner());
+    });
   });
 }
 

@@ -137,11 +137,22 @@ void make_threads_now(tbb::task_arena& arena, int count) {
   });
 }
 
+/// oneTBB would ignore, and complain on stderr about, more threads than cores. The smallest of all its limits counts, so
+/// there is one for the process, which is only ever raised: no space slows another one down.
+void allow_threads(int count) {
+  static std::mutex& mutex = *new std::mutex;  // never destroyed: spaces may outlive statics
+  static std::optional<tbb::global_control>& limit = *new std::optional<tbb::global_control>;
+  static int allowed = available_threads();
+  const std::lock_guard lock(mutex);
+  if (count <= allowed) return;
+  limit.reset();
+  limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
+  allowed = count;
+}
+
 struct Cpu::Workers {
   explicit Workers(int count) : threads(count), arena(IdleArenas::instance().take(count)) {
-    // oneTBB would ignore, and complain on stderr about, more threads than cores. The smallest of all living limits
-    // counts, so limits are only ever raised: no space slows another one down.
-    if (count > available_threads()) more_threads.emplace(tbb::global_control::max_allowed_parallelism, count);
+    allow_threads(count);
     if (count == 1 || !threads_are_limited()) return;
     static std::atomic<int> made_already{1};
     if (made_already >= count) return;
@@ -153,7 +164,6 @@ struct Cpu::Workers {
   Workers& operator=(const Workers&) = delete;
 
   int threads;
-  std::optional<tbb::global_control> more_threads;
   Arena arena;
 };
 

@@ -67,7 +67,8 @@ TEST_F(ProcessMemory, OfEditAndDeformIsLimited) {
   const std::string ops = folder_ / "ops.json";
   write_file(ops, R"({"version": 1, "operations": []})");
   const std::string bend = folder_ / "bend.json";
-  write_file(bend, R"({"handles": [{"region": {"half_space": {"point": [0, 0, 0], "normal": [0, -1, 0]}}}]})");
+  write_file(bend, R"({"handles": [{"region": {"half_space": {"point": [0, 0, 0], "normal": [0, -1, 0]}},
+    "rigid": {"translation": [0, -0.1, 0]}}]})");
   for (const auto& [command, script] : {std::pair{"edit", ops}, std::pair{"deform", bend}}) {
     Args args = {command, cloud, "--script", script, "-o", output_, "--device", "cpu", "--depth", "8", "-q"};
     args.insert(args.end(), {"--max-memory", "24M"});

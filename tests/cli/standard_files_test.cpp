@@ -52,7 +52,7 @@ TEST_F(StandardFiles, WarningsOfSomeFramesDoNotLandInOthers) {
     samples.push_back({{NAN, 0, 0}, {0, 0, 1}});
     write_file(folder_ / ("p_" + std::to_string(frame) + ".ply"), ply_bytes(samples, false));
   }
-  const std::string fluid = "exec \"$P\" fluid 'p_{}.ply' -r 0.06 --at-once 4 --threads 4 -q ";
+  const std::string fluid = "exec \"$P\" fluid 'p_{}.ply' -r 0.06 --device cpu --at-once 4 --threads 4 -q ";
   const Result open = run_shell(fluid + "-o 'open_{}.ply'", folder_.path());
   ASSERT_EQ(std::count(open.err.begin(), open.err.end(), '\n'), kFrames) << open.err;
   for (const std::string closed : {"2>&-", "0<&- 1>&- 2>&-"}) {

@@ -126,7 +126,7 @@ class Frames {
  private:
   void run_one(int frame) {
     throw_if_interrupted();
-    const double share = args_.given.has("--frames") ? static_cast<double>(frame) / (args_.frames - 1) : 1;
+    const double share = is_sequence() ? static_cast<double>(frame) / (args_.frames - 1) : 1;
     const Stopwatch watch;
     deformer_.deform(scaled(deformation_, share));
     if (!args_.output.empty()) deformer_.reconstruct(mesh_);
@@ -134,20 +134,21 @@ class Frames {
     const Stopwatch writing;
     throw_if_interrupted();
     write_frame(frame);
-    if (args_.given.has("--frames"))
-      frame_was_written();
-    else
-      file_was_written();
+    if (is_sequence()) frame_was_written();
     if (!args_.report.empty()) json_.push_back(describe(share, frame_ms_.back(), writing.ms()));
   }
 
   void write_frame(int frame) const {
     if (!args_.output.empty()) write_mesh(file_of(args_, args_.output, frame), mesh_, args_.threads);
+    if (!args_.output.empty() && !is_sequence()) file_was_written();
     if (args_.cloud.empty()) return;
     std::optional<UndisturbedScope> whole;  // a frame is both of its files
     if (!args_.output.empty()) whole.emplace();
     write_cloud(file_of(args_, args_.cloud, frame), deformer_.cloud(), args_.threads);
+    if (!is_sequence()) file_was_written();
   }
+
+  [[nodiscard]] bool is_sequence() const { return args_.given.has("--frames"); }
 
   [[nodiscard]] Json describe(double share, double total_ms, double write_ms) const {
     const DeformReport& report = deformer_.report();

@@ -16,6 +16,7 @@ KINDS = ("alloc", "map", "thread", "open", "read", "write", "sync", "rename", "c
 OLD = b"the old file\n"
 EXIT_CODES = {0, 2, 3, 4, 5, 6, 7, 8, 130}  # 1, an internal error, would be a bug
 TIMES_OUT_AFTER_S = 120
+WRITTEN_BEFORE = re.compile(r"interrupted; (\d+) files? w(?:as|ere) written before")
 TEMPORARY = re.compile(r"\.(?P<output>.+)\.\d+-[0-9a-f]{16}\.tmp")
 
 
@@ -159,8 +160,11 @@ class Bench:
             wrong += judge_file(name, name in one.reports, result, good)
         if result.code == 0 and one.printed and result.out != good.out:
             wrong.append("stdout is not what it is without the fault")
-        if result.code == 130 and not one.sequence and any(result.files.get(name) != OLD for name in known):
-            wrong.append("says that nothing was written, and something was")
+        if result.code == 130 and not one.sequence:
+            told = WRITTEN_BEFORE.search(result.err)
+            written = sum(result.files.get(name) != OLD for name in known)
+            if written != (int(told[1]) if told else 0):
+                wrong.append("does not say how many files were written")
         return wrong
 
 

@@ -36,7 +36,14 @@ struct Screening {
 
   [[nodiscard]] ScreeningView view(int depth) const {
     const std::int64_t first = first_brick[static_cast<std::size_t>(depth)];
-    return {brick_index.data() + first, samples.data(), corners.data() + first};
+    return {of_level(brick_index, first), samples.data(), of_level(corners, first)};
+  }
+
+ private:
+  /// Null where there is nothing.
+  template <class T>
+  [[nodiscard]] static const T* of_level(const exec::Buffer<T>& all, std::int64_t first) {
+    return all.empty() ? nullptr : all.data() + first;
   }
 };
 

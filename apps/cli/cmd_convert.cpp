@@ -35,6 +35,7 @@ WriteOptions write_options(const ConvertArgs& args) {
 
 std::string write(const ConvertArgs& args, const Mesh& mesh) {
   write_mesh(args.output, mesh, write_options(args));
+  ignore_interrupts();
   if (args.quiet) return "";
   return fmt::format("{} vertices, {} triangles, {}", mesh.vertices.size(), mesh.triangles.size(),
                      shape_words(mesh, args.threads));
@@ -44,6 +45,7 @@ std::string write(const ConvertArgs& args, const Cloud& cloud) {
   check_cloud_name(args.output, "{} holds a cloud, and clouds are written as {} only", args.input);
   warn_about_dropped(cloud.dropped);
   write_cloud(args.output, cloud, write_options(args));
+  ignore_interrupts();
   return fmt::format("{} points", cloud.size());
 }
 
@@ -61,7 +63,6 @@ int run(const ConvertArgs& args) {
   on_interrupt(OnInterrupt::remember);
   throw_if_interrupted();
   const std::string written = std::visit([&](const auto& held) { return write(args, held); }, content);
-  ignore_interrupts();
   if (!args.quiet) print_note(file_words(args.output) + written);
   return 0;
 }

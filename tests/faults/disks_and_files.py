@@ -139,10 +139,15 @@ def closed_pipes(found, bench, root, _):
             if taken > 0 and len(good.out) < 2 * 65536:
                 continue
             folder = pathlib.Path(tempfile.mkdtemp(dir=root))
-            process = started(bench, bench.words(one)[1:], folder)
             if taken > 0:
+                process = started(bench, bench.words(one)[1:], folder)
                 process.stdout.read(taken)
-            process.stdout.close()
+                process.stdout.close()
+            else:  # gone before the first byte: a pipe takes what is written before its reader goes
+                reader, writer = os.pipe()
+                os.close(reader)
+                process = started(bench, bench.words(one)[1:], folder, stdout=writer)
+                os.close(writer)
             err = process.stderr.read().decode()
             result = runs.Result(process.wait(), b"", err, {}, {}, 0, True, 0)
             process.stderr.close()

@@ -24,6 +24,7 @@
 namespace pointskin::cli {
 namespace {
 
+/// Tells what no command expected. @returns the exit code: a thread that the system refuses is a limit, all else a bug
 int told(const std::exception& error) {
   const auto* const of_system = dynamic_cast<const std::system_error*>(&error);
   if (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) {

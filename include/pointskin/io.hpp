@@ -14,9 +14,10 @@ namespace pointskin PSK_EXPORT {
 struct ReadOptions {
   /// Offset to subtract from every coordinate before float is used. Unset ("auto"): zero if float keeps the
   /// coordinates exact enough (largest magnitude below 1000 times the extent), else the centre of the bounding box, in
-  /// whole numbers unless the extent is so small that these are not near enough. Where a few strays stretch the box so far that the offset for all
-  /// would not be exact enough for the others, it is chosen for the others. Binary floats are shifted, too: what is
-  /// worked out between them needs digits that they have not. Only where all are at one place they stay.
+  /// whole numbers unless the extent is so small that these are not near enough. Where a few strays stretch the box so
+  /// far that the offset for all would not be exact enough for the others, it is chosen for the others. Binary floats
+  /// are shifted, too: what is worked out between them needs digits that they have not. Only where all are at one place
+  /// they stay.
   std::optional<Vec3d> shift;
   int threads = 0;  ///< CPU threads, 0: all
 };

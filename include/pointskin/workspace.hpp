@@ -43,6 +43,7 @@ class Workspace {
 
   /// What all arrays in the workspace may hold together from now on, in bytes; 0: no limit. What would pass it ends with
   /// Error over_limit. Options::max_memory_bytes of a run counts besides.
+  /// What is held already stays. @throws Error usage if `bytes` is negative
   void limit_memory(std::int64_t bytes) const;
 
   /// What all arrays in the workspace hold together now, in bytes.

@@ -20,7 +20,6 @@ namespace {
 
 /// Particles so far away that double does not tell them apart, once the origin is put back, have no surface.
 void check_origin(const Vec3d& origin, const FluidOptions& options) {
-  validate(options);
   constexpr double kStep = 0x1p-52;  // between doubles, of their magnitude
   const double reach = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
   const double cell = options.cube_size * options.particle_radius;
@@ -38,8 +37,9 @@ class PSK_HIDDEN FluidSurfacer::Impl {
  public:
   /// Calls finish(ex, surface, names) in the space.
   template <class Finish>
-  auto surface(const detail::Input& input, const FluidOptions& options, const Finish& finish) {
+  auto surface(const detail::Input& input, const Vec3d& origin, const FluidOptions& options, const Finish& finish) {
     validate(options);
+    check_origin(origin, options);
     report = {};
     return exec::visit(workspace.data().space, [&](auto& ex) {
       ex.pool()->reset_peak();
@@ -70,20 +70,20 @@ Mesh FluidSurfacer::surface(const Cloud& particles, const FluidOptions& options)
 }
 
 void FluidSurfacer::surface(const Cloud& particles, const FluidOptions& options, Mesh& mesh) {
-  check_origin(particles.origin, options);
-  impl_->surface(particles, options, [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
-    fluid::download_surface(ex, std::move(made), names, particles.origin, mesh, impl_->report);
-  });
+  impl_->surface(particles, particles.origin, options,
+                 [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
+                   fluid::download_surface(ex, std::move(made), names, particles.origin, mesh, impl_->report);
+                 });
 }
 
 DeviceMesh FluidSurfacer::surface(const DevicePoints& particles, const FluidOptions& options) {
-  check_origin(particles.origin, options);
-  return impl_->surface(
-      particles, options, [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
-        impl_->report.device_peak_bytes = ex.pool()->peak_bytes();
-        return detail::handle_of(impl_->workspace, {std::move(made.mesh), names, std::move(made.values)},
-                                 particles.origin);
-      });
+  return impl_->surface(particles, particles.origin, options,
+                        [&](auto& ex, fluid::FluidSurface made, const std::vector<std::string>& names) {
+                          impl_->report.device_peak_bytes = ex.pool()->peak_bytes();
+                          return detail::handle_of(impl_->workspace,
+                                                   {std::move(made.mesh), names, std::move(made.values)},
+                                                   particles.origin);
+                        });
 }
 
 const FluidReport& FluidSurfacer::report() const { return impl_->report; }

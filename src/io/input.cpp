@@ -22,10 +22,14 @@ void fail_to_read(const std::string& name, int error) {
   fail({name, {}}, "cannot be read, " + std::generic_category().message(error), advice);
 }
 
+namespace {
+
 /// Does not wait until somebody opens a pipe to write into it; -1 for stdin.
-static int open_input(const std::string& path) {
+int open_input(const std::string& path) {
   return path == "-" ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
 }
+
+}  // namespace
 
 Input::Input(const std::string& path) : name_(path == "-" ? "stdin" : path), file_(open_input(path)) {
   if (path == "-") {

@@ -63,13 +63,8 @@ Json envelope_json(const Record& record) {
 
 Json offset_json(const Record& record) {
   const OffsetReport& offset = record.run.offset;
-  return {{"distance", record.options.offset},
-          {"cells", offset.cells},
-          {"cube_growth", offset.cube_growth},
-          {"triangles", offset.triangles},
-          {"samples", offset.samples},
-          {"band_cells", offset.band_cells},
-          {"ms", offset.ms}};
+  return {{"distance", record.options.offset}, {"cells", offset.cells},           {"cube_growth", offset.cube_growth},
+          {"triangles", offset.triangles},     {"band_cells", offset.band_cells}, {"ms", offset.ms}};
 }
 
 Json pieces_json(const PiecesReport& pieces) {

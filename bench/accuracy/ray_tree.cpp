@@ -13,8 +13,6 @@
 namespace pointskin::bench {
 namespace {
 
-using mesh_detail::EdgedTriangle;
-
 constexpr std::int32_t kLeafSize = 4;
 constexpr double kMargin = 1e-9;  // in barycentric coordinates
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/triangle_distance.hpp"
+#include "core/triangle_distance.hpp"
 
 namespace pointskin::bench {
 
@@ -46,7 +46,7 @@ class RayTree {
   std::int32_t build(std::int32_t begin, std::int32_t end, std::vector<Vec3d>& centroids);
   [[nodiscard]] Box enclose(std::int32_t begin, std::int32_t end) const;
 
-  std::vector<mesh_detail::EdgedTriangle> triangles_;
+  std::vector<EdgedTriangle> triangles_;
   std::vector<Node> nodes_;
 };
 

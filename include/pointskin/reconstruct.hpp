@@ -184,7 +184,6 @@ struct OffsetReport {
   double cells = 0;             ///< the distance in finest cells of the cube that the offset surface was made in
   double cube_growth = 0;       ///< that cube / the working cube of the points, at least 1
   std::int64_t triangles = 0;   ///< of the surface that distances were measured to
-  std::int64_t samples = 0;     ///< on these triangles
   std::int64_t band_cells = 0;  ///< finest cells that the offset surface may pass through
   double ms = 0;                ///< the extraction of the surface included
 };

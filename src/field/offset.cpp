@@ -9,7 +9,7 @@
 
 #include "exec/this_space.hpp"
 #include "field/corner_values.hpp"
-#include "field/triangle_samples.hpp"
+#include "field/triangle_boxes.hpp"
 
 namespace pointskin::field {
 namespace {
@@ -42,13 +42,16 @@ struct MoveVertices {
 
 /// Distance from the surface in the unit cube of the offset, positive outside.
 struct SignedDistance {
-  SurfaceDistance distance;
+  TriangleBoxesView surface;
   FieldView original;
   BetweenFrames to_original;
 
   [[nodiscard]] PSK_HD double operator()(const Vec3f& q) const {
-    const double d = std::sqrt(distance.squared(q));
+    const double d = std::sqrt(surface.squared_distance(q));
     return is_inside(to_original(q)) ? -d : d;
+  }
+  [[nodiscard]] PSK_HD bool is_within(const Vec3f& q, double low, double high) const {
+    return is_inside(to_original(q)) ? surface.is_within(q, -high, -low) : surface.is_within(q, low, high);
   }
   [[nodiscard]] PSK_HD bool is_inside(const Vec3f& p) const {
     const bool in_cube = p.x > 0 && p.y > 0 && p.z > 0 && p.x < 1 && p.y < 1 && p.z < 1;
@@ -68,8 +71,8 @@ struct MayHoldOffset {
     const float width = 1.0F / static_cast<float>(1 << depth);
     const Vec3f centre{(static_cast<float>(c.x) + 0.5F) * width, (static_cast<float>(c.y) + 0.5F) * width,
                        (static_cast<float>(c.z) + 0.5F) * width};
-    const double off = signed_distance(centre) - offset;
-    return (off < 0 ? -off : off) <= kHalfDiagonal * width + slack;
+    const double reach = kHalfDiagonal * width + slack;
+    return signed_distance.is_within(centre, offset - reach, offset + reach);
   }
 };
 
@@ -105,19 +108,13 @@ struct ValueAtCorner {
   }
 };
 
-/// How many times larger pieces may be where the offset is far. The error is at most 0.46^2 wider^2 / (2 s) cells at a
-/// distance of s cells, here 0.05; and as much fewer samples lie at about the same distance from a place.
-double wider_pieces(double offset_cells) {
-  constexpr double kNearCells = 4;
-  const double far = std::abs(offset_cells);
-  return far > kNearCells ? std::sqrt(far / 2) : 1;
-}
-
 /// Keys of points, one in every cell of level `depth` that may hold a place at the offset.
 template <exec::Space Exec>
 exec::Buffer<std::uint64_t> find_band(Exec& ex, const SignedDistance& signed_distance, int depth, double offset_cells) {
-  const double slack_cells = signed_distance.distance.is_coarse ? 0.5 : 0.25;  // for distances a little too large
   constexpr const char* kLabel = "offset.band";
+  // Next to the triangles signs may be wrong, as these are flat and the field is not. Finest cells at the offset are not
+  // next to them if it is far enough; what is left is rounding.
+  const auto slack_cells = [&](int level) { return level == depth && std::abs(offset_cells) > 2 ? 0.01 : 0.25; };
   const double cell = 1 / static_cast<double>(std::int64_t{1} << depth);
   int level = std::min(depth, octree::kCompleteDepth);
   auto cells = exec::make_buffer<std::uint64_t>(ex, std::int64_t{1} << 3 * level);
@@ -125,7 +122,7 @@ exec::Buffer<std::uint64_t> find_band(Exec& ex, const SignedDistance& signed_dis
   for (;; ++level) {
     const exec::Buffer<std::int32_t> kept =
         select(ex, kLabel, cells.size(),
-               MayHoldOffset{cells.cview(), level, signed_distance, offset_cells * cell, slack_cells * cell});
+               MayHoldOffset{cells.cview(), level, signed_distance, offset_cells * cell, slack_cells(level) * cell});
     if (kept.empty())
       throw Error(ErrorCode::empty_result, "nothing is left of the surface at this offset; choose a smaller distance");
     if (kept.size() > std::numeric_limits<std::int32_t>::max() / 8)
@@ -148,16 +145,11 @@ OffsetField make_offset(Exec& ex, const SurfaceOfField& surface, const octree::F
   auto vertices = exec::make_buffer<Vec3f>(ex, surface.vertices.size);
   for_each(ex, "offset.vertices", vertices.size(),
            MoveVertices{BetweenFrames::make(surface.frame, frame), surface.vertices, vertices.view()});
-  const Corners corners{vertices.cview(), surface.triangles};
-  const double wider = wider_pieces(offset_cells);
-  const TriangleSamples samples = lay_samples(ex, corners, depth, wider);
-  const SignedDistance signed_distance{
-      {samples.tree.view(), samples.positions.cview(), samples.owners.cview(), corners, wider > 1},
-      surface.field,
-      BetweenFrames::make(frame, surface.frame)};
+  const TriangleBoxes boxes = make_triangle_boxes(ex, vertices.cview(), surface.triangles);
+  vertices.reset();
+  const SignedDistance signed_distance{boxes.view(), surface.field, BetweenFrames::make(frame, surface.frame)};
 
   OffsetField result;
-  result.samples = samples.positions.size();
   const exec::Buffer<std::uint64_t> band = find_band(ex, signed_distance, depth, offset_cells);
   result.band_cells = band.size();
   result.tree = octree::build_octree(ex, band.cview(), depth);

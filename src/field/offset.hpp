@@ -1,9 +1,8 @@
 // The surface at a distance from another one, as a field of its own: a new octree around it, with the signed distance
 // to the other surface's triangles at every corner. Source: Jones, Baerentzen & Sramek, "3D distance fields: a survey
 // of techniques and applications", IEEE TVCG 12, 2006; Frisken, Perry, Rockwood & Jones, "Adaptively sampled distance
-// fields", SIGGRAPH 2000 (cells where the surface is, found top-down). Differs: the nearest triangle is that of the
-// nearest of samples on all triangles, found through an octree; the sign is that of the field the surface came from
-// (docs/decisions/0020-signed-distance-and-offset.md).
+// fields", SIGGRAPH 2000 (cells where the surface is, found top-down). Differs: the sign is that of the field the surface
+// came from (docs/decisions/0020-signed-distance-and-offset.md, 0051-exact-offsets.md).
 #pragma once
 
 #include <cstdint>
@@ -19,10 +18,6 @@
 
 namespace pointskin::field {
 
-/// Longest edge of the pieces that triangles are cut into, in finest cells: each has a sample at its centre, so samples
-/// are at most 0.46 cells apart and no point of a triangle is farther than that from one.
-inline constexpr float kPieceCells = 0.8F;
-
 /// A surface with the field it came from.
 struct SurfaceOfField {
   FieldView field;
@@ -34,25 +29,20 @@ struct SurfaceOfField {
 struct OffsetField {
   octree::OctreeData tree;
   exec::Buffer<float> values;  ///< minus the signed distance at the corners of all levels, in finest cells
-  std::int64_t samples = 0;    ///< on the triangles
   std::int64_t band_cells = 0;
 };
 
 /// Field whose level set -offset_cells is the surface at that distance from `surface`, in the unit cube of `frame`.
 ///
-/// Samples are laid on the triangles, kPieceCells apart at most, and sorted into an octree. Cells whose distance from
-/// the surface may be the offset are found from the complete levels down; an octree is built of those of level `depth`.
-/// An offset farther than 4 cells has pieces sqrt(offset_cells / 2) times as large, and tries the triangles of the four
-/// nearest samples: the farther a place, the more samples are about as near as the nearest one (0051).
-/// A corner's distance is that to the triangle of its nearest sample. It is never too small; where the true nearest
-/// point, s cells away, lies inside of a triangle it is too large by at most 0.46^2 / (2 s) cells, at an edge by 0.46.
+/// Cells whose distance from the surface may be the offset are found from the complete levels down; an octree is built
+/// of those of level `depth`. A corner's distance is that to the nearest triangle, exact up to rounding.
 /// Its sign is that of the field at its place; outside of the field's cube is outside.
 /// @param surface       closed, with at least one triangle
 /// @param depth         D in [1, kMaxDepth]; finest cells are frame.size / 2^D wide
 /// @param offset_cells  in finest cells, > 0 outwards
-/// @throws Error empty_result if nothing is at that distance, over_limit (2^31 samples or cells, memory)
-/// O(samples log samples) and, for every corner, a walk through the samples' octree that grows with the distance; two
-/// round trips a level. Deterministic, the same bits on every device.
+/// @throws Error empty_result if nothing is at that distance, over_limit (2^31 cells, memory)
+/// O((t + corners) log t) for t triangles, more where many triangles are about equally far; two round trips a level.
+/// Deterministic, the same bits on every device.
 template <exec::Space Exec>
 OffsetField make_offset(Exec& ex, const SurfaceOfField& surface, const octree::Frame& frame, int depth,
                         double offset_cells);

@@ -1,11 +1,11 @@
 // The point of a triangle that is nearest to a given one, and which of the triangle's features it lies on.
-// Source: Ericson, "Real-Time Collision Detection", 2005, 5.1.5; regions as in mesh/triangle_distance.hpp.
+// Source: Ericson, "Real-Time Collision Detection", 2005, 5.1.5; regions as in core/triangle_distance.hpp.
 #pragma once
 
 #include <limits>
 
+#include "core/triangle_distance.hpp"
 #include "core/vec3.hpp"
-#include "mesh/triangle_distance.hpp"
 
 namespace pointskin::mesh_detail {
 

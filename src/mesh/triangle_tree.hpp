@@ -5,10 +5,10 @@
 
 #include <cstdint>
 
+#include "core/triangle_distance.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/nearest.hpp"
-#include "mesh/triangle_distance.hpp"
 
 namespace pointskin::mesh_detail {
 

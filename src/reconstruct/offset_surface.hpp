@@ -68,7 +68,6 @@ FieldData offset_surface(Exec& ex, const FieldData& field, const Options& option
   report.offset.cells = cells;
   report.offset.cube_growth = result.frame.size / field.frame.size;
   report.offset.triangles = surface.triangles.size();
-  report.offset.samples = made.samples;
   report.offset.band_cells = made.band_cells;
   return result;
 }

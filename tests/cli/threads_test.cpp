@@ -40,7 +40,9 @@ TEST_F(LimitedThreads, NeverAbortTheProgram) {
       const Result result = reconstruct(std::string("ulimit -v ") + kibibytes + "; ", "out.ply", threads);
       EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 6)
           << kibibytes << " KiB, " << threads << " threads: " << result.exit_code << " " << result.err;
-      if (result.exit_code == 6) EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
+      if (result.exit_code == 6) {
+        EXPECT_TRUE(is_one_error_line(result.err)) << result.err;
+      }
     }
 }
 

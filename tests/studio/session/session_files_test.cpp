@@ -140,7 +140,9 @@ TEST_F(SessionFiles, EveryFormatOfMeshesIsSaved) {
     const Json saved = save("mesh", name);
     EXPECT_EQ(saved.at("path"), file(name));
     EXPECT_EQ(saved.at("bytes"), fs::file_size(file(name))) << name;
-    if (format.reads_meshes) EXPECT_EQ(read_mesh(file(name)).triangles.size(), triangles) << name;
+    if (format.reads_meshes) {
+      EXPECT_EQ(read_mesh(file(name)).triangles.size(), triangles) << name;
+    }
   }
   EXPECT_EQ(scene::sha256_of_file(file("mesh.ply")), digest());
   EXPECT_EQ(page().refusal("save", {{"what", "mesh"}, {"name", "mesh.doc"}}), "usage");

@@ -1,4 +1,4 @@
-// Samples on triangles, distances to them, and the field of an offset, against their definitions.
+// Distances to one triangle and to the nearest of many, against trying all of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,16 +6,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "field/offset.hpp"
-#include "field/triangle_samples.hpp"
-#include "mesh/triangle_distance.hpp"
+#include "field/triangle_boxes.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin {
 namespace {
-
-using field::offset::squared_to_triangle;
 
 Vec3f point_in(test::Random& random, double size) {
   return {static_cast<float>(random.in(-size, size)), static_cast<float>(random.in(-size, size)),
@@ -23,24 +20,39 @@ Vec3f point_in(test::Random& random, double size) {
 }
 Vec3d in_double(const Vec3f& p) { return {p.x, p.y, p.z}; }
 
-double expected_squared(const Vec3f& q, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
-  return mesh_detail::squared_distance(in_double(q),
-                                       {in_double(a), in_double(b) - in_double(a), in_double(c) - in_double(a)});
+double found_squared(const Vec3f& q, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  return field::offset::PlacedTriangle{a, b, c}.squared_distance(q);
+}
+
+double squared_to_segment(const Vec3d& q, const Vec3d& a, const Vec3d& b) {
+  const double squared = squared_length(b - a);
+  const double t = squared > 0 ? std::clamp(dot(q - a, b - a) / squared, 0.0, 1.0) : 0;
+  return squared_length(q - a - t * (b - a));
+}
+
+/// The plane's where q is above the inside of all three edges, else that of the nearest edge.
+double expected_squared(const Vec3f& at, const Vec3f& first, const Vec3f& second, const Vec3f& third) {
+  const Vec3d q = in_double(at), a = in_double(first), b = in_double(second), c = in_double(third);
+  const Vec3d n = cross(b - a, c - a);
+  const bool above = squared_length(n) > 0 && dot(cross(b - a, q - a), n) > 0 && dot(cross(c - b, q - b), n) > 0 &&
+                     dot(cross(a - c, q - c), n) > 0;
+  if (above) return dot(q - a, n) * dot(q - a, n) / squared_length(n);
+  return std::min({squared_to_segment(q, a, b), squared_to_segment(q, b, c), squared_to_segment(q, c, a)});
 }
 
 TEST(SquaredToTriangle, IsThatOfTheNearestFeature) {
   test::Random random(1);
   for (int i = 0; i < 20'000; ++i) {
     const Vec3f a = point_in(random, 1), b = point_in(random, 1), c = point_in(random, 1), q = point_in(random, 2);
-    ASSERT_NEAR(squared_to_triangle(q, a, b, c), expected_squared(q, a, b, c), 1e-12);
+    ASSERT_NEAR(found_squared(q, a, b, c), expected_squared(q, a, b, c), 1e-12);
   }
 }
 
 TEST(SquaredToTriangle, TakesTrianglesWithoutArea) {
   const Vec3f a{0, 0, 0}, b{1, 0, 0}, middle{0.25F, 0, 0};
-  EXPECT_DOUBLE_EQ(squared_to_triangle({0.5F, 2, 0}, a, b, middle), 4);
-  EXPECT_DOUBLE_EQ(squared_to_triangle({-3, 4, 0}, a, a, a), 25);
-  EXPECT_DOUBLE_EQ(squared_to_triangle({2, 0, 0}, a, a, b), 1);
+  EXPECT_DOUBLE_EQ(found_squared({0.5F, 2, 0}, a, b, middle), 4);
+  EXPECT_DOUBLE_EQ(found_squared({-3, 4, 0}, a, a, a), 25);
+  EXPECT_DOUBLE_EQ(found_squared({2, 0, 0}, a, a, b), 1);
 }
 
 /// Distance of q to the mesh by trying all triangles.
@@ -53,90 +65,55 @@ double brute_distance(const Mesh& mesh, const Vec3f& q) {
   return std::sqrt(least);
 }
 
-field::offset::Corners corners_of(const Mesh& mesh) {
-  return {{mesh.vertices.data(), static_cast<std::int64_t>(mesh.vertices.size())},
-          {mesh.triangles.data(), static_cast<std::int64_t>(mesh.triangles.size())}};
+/// Around the middle of the unit cube.
+Mesh moved_to_the_middle(Mesh mesh) {
+  for (Vec3f& v : mesh.vertices) v = {v.x + 0.5F, v.y + 0.5F, v.z + 0.5F};
+  return mesh;
 }
 
-TEST(LaySamples, CoversEveryTriangle) {
-  // Large triangles and small ones, at cells of 1/32.
+/// At places all over the unit cube, and on corners of triangles, where distances are 0.
+void expect_exact(const Mesh& mesh) {
+  exec::Cpu ex(2);
+  const auto boxes =
+      field::offset::make_triangle_boxes(ex, {mesh.vertices.data(), static_cast<std::int64_t>(mesh.vertices.size())},
+                                         {mesh.triangles.data(), static_cast<std::int64_t>(mesh.triangles.size())});
+  test::Random random(3);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3f centred = point_in(random, 0.5);
+    const Vec3f q{centred.x + 0.5F, centred.y + 0.5F, centred.z + 0.5F};
+    const double truth = brute_distance(mesh, q);
+    ASSERT_NEAR(std::sqrt(boxes.view().squared_distance(q)), truth, 1e-9);
+    ASSERT_TRUE(boxes.view().is_within(q, truth - 1e-6, truth + 1e-6));
+    ASSERT_TRUE(boxes.view().is_within(q, -1, 2));
+    ASSERT_FALSE(boxes.view().is_within(q, truth + 1e-6, 2));
+    ASSERT_FALSE(boxes.view().is_within(q, -1, truth - 1e-6));
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 7)
+    ASSERT_EQ(boxes.view().squared_distance(mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][2])]), 0);
+}
+
+TEST(TriangleBoxes, FindTheNearestTriangle) { expect_exact(moved_to_the_middle(test::torus_mesh(40, 20, 0.3, 0.1))); }
+
+TEST(TriangleBoxes, OfLargeTrianglesAndSmallOnes) {
   Mesh mesh = test::icosphere_mesh(1, 0.4, {0.5, 0.5, 0.5});
   test::append(mesh, test::icosphere_mesh(4, 0.1, {0.5, 0.5, 0.5}));
-  exec::Cpu ex(2);
-  const field::offset::TriangleSamples samples = field::offset::lay_samples(ex, corners_of(mesh), 5, 1);
-  const double cell = 1.0 / 32;
-  test::Random random(2);
-  for (int i = 0; i < 2'000; ++i) {
-    const auto t = static_cast<std::size_t>(random.below(static_cast<std::int64_t>(mesh.triangles.size())));
-    double u = random.unit(), v = random.unit();
-    if (u + v > 1) {
-      u = 1 - u;
-      v = 1 - v;
-    }
-    const auto corner = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])]; };
-    const Vec3f a = corner(0), b = corner(1), c = corner(2);
-    const auto mix = [&](float x, float y, float z) { return x + u * (y - x) + v * (z - x); };
-    const double p[3] = {mix(a.x, b.x, c.x), mix(a.y, b.y, c.y), mix(a.z, b.z, c.z)};
-    double least = 1e300;
-    for (std::int64_t s = 0; s < samples.positions.size(); ++s) {
-      if (samples.owners.data()[s] != static_cast<std::int32_t>(t)) continue;
-      const Vec3f q = samples.positions.data()[s];
-      least = std::min(least, std::hypot(q.x - p[0], q.y - p[1], q.z - p[2]));
-    }
-    ASSERT_LT(least, 0.463 * cell);
-  }
-  for (std::int64_t s = 0; s < samples.positions.size(); ++s) {
-    const auto t = static_cast<std::size_t>(samples.owners.data()[s]);
-    const auto corner = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])]; };
-    ASSERT_LT(expected_squared(samples.positions.data()[s], corner(0), corner(1), corner(2)), 1e-14);
+  expect_exact(mesh);
+}
+
+TEST(TriangleBoxes, OfAnyNumber) {
+  const Mesh all = moved_to_the_middle(test::torus_mesh(12, 8, 0.3, 0.1));
+  for (const std::size_t count : {1, 2, 3, 4, 5, 8, 9, 16, 17, 31, 33, 64, 65, 127, 192}) {
+    SCOPED_TRACE(count);
+    Mesh some = all;
+    some.triangles.resize(count);
+    expect_exact(some);
   }
 }
 
-TEST(SurfaceDistance, IsTooLargeByWhatSamplesAreApartAtMost) {
-  const Mesh mesh = test::torus_mesh(40, 20, 0.3, 0.1);
-  Mesh moved = mesh;
-  for (Vec3f& v : moved.vertices) v = {v.x + 0.5F, v.y + 0.5F, v.z + 0.5F};
-  exec::Cpu ex(2);
-  const field::offset::TriangleSamples samples = field::offset::lay_samples(ex, corners_of(moved), 6, 1);
-  const field::offset::SurfaceDistance distance{samples.tree.view(), samples.positions.cview(), samples.owners.cview(),
-                                                corners_of(moved)};
-  const double cell = 1.0 / 64;
-  test::Random random(3);
-  for (int i = 0; i < 300; ++i) {
-    const Vec3f centred = point_in(random, 0.5);
-    const Vec3f q{centred.x + 0.5F, centred.y + 0.5F, centred.z + 0.5F};
-    const double found = std::sqrt(distance.squared(q)), truth = brute_distance(moved, q);
-    ASSERT_GE(found, truth - 1e-9);
-    ASSERT_LE(found, truth + 0.47 * cell);
-  }
-}
-
-/// An offset of s cells has pieces w = sqrt(s / 2) times as large, and distances too large by 0.46^2 w^2 / (2 s) cells.
-TEST(SurfaceDistance, OfCoarseSamplesIsAlmostRightFarAway) {
-  constexpr double kOffsetCells = 12;
-  constexpr double kWider = 2.449;
-  const Mesh mesh = test::torus_mesh(40, 20, 0.25, 0.08);
-  Mesh moved = mesh;
-  for (Vec3f& v : moved.vertices) v = {v.x + 0.5F, v.y + 0.5F, v.z + 0.5F};
-  exec::Cpu ex(2);
-  const auto samples = field::offset::lay_samples(ex, corners_of(moved), 6, kWider);
-  EXPECT_LT(samples.positions.size(), field::offset::lay_samples(ex, corners_of(moved), 6, 1).positions.size());
-  const field::offset::SurfaceDistance distance{samples.tree.view(), samples.positions.cview(), samples.owners.cview(),
-                                                corners_of(moved), true};
-  const double cell = 1.0 / 64;
-  test::Random random(3);
-  int far = 0;
-  for (int i = 0; i < 1'000; ++i) {
-    const Vec3f centred = point_in(random, 0.5);
-    const Vec3f q{centred.x + 0.5F, centred.y + 0.5F, centred.z + 0.5F};
-    const double truth = brute_distance(moved, q);
-    if (truth < kOffsetCells * cell) continue;
-    ++far;
-    const double found = std::sqrt(distance.squared(q));
-    ASSERT_GE(found, truth - 1e-9);
-    ASSERT_LE(found, truth + 0.06 * cell);
-  }
-  EXPECT_GT(far, 100);
+TEST(TriangleBoxes, OfTrianglesThatAreAllTheSame) {
+  Mesh mesh = test::icosphere_mesh(1, 0.3, {0.5, 0.5, 0.5});
+  mesh.triangles.assign(1'000, mesh.triangles[5]);
+  expect_exact(mesh);
 }
 
 }  // namespace

@@ -17,8 +17,6 @@
 namespace pointskin {
 namespace {
 
-using mesh_detail::EdgedTriangle;
-using mesh_detail::squared_distance;
 using test::box_mesh;
 using test::icosphere_mesh;
 using test::patch_mesh;

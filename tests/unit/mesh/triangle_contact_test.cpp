@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "core/triangle_distance.hpp"
 #include "mesh/triangle_contact.hpp"
-#include "mesh/triangle_distance.hpp"
 #include "support/shapes.hpp"
 #include "unit/mesh/exact_contact.hpp"
 

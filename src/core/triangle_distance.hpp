@@ -1,25 +1,23 @@
-// Distance of a point from a triangle.
+// Distance of a point from a triangle, on the host and in kernels.
 // Source: Ericson, "Real-Time Collision Detection", 2005, 5.1.5 (the Voronoi regions of a triangle's features).
 // Differs: inside the face the distance is that to the plane, which stays exact for needles, and triangles without a
 // plane fall back to their three edges.
 #pragma once
 
-#include <algorithm>
-
 #include "core/vec3.hpp"
 
-namespace pointskin::mesh_detail {
+namespace pointskin {
 
 /// A triangle as one corner and the two edges that leave it.
 struct EdgedTriangle {
   Vec3d a, ab, ac;
 
   /// Twice the area, along the normal.
-  [[nodiscard]] Vec3d area_vector() const { return cross(ab, ac); }
+  [[nodiscard]] PSK_HD Vec3d area_vector() const { return cross(ab, ac); }
 };
 
 /// Squared distance of the point at `ap` from the segment from 0 to `ab`, which may have no length.
-inline double squared_distance_to_segment(const Vec3d& ap, const Vec3d& ab) {
+PSK_HD inline double squared_distance_to_segment(const Vec3d& ap, const Vec3d& ab) {
   const double along = dot(ap, ab);
   const double squared = squared_length(ab);
   const double t = along <= 0 ? 0 : along >= squared ? 1 : along / squared;
@@ -30,18 +28,21 @@ inline double squared_distance_to_segment(const Vec3d& ap, const Vec3d& ab) {
 inline constexpr double kNoPlane = 1e-16;
 
 /// True if the triangle has a normal, which is `area_vector`.
-inline bool has_plane(const EdgedTriangle& t, const Vec3d& area_vector) {
+PSK_HD inline bool has_plane(const EdgedTriangle& t, const Vec3d& area_vector) {
   return squared_length(area_vector) > kNoPlane * squared_length(t.ab) * squared_length(t.ac);
 }
 
 /// Squared distance of the point at `ap` (relative to corner a) from the border of `t`.
-inline double squared_distance_to_border(const Vec3d& ap, const EdgedTriangle& t) {
-  return std::min({squared_distance_to_segment(ap, t.ab), squared_distance_to_segment(ap, t.ac),
-                   squared_distance_to_segment(ap - t.ab, t.ac - t.ab)});
+PSK_HD inline double squared_distance_to_border(const Vec3d& ap, const EdgedTriangle& t) {
+  const double at_ab = squared_distance_to_segment(ap, t.ab);
+  const double at_ac = squared_distance_to_segment(ap, t.ac);
+  const double at_bc = squared_distance_to_segment(ap - t.ab, t.ac - t.ab);
+  const double least = at_ab < at_ac ? at_ab : at_ac;
+  return least < at_bc ? least : at_bc;
 }
 
 /// Squared distance of `p` from the nearest point of `t`. Exact up to rounding, for triangles without area too.
-inline double squared_distance(const Vec3d& p, const EdgedTriangle& t) {
+PSK_HD inline double squared_distance(const Vec3d& p, const EdgedTriangle& t) {
   const Vec3d ap = p - t.a;
   const double d1 = dot(t.ab, ap), d2 = dot(t.ac, ap);
   if (d1 <= 0 && d2 <= 0) return squared_length(ap);
@@ -65,4 +66,4 @@ inline double squared_distance(const Vec3d& p, const EdgedTriangle& t) {
   return height * height / nn;
 }
 
-}  // namespace pointskin::mesh_detail
+}  // namespace pointskin

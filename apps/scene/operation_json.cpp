@@ -191,7 +191,9 @@ SolidSource read_source(const JsonReader& json, const fs::path& folder) {
   if (json.has("file") == json.has("shape")) json.refuse("needs one of the keys 'file' and 'shape'");
   if (json.has("file")) {
     if (json.has("points")) json.refuse("must not have points: they are those of the file");
-    source.file = fs::absolute(folder / json.at("file").text()).lexically_normal().string();
+    const std::string file = json.at("file").text();
+    if (file.empty()) json.at("file").refuse("must name a file");
+    source.file = fs::absolute(folder / file).lexically_normal().string();
     return source;
   }
   source.shape = json.at("shape").text();

@@ -17,6 +17,7 @@ enum class WarningKind {
   at_domain_faces,     ///< the surface runs into the faces of the working cube
   far_from_points,     ///< much of the surface is far from all points
   coarse_depth,        ///< the points hold clearly more detail than the depth shows
+  coarse_coordinates,  ///< the coordinates have too few digits for how far apart the points lie
 };
 
 /// "strays", "normals_disagree" and so on: the enumerator's own name.
@@ -27,7 +28,8 @@ const char* name_of(WarningKind kind);
 struct Warning {
   WarningKind kind = WarningKind::strays;
   double share = 0;  ///< how much, in [0, 1]: of the points, of pairs of neighbours, of the surface's area; of the
-                     ///< cells of the depth that the points hold, those that the depth cannot show; 0 for strays
+                     ///< cells of the depth that the points hold, those that the depth cannot show; of the
+                     ///< points' spacing, a step of their coordinates; 0 for strays
   std::string text;
 };
 

@@ -54,6 +54,15 @@ void warn_of_fit(const Findings& findings, const Cube& cube, std::vector<Warning
                    findings.spacing * cube.cell(cube.depth), supported, cube.depth, cube.cell(cube.depth), supported)});
 }
 
+void warn_of_digits(double step, double spacing, std::vector<Warning>& warnings) {
+  if (!(spacing > 0) || !(step >= kHarmlessStep * spacing)) return;
+  warnings.push_back(
+      {WarningKind::coarse_coordinates, std::min(1.0, step / spacing),
+       fmt::format("the coordinates are float32 far from the origin, in steps of {:.3g} where points lie {:.3g} apart: "
+                   "write them as double, or relative to a place near the points",
+                   step, spacing)});
+}
+
 void warn_of_surface(const Findings& findings, const Cube& cube, const Options& options,
                      std::vector<Warning>& warnings) {
   constexpr double kSomeCaps = 0.01;
@@ -155,9 +164,11 @@ const char* name_of(WarningKind kind) {
     case WarningKind::far_from_points:
       return "far_from_points";
     case WarningKind::coarse_depth:
+      return "coarse_depth";
+    case WarningKind::coarse_coordinates:
       break;
   }
-  return "coarse_depth";
+  return "coarse_coordinates";
 }
 
 }  // namespace pointskin

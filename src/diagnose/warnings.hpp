@@ -25,6 +25,13 @@ void warn_of_strays(std::int64_t count, const std::vector<Vec3d>& farthest, std:
 /// What is said of the field of a run: points off the surface, and more detail than the depth shows.
 void warn_of_fit(const Findings& findings, const Cube& cube, std::vector<Warning>& warnings);
 
+/// World coordinates are numbers of float `step` apart, next to points that are `spacing` apart, both in world units;
+/// nothing if either is 0 or the steps are small beside the spacing.
+void warn_of_digits(double step, double spacing, std::vector<Warning>& warnings);
+
+/// Steps below this share of the spacing of the points do no harm: rounding to them moves a point by 4 % of the spacing.
+inline constexpr double kHarmlessStep = 0.125;
+
 /// What is said of the surface of a run, unless the options cut or close it already.
 void warn_of_surface(const Findings& findings, const Cube& cube, const Options& options,
                      std::vector<Warning>& warnings);

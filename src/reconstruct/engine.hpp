@@ -30,6 +30,7 @@ class PSK_HIDDEN FieldImpl {
 
   [[nodiscard]] double isovalue() const { return data_.isovalue; }
   [[nodiscard]] double cube_size_world() const { return data_.frame.size; }
+  [[nodiscard]] const octree::Frame& frame() const { return data_.frame; }
   [[nodiscard]] Vec3d cube_lower_world() const;
   [[nodiscard]] const Workspace& workspace() const { return workspace_; }
 

@@ -7,6 +7,7 @@
 
 #include "core/announce.hpp"
 #include "diagnose/warnings.hpp"
+#include "reconstruct/coordinate_step.hpp"
 
 namespace pointskin::detail {
 
@@ -88,7 +89,13 @@ std::shared_ptr<FieldImpl> Run::solve(const Input& input, bool keep_all) {
   diagnose::warn_of_strays(report_.strays, report_.farthest_strays, report_.warnings);
   if (report_.normals)
     if (std::optional<Warning> doubts = warning_of_doubts(*report_.normals)) report_.warnings.push_back(*doubts);
-  diagnose::warn_of_fit(diagnose::findings_of(field->seen()), {side_, report_.depth}, report_.warnings);
+  const diagnose::Findings findings = diagnose::findings_of(field->seen());
+  const diagnose::Cube cube{side_, report_.depth};
+  diagnose::warn_of_fit(findings, cube, report_.warnings);
+  const double spacing = findings.spacing * cube.cell(cube.depth);
+  if (spacing > 0)
+    diagnose::warn_of_digits(coordinate_step(input, field->frame(), diagnose::kHarmlessStep * spacing), spacing,
+                             report_.warnings);
   return field;
 }
 

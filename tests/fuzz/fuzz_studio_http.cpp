@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -59,7 +60,10 @@ int connected(int port) {
   place.sin_family = AF_INET;
   place.sin_port = htons(static_cast<std::uint16_t>(port));
   place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (connect(socket, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) std::abort();
+  if (connect(socket, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
+    std::perror("connect");
+    std::abort();
+  }
   return socket;
 }
 

@@ -223,6 +223,34 @@ TEST(Warnings, SayThatPointsHoldMoreThanTheDepthShows) {
   EXPECT_TRUE(kinds(run(test::jittered(cloud, 27, 0.08), {{.depth = 5}})).empty());
 }
 
+/// A sphere of radius 10 around (place, 0, 0), as a file with float32 has it, or one with double.
+Cloud far_sphere(double place, bool in_float, const Vec3d& origin) {
+  Cloud cloud = test::sphere_cloud(20'000, 29);
+  cloud.origin = origin;
+  for (Vec3f& p : cloud.positions) {
+    const double x = place + 10 * static_cast<double>(p.x);
+    p = {static_cast<float>((in_float ? static_cast<double>(static_cast<float>(x)) : x) - origin[0]), 10 * p.y,
+         10 * p.z};
+  }
+  return cloud;
+}
+
+TEST(Warnings, OfCoordinatesWithTooFewDigits) {
+  for (const Vec3d& origin : {Vec3d{1e6, 0, 0}, Vec3d{0, 0, 0}}) {
+    const Outcome far = run(far_sphere(1e6, true, origin), {{.depth = 6}});
+    const Warning& warning = only(far, WarningKind::coarse_coordinates);
+    EXPECT_NE(warning.text.find("steps of 0.0625 "), std::string::npos) << warning.text;
+    EXPECT_NEAR(warning.share, 0.25, 0.1);  // points of a sphere of area 1257, about 0.25 apart
+  }
+  const auto says = [](const Outcome& outcome) {
+    const auto all = kinds(outcome);
+    return std::find(all.begin(), all.end(), WarningKind::coarse_coordinates) != all.end();
+  };
+  EXPECT_FALSE(says(run(far_sphere(1e6, false, {1e6, 0, 0}), {{.depth = 6}})));
+  EXPECT_FALSE(says(run(far_sphere(1e5, true, {1e5, 0, 0}), {{.depth = 6}})));
+  EXPECT_FALSE(says(run(far_sphere(0, true, {0, 0, 0}), {{.depth = 6}})));
+}
+
 TEST(Warnings, OfStraysComeFirst) {
   Cloud cloud = test::flipped(test::sphere_cloud(10'000, 28));
   cloud.positions.push_back({100, 0, 0});

@@ -122,6 +122,7 @@ TEST(SceneDocument, SaysWhatIsWrongAndWhere) {
       {with(R"({"op": "options", "warm_start": true})"), "does not know the key 'warm_start'"},
       {with(R"({"op": "deform", "handles": [{"region": {"cone": 1}}]})"), "operations[0].handles[0].region"},
       {with(R"({"op": "insert", "shape": "sphere", "file": "a"})"), "needs one of the keys 'file' and 'shape'"},
+      {with(R"({"op": "insert", "file": ""})"), "must name a file"},
       {with(R"({"op": "insert", "shape": "sphere", "camera": {}})"), "has a camera, but no area"},
   };
   for (const auto& [text, part] : trials)

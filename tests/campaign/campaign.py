@@ -22,13 +22,25 @@ HERE = pathlib.Path(__file__).resolve().parent
 REGRESSIONS = HERE / "regressions"
 CODES = {0, 3, 4, 5, 6}  # of a run whose command line is right and whose outputs can be written
 UNITS = {"K": 2 ** 10, "M": 2 ** 20, "G": 2 ** 30}
+DEVICE_COMMANDS = {"reconstruct", "problems", "boolean", "deform", "edit", "orient", "fluid"}
+OCTAHEDRON = "".join(f"{x} {y} {z} {x} {y} {z}\n" for x, y, z in
+                     ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)))
+
+
+def has_gpu(program):
+    """Whether this program runs on a GPU of this machine."""
+    with tempfile.TemporaryDirectory() as folder:
+        cloud = pathlib.Path(folder) / "a.xyz"
+        cloud.write_text(OCTAHEDRON)
+        words = [program, "reconstruct", cloud, "-o", cloud.with_suffix(".ply"), "--depth", "4", "--device", "cuda"]
+        return subprocess.run(words, capture_output=True, check=False).returncode == 0
 
 
 class Runner:
     """Runs cases, each in a folder of its own below a temporary one."""
 
-    def __init__(self, program, seconds):
-        self.program, self.seconds = str(pathlib.Path(program).resolve()), seconds
+    def __init__(self, program, seconds, gpu):
+        self.program, self.seconds, self.gpu = str(pathlib.Path(program).resolve()), seconds, gpu
         self.root = pathlib.Path(tempfile.mkdtemp(prefix="pointskin-campaign-"))
         self.launcher = subprocess.Popen([sys.executable, "-S", "-E", str(HERE / "launcher.py")], text=True,
                                          stdin=subprocess.PIPE, stdout=subprocess.PIPE)
@@ -217,15 +229,22 @@ def shuffled(case):
     return inputs
 
 
+def on(device, case, runner):
+    """The option that runs a case on a device, where there is a choice."""
+    return ["--device", device] if runner.gpu and case.command() in DEVICE_COMMANDS and not case.has("--device") else []
+
+
 def judge_again(case, runner, first):
-    """The same with another number of threads and, of a mesh, another order of the points: the same bytes."""
+    """The same with another number of threads, of a mesh another order of the points, and after a GPU on the CPU: the
+    same bytes."""
     arguments = [g for g in case.arguments if g[0] != "--threads"] + [["--threads", str(case.compare[0])]]
     meshes = [name for name in new_files(case, first) if name.startswith("mesh")]
     inputs = shuffled(case) if meshes and not case.has("--random-start", "--max-memory") else case.inputs
-    second = runner.run([word for group in arguments for word in group], inputs)
+    second = runner.run([word for group in arguments for word in group] + on("cpu", case, runner), inputs)
     if first["code"] == second["code"] == 6 or case.has("--max-memory"):
         return []
     how = f"{case.compare[0]} threads" + (" and another order" if inputs is not case.inputs else "")
+    how += " on the CPU" if on("cpu", case, runner) else ""
     if second["code"] != first["code"]:
         return [f"exit code {second['code']} with {how}: {second['err'].strip()[-300:]}"]
     compared = meshes if inputs is not case.inputs else [n for n in new_files(case, first) if not n.endswith(".json")]
@@ -236,7 +255,8 @@ def judge_again(case, runner, first):
 
 
 def judge_case(case, runner):
-    first = runner.run(case.words(), case.inputs)
+    # What a process may take is measured on the CPU: a driver takes more than small limits allow.
+    first = runner.run(case.words() + on("cpu" if case.has("--max-memory") else "cuda", case, runner), case.inputs)
     wrong = judge_run(case, first)
     return wrong if wrong or first["code"] == 2 else judge_again(case, runner, first)
 
@@ -299,7 +319,7 @@ class Campaign:
             return None if past else self.next - 1
 
     def work(self):
-        runner = Runner(self.options.program, self.options.seconds)
+        runner = Runner(self.options.program, self.options.seconds, self.options.gpu)
         try:
             while (number := self.take()) is not None:
                 case = cases.random_case(self.options.seed, number)
@@ -336,7 +356,7 @@ class Campaign:
 
 
 def run_regressions(options, paths):
-    runner, failed = Runner(options.program, options.seconds), []
+    runner, failed = Runner(options.program, options.seconds, options.gpu), []
     for path in paths:
         case = cases.Case.from_json(pathlib.Path(path).read_text())
         wrong = judge_case(case, runner)
@@ -375,6 +395,7 @@ def main():
         parser.error(f"no program at {options.program}; build it, or name it with --program")
     if options.unpack:
         return unpack(options)
+    options.gpu = has_gpu(options.program)
     known = options.cases_given or sorted(REGRESSIONS.glob("*.json"))
     begin = time.monotonic()
     failed = run_regressions(options, known)

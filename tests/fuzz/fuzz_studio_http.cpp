@@ -6,7 +6,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -54,17 +56,20 @@ server::ServerOptions options() {
   return options;
 }
 
+/// The fuzzer's timer may interrupt a call.
 int connected(int port) {
   const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in place = {};
   place.sin_family = AF_INET;
   place.sin_port = htons(static_cast<std::uint16_t>(port));
   place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (connect(socket, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
+  if (connect(socket, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0) return socket;
+  if (errno != EINTR) {
     std::perror("connect");
     std::abort();
   }
-  return socket;
+  close(socket);
+  return connected(port);
 }
 
 /// Sends all, and says that nothing follows. @returns all that came back
@@ -74,8 +79,8 @@ std::string exchange(int port, const std::string& text) {
   shutdown(socket, SHUT_WR);
   std::string answer;
   std::array<char, 65536> block;
-  for (ssize_t count = 0; (count = recv(socket, block.data(), block.size(), 0)) > 0;)
-    answer.append(block.data(), static_cast<std::size_t>(count));
+  for (ssize_t count = 0; (count = recv(socket, block.data(), block.size(), 0)) > 0 || (count < 0 && errno == EINTR);)
+    answer.append(block.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
   const linger at_once{1, 0};  // no thousands of sockets that wait for late packets
   setsockopt(socket, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
   close(socket);

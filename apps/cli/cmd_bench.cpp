@@ -152,8 +152,14 @@ void measure_cloud(Bench& bench, const CloudSource& source, BenchProgress& progr
 
 void write_outputs(const Bench& bench) {
   const BenchArgs& args = bench.args;
-  if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(bench.results, args, bench.devices)));
-  if (!args.plot.empty()) write_file_atomically(args.plot, plot(bench.results));
+  if (!args.report.empty()) {
+    write_file_atomically(args.report, json_text(to_json(bench.results, args, bench.devices)));
+    file_was_written();
+  }
+  if (!args.plot.empty()) {
+    write_file_atomically(args.plot, plot(bench.results));
+    file_was_written();
+  }
   for (const std::string& file : {args.report, args.plot})
     if (!file.empty() && !args.quiet) print_note(file_words(file) + "written");
 }

@@ -15,6 +15,13 @@
 #define PSK_SELDOM
 #endif
 
+/// PSK_INTO_LOOP puts a function into the loops that use it, where g++ and clang would leave a call. nvcc needs no word for it.
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define PSK_INTO_LOOP inline __attribute__((always_inline))
+#else
+#define PSK_INTO_LOOP inline
+#endif
+
 /// PSK_UNROLL unrolls the loop after it, so that small arrays indexed by its counter stay in registers.
 /// PSK_UNROLL_BY_4 lets a GPU fetch what four rounds of a longer loop need before it uses it.
 #if defined(__CUDA_ARCH__)

@@ -42,7 +42,7 @@ PSK_HD inline double squared_distance_to_border(const Vec3d& ap, const EdgedTria
 }
 
 /// Squared distance of `p` from the nearest point of `t`. Exact up to rounding, for triangles without area too.
-PSK_HD inline double squared_distance(const Vec3d& p, const EdgedTriangle& t) {
+PSK_HD PSK_INTO_LOOP double squared_distance(const Vec3d& p, const EdgedTriangle& t) {
   const Vec3d ap = p - t.a;
   const double d1 = dot(t.ab, ap), d2 = dot(t.ac, ap);
   if (d1 <= 0 && d2 <= 0) return squared_length(ap);

@@ -73,12 +73,10 @@ def expected_codes(case):
         return set(case.codes)
     if case.beyond:
         return {2}
-    if case.solid:
-        return {0}
+    expected = {0} if case.solid else CODES
     # Which operations of a script may follow each other is not said anywhere but in the error.
-    if case.command() == "edit" or any(case.has(a) and case.has(b) for a, b in cases.REFUSED):
-        return CODES | {2}
-    return CODES
+    refused = case.command() == "edit" or any(case.has(a) and case.has(b) for a, b in cases.REFUSED)
+    return expected | {2} if refused else expected
 
 
 def new_files(case, result):

@@ -9,6 +9,36 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
+/// The particle nearest to x within `reach` of those that count(j), or -1; of several as near the first.
+template <class Count>
+PSK_HD std::int32_t nearest_within(const ParticlesView& particles, const Vec3f& x, float reach, const Count& count) {
+  float nearest = reach * reach;
+  std::int32_t found = -1;
+  for_each_range_near(particles.tree, x, x, reach, [&](std::int32_t first, std::int32_t last) {
+    for (std::int32_t j = first; j < last; ++j) {
+      if (!count(j)) continue;
+      const Vec3f p = particles.positions[j];
+      const float dx = p.x - x.x;
+      const float dy = p.y - x.y;
+      const float dz = p.z - x.z;
+      const float squared = dx * dx + dy * dy + dz * dz;
+      if (!(squared < nearest || (squared == nearest && j < found))) continue;
+      nearest = squared;
+      found = j;
+    }
+  });
+  return found;
+}
+
+/// The particle nearest to x, however far: vertices between the corners of large cubes are farther than the radius.
+PSK_HD std::int32_t nearest_of_all(const ParticlesView& particles, const Vec3f& x) {
+  for (float reach = particles.radius; reach < 4 * particles.tree.cube.size; reach *= 2) {
+    const std::int32_t found = nearest_within(particles, x, reach, [](std::int32_t) { return true; });
+    if (found >= 0) return found;
+  }
+  return -1;
+}
+
 struct AverageAtVertex {
   ParticlesView particles;
   ArrayView<const Vec3f> vertices;
@@ -19,6 +49,7 @@ struct AverageAtVertex {
     float sum[kValuesAtOnce] = {};
     double wide[kValuesAtOnce] = {};  // the same, which holds several of the largest floats
     float weight[kValuesAtOnce] = {};
+    bool alone = true;
     for_each_range_near(particles.tree, x, x, particles.radius, [&](std::int32_t first, std::int32_t last) {
       for (std::int32_t j = first; j < last; ++j) {
         const Vec3f p = particles.positions[j];
@@ -27,6 +58,7 @@ struct AverageAtVertex {
         const float dz = (p.z - x.z) * inverse;
         const float q = 1 - (dx * dx + dy * dy + dz * dz);
         if (!(q > 0)) continue;
+        alone = false;
         const float k = q * q * q;
         for (int i = 0; i < means.count; ++i) {
           const float value = means.values[i][j];
@@ -37,7 +69,12 @@ struct AverageAtVertex {
         }
       }
     });
+    const std::int32_t nearest = alone ? nearest_of_all(particles, x) : -1;
     for (int i = 0; i < means.count; ++i) {
+      if (nearest >= 0) {
+        means.out[i][v] = means.values[i][nearest];
+        continue;
+      }
       const bool fits = sum[i] - sum[i] == 0;
       const float mean = fits ? sum[i] / weight[i] : static_cast<float>(wide[i] / weight[i]);
       means.out[i][v] = weight[i] > 0 ? mean : kNan;
@@ -52,28 +89,12 @@ struct NearestAtVertex {
   ArrayView<const Vec3f> vertices;
   ArrayView<std::int32_t> out;
   PSK_HD void operator()(std::int64_t v) const {
-    std::int32_t found = within(vertices[v], particles.radius);
-    if (found < 0) found = within(vertices[v], 2 * particles.radius);  // ellipsoids reach farther than their particles
-    out[v] = found < 0 ? -1 : order[found];
-  }
-
-  [[nodiscard]] PSK_HD std::int32_t within(const Vec3f& x, float radius) const {
-    float nearest = radius * radius;
-    std::int32_t found = -1;
-    for_each_range_near(particles.tree, x, x, radius, [&](std::int32_t first, std::int32_t last) {
-      for (std::int32_t j = first; j < last; ++j) {
-        if (!missing.empty() && missing[order[j]] != 0) continue;
-        const Vec3f p = particles.positions[j];
-        const float dx = p.x - x.x;
-        const float dy = p.y - x.y;
-        const float dz = p.z - x.z;
-        const float squared = dx * dx + dy * dy + dz * dz;
-        if (!(squared < nearest || (squared == nearest && j < found))) continue;
-        nearest = squared;
-        found = j;
-      }
-    });
-    return found;
+    const Vec3f x = vertices[v];
+    const auto has = [&](std::int32_t j) { return missing.empty() || missing[order[j]] == 0; };
+    std::int32_t found = nearest_within(particles, x, particles.radius, has);
+    if (found < 0) found = nearest_within(particles, x, 2 * particles.radius, has);
+    if (found < 0) found = nearest_of_all(particles, x);
+    out[v] = found >= 0 && has(found) ? order[found] : -1;
   }
 };
 

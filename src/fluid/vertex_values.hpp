@@ -24,7 +24,7 @@ struct ParticlesView {
 inline constexpr int kValuesAtOnce = 4;
 
 /// out[k][v] = sum k_j values[k][j] / sum k_j at vertex v, k_j = max(0, 1 - |x - p_j|^2 / R^2)^3, over the particles
-/// whose value is finite; NaN where there are none.
+/// whose value is finite, NaN where there are none; beyond R of all particles the value of the nearest.
 struct VertexMeans {
   int count = 0;                            ///< in [1, kValuesAtOnce]
   const float* values[kValuesAtOnce] = {};  ///< (particles) in the order of the tree's keys
@@ -33,8 +33,8 @@ struct VertexMeans {
 template <exec::Space Exec>
 void average_at(Exec& ex, const ParticlesView& particles, ArrayView<const Vec3f> vertices, const VertexMeans& means);
 
-/// Index of the particle nearest to each vertex among those within twice the kernel's radius that are not missing; of
-/// several as near, of the first in the order of the tree's keys; -1 if there is none.
+/// Index of the particle nearest to each vertex among those within twice the kernel's radius that are not missing, or of
+/// the nearest of all; of several as near, of the first in the order of the tree's keys; -1 if that one is missing.
 /// @param order    (particles) the caller's index of each, in the order of the keys
 /// @param missing  (particles) in the caller's order, 1: does not count; or (0)
 /// @returns shape (vertices), the caller's indices

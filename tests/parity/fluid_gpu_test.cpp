@@ -63,6 +63,21 @@ TEST_F(FluidOnGpu, GivesTheBytesOfTheCpuForAllFramesAndOptions) {
   }
 }
 
+TEST_F(FluidOnGpu, GivesTheBytesOfTheCpuBeyondTheRadiusOfParticles) {
+  FluidOptions options;
+  options.particle_radius = 1;
+  options.cube_size = 4;
+  options.smoothing_length = 1;
+  for (int i = 0; i < 8; ++i) {
+    Cloud cloud;
+    cloud.positions = {{0.13F * i, 0.31F * i, 0.07F * i * i}, {40, 0, 0}};
+    cloud.attributes = {{"heat", std::vector<float>{3, 7}}, {"id", std::vector<std::int32_t>{11, 12}}};
+    options.smoothing_iterations = i % 2 * 5;
+    SCOPED_TRACE(i);
+    expect_parity(cloud, options);
+  }
+}
+
 TEST_F(FluidOnGpu, GivesTheBytesOfTheCpuForASimulatedFrame) {
   const std::optional<Cloud> frame = test::shared_cloud("fluid_dam_break_24389");
   if (!frame) GTEST_SKIP() << "no fluid_dam_break_24389";

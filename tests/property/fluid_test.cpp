@@ -203,6 +203,30 @@ TEST(Fluid, AttributesAreMeansOfTheParticlesAround) {
   EXPECT_TRUE(bare.vertices == mesh.vertices);
 }
 
+TEST(Fluid, VerticesBeyondTheRadiusHaveTheValuesOfTheNearestParticle) {
+  FluidOptions options = options_of(1);
+  options.cube_size = 4;
+  options.smoothing_length = 1;
+  for (int i = 0; i < 8; ++i) {
+    SCOPED_TRACE(i);
+    Cloud cloud;
+    cloud.positions = {{0.13F * i, 0.31F * i, 0.07F * i * i}, {40, 0, 0}};
+    cloud.attributes = {{"heat", std::vector<float>{3, 7}},
+                        {"time", std::vector<double>{1e9, 2e9}},
+                        {"red", std::vector<std::uint8_t>{30, 200}},
+                        {"id", std::vector<std::int32_t>{11, 12}}};
+    const Mesh mesh = surface_of(cloud, options);
+    float farthest = 0;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      const int nearest = mesh.vertices[v].x < 20 ? 0 : 1;
+      farthest = std::max(farthest, length(mesh.vertices[v] - cloud.positions[nearest]));
+      for (std::size_t a = 0; a < 4; ++a)
+        EXPECT_NEAR(mesh.attributes[a].values.at(v) / cloud.attributes[a].values.at(nearest), 1, 1e-6);
+    }
+    EXPECT_GT(farthest, 2);  // the radius of the kernel
+  }
+}
+
 TEST(Fluid, LabelsAreThoseOfTheNearestParticleThatHasOne) {
   Cloud cloud = ball_of_particles(1, 6, 0.3, kSeed);
   std::vector<std::int32_t> ids(cloud.positions.size());

@@ -47,12 +47,13 @@ struct TriangleBoxesView {
   std::int32_t first[kMostBoxLevels + 1]{};
   int levels = 0;
 
-  /// Squared distance from q to the nearest triangle, exact up to rounding.
+  /// Squared distance from q to the nearest triangle, up to rounding of float: a triangle that is nearer by less than
+  /// 5e-7 of the distance may be passed over. Seen from afar all of a small surface is equally far.
   /// About O(log n); more where many triangles are about equally far.
   [[nodiscard]] PSK_HD double squared_distance(const Vec3f& q) const {
     double least = 0;
     bool any = false;
-    const auto is_farther = [&](float squared) { return any && squared > static_cast<float>(least); };
+    const auto is_farther = [&](float squared) { return any && squared * (1 + 1e-6F) >= static_cast<float>(least); };
     visit_near(q, is_farther, [&](double squared) {
       if (!any || squared < least) least = squared;
       any = true;
@@ -70,7 +71,8 @@ struct TriangleBoxesView {
     bool any = false;
     bool nearer = false;
     const auto is_farther = [&](float squared) {
-      return any ? squared >= static_cast<float>(squared_low) : squared > static_cast<float>(squared_high);
+      const float surely = squared * (1 - 1e-5F);
+      return any ? surely >= static_cast<float>(squared_low) : surely > static_cast<float>(squared_high);
     };
     visit_near(q, is_farther, [&](double squared) {
       any = any || squared <= squared_high;
@@ -121,7 +123,6 @@ struct TriangleBoxesView {
     }
   }
 
-  /// A little less than exact, so that rounding passes over nothing.
   PSK_HD static float squared_to_box(const Vec3f& q, const Bounds& box) {
     const auto gap = [](float v, float lower, float upper) {
       return v < lower ? lower - v : v > upper ? v - upper : 0.0F;
@@ -129,7 +130,7 @@ struct TriangleBoxesView {
     const float x = gap(q.x, box.lower.x, box.upper.x);
     const float y = gap(q.y, box.lower.y, box.upper.y);
     const float z = gap(q.z, box.lower.z, box.upper.z);
-    return (x * x + y * y + z * z) * (1 - 1e-5F);
+    return x * x + y * y + z * z;
   }
 };
 

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """The judge of the campaign finds what is wrong: every rule is broken once."""
 import math
+import types
 import unittest
 
+import campaign
 import clouds
 import judge
 import meshes
@@ -14,6 +16,20 @@ PLACES, TRIANGLES = clouds.box_mesh([0, 0, 0], [1, 2, 3])
 def wrong(places=PLACES, triangles=TRIANGLES, closed=True):
     data = ply.write([[a, "double"] for a in "xyz"], places, triangles=triangles)
     return " ".join(judge.mesh(ply.read(data), closed, True))
+
+
+class WhatIsJudged(unittest.TestCase):
+    def test_attributes_of_few_points_may_be_left_out(self):
+        def cloud(name, count):
+            return ply.write([["x", "float"], [name, "float"]], [(0, 1)] * count)
+
+        def doubtful(*clouds):
+            inputs = {str(i): data for i, data in enumerate(clouds)}
+            return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs))
+
+        self.assertEqual(doubtful(cloud("heat", 2), cloud("x2", 100)), {"heat", "input_heat"})
+        self.assertEqual(doubtful(cloud("heat", 2), cloud("heat", 100)), set())
+        self.assertEqual(doubtful(cloud("heat", 2)), set())
 
 
 class JudgeOfMeshes(unittest.TestCase):

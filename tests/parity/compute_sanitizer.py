@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Runs the tests of tests/parity under the four tools of NVIDIA's compute-sanitizer, in parts that end within minutes.
+
+    compute_sanitizer.py build-cuda                                  # everything
+    compute_sanitizer.py build-cuda --tools racecheck --tests octree strays
+
+A part is a few tests of one program under one tool; several run side by side. Every part has a line with its time and what
+it found. The exit code is 1 if a tool found something, a test failed, or a part did not end in its time.
+
+The programs of tests/parity run but for endurance_gpu_test: it watches the memory of the whole device, forks, and resets the
+device, and the tools hold memory of their own and follow one process.
+"""
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+# Tests in a part: racecheck is the slowest, some hundred times as slow as the test alone.
+TOOLS = {"racecheck": 2, "initcheck": 8, "synccheck": 8, "memcheck": 16}
+SUMMARY = re.compile(r"(?:ERROR|RACECHECK) SUMMARY: (\d+) (?:error|hazard)")
+EXCLUDED = {"endurance"}
+
+
+def tests_of(program):
+    """Names of the tests of a program of GoogleTest."""
+    listed = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True, check=True).stdout
+    names, suite = [], ""
+    for line in listed.splitlines():
+        if line.startswith("  "):
+            names.append(suite + line.split("#")[0].strip())
+        elif line.strip().endswith(".") or "# TypeParam" in line:
+            suite = line.split("#")[0].strip()
+    return names
+
+
+class Part:
+    def __init__(self, tool, program, number, tests):
+        self.tool, self.program, self.tests = tool, program, tests
+        self.name = f"{tool} {program.stem.removesuffix('_gpu_test')} {number}"
+
+    def run(self, logs, limit):
+        """The line of this part, and whether all is well."""
+        # Some tests ask for more memory than there is: the refusal that they expect is no error of theirs.
+        options = ["--report-api-errors", "no"] if self.tool == "memcheck" else []
+        command = ["compute-sanitizer", "--tool", self.tool, *options, str(self.program),
+                   "--gtest_filter=" + ":".join(self.tests)]
+        log = logs / (self.name.replace(" ", "_") + ".log")
+        began = time.monotonic()
+        with log.open("w") as out:
+            try:
+                code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, timeout=limit, check=False,
+                                      env=os.environ | {"POINTSKIN_REQUIRE_GPU": "1"}).returncode
+            except subprocess.TimeoutExpired:
+                code = None
+        text = log.read_text(errors="replace")
+        summary = SUMMARY.findall(text)
+        passed = text.count("[       OK ]")
+        found = int(summary[-1]) if summary else None
+        skipped = len(re.findall(r"^\[  SKIPPED \] .* ms\)$", text, re.MULTILINE))
+        well = code == 0 and found == 0 and passed + skipped == len(self.tests)
+        said = "did not end" if code is None else f"exit {code}"
+        line = (f"{self.name}: {passed} of {len(self.tests)} tests{f' ({skipped} skipped)' if skipped else ''}, {time.monotonic() - began:.0f} s, "
+                f"{'no summary' if found is None else f'{found} found'}, {said}")
+        return line, well
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build", type=pathlib.Path, help="folder of a build with CUDA")
+    parser.add_argument("--tools", nargs="+", choices=TOOLS, default=list(TOOLS))
+    parser.add_argument("--tests", nargs="+", metavar="NAME", help="programs, as octree for octree_gpu_test")
+    parser.add_argument("--jobs", type=int, default=min(12, os.cpu_count() or 1), help="parts side by side")
+    parser.add_argument("--limit", type=float, default=600, metavar="SECONDS", help="for one part")
+    parser.add_argument("--total", type=float, default=float("inf"), metavar="SECONDS",
+                        help="parts that have not ended by then are stopped, and those not begun are named")
+    parser.add_argument("--logs", type=pathlib.Path, help="default: compute-sanitizer in the build folder")
+    given = parser.parse_args()
+
+    programs = [p for p in sorted((given.build / "bin").glob("*_gpu_test"))
+                if (name := p.stem.removesuffix("_gpu_test")) not in EXCLUDED
+                and (given.tests is None or name in given.tests)]
+    if not programs:
+        sys.exit(f"no such *_gpu_test in {given.build / 'bin'}")
+    logs = given.logs or given.build / "compute-sanitizer"
+    logs.mkdir(parents=True, exist_ok=True)
+
+    parts = []
+    for tool in given.tools:
+        for program in programs:
+            tests, few = tests_of(program), TOOLS[tool]
+            parts += [Part(tool, program, 1 + i // few, tests[i:i + few]) for i in range(0, len(tests), few)]
+
+    end = time.monotonic() + given.total
+
+    def judge(part):
+        left = end - time.monotonic()
+        if left < 1:
+            return f"{part.name}: not begun", False
+        return part.run(logs, min(given.limit, left))
+
+    ill = 0
+    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+        for done in concurrent.futures.as_completed([pool.submit(judge, part) for part in parts]):
+            line, well = done.result()
+            ill += not well
+            print(("" if well else "NOT WELL: ") + line, flush=True)
+    print(f"parts: {len(parts)}, not well: {ill}")
+    return 1 if ill else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -174,15 +174,21 @@ def judge_oriented(given, found):
     return [f"{bad} normals are neither given nor of unit length"] if bad else []
 
 
+def count_usable(cloud):
+    """Points that are finite and have no normal, or one that a program may take for a direction."""
+    columns = [cloud.columns[n] for n in ("x", "y", "z", "nx", "ny", "nz") if n in cloud.columns]
+    return sum(all(map(math.isfinite, row)) and (len(row) < 6 or max(map(abs, row[3:])) > 1e-18) for row in zip(*columns))
+
+
 def doubtful(case):
     """Properties that the input itself has with values that are not finite, under the names that a mesh gives them.
 
-    So has one that only a few points have: these may be left out, as strays or for their normals.
+    So has one that only some files have, and these only a few points that count: as strays they may be left out.
     """
     names = set()
     clouds = [ply.read(case.inputs[cloud]) for cloud in case.points]
     for name in {n for found in clouds for n in found.columns}:
-        have = [found.count() for found in clouds if name in found.columns]
+        have = [count_usable(found) for found in clouds if name in found.columns]
         if len(have) < len(clouds) and sum(have) <= FEW_POINTS:
             names |= {name, f"input_{name}"}
     for found in clouds:

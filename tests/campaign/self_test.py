@@ -20,14 +20,17 @@ def wrong(places=PLACES, triangles=TRIANGLES, closed=True):
 
 class WhatIsJudged(unittest.TestCase):
     def test_attributes_of_few_points_may_be_left_out(self):
-        def cloud(name, count):
-            return ply.write([["x", "float"], [name, "float"]], [(0, 1)] * count)
+        def cloud(name, count, normal=(0, 0, 1)):
+            columns = ["x", "y", "z", "nx", "ny", "nz", name]
+            return ply.write([[n, "float"] for n in columns], [(0, 0, 0, *normal, 1)] * count)
 
         def doubtful(*clouds):
             inputs = {str(i): data for i, data in enumerate(clouds)}
             return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs))
 
         self.assertEqual(doubtful(cloud("heat", 2), cloud("x2", 100)), {"heat", "input_heat"})
+        self.assertEqual(doubtful(cloud("heat", 90, (0, 0, 0)), cloud("x2", 100)), {"heat", "input_heat"})
+        self.assertEqual(doubtful(cloud("heat", 90), cloud("x2", 100)), set())
         self.assertEqual(doubtful(cloud("heat", 2), cloud("heat", 100)), set())
         self.assertEqual(doubtful(cloud("heat", 2)), set())
 

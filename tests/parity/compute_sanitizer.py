@@ -15,6 +15,7 @@ import concurrent.futures
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -51,11 +52,14 @@ class Part:
         log = logs / (self.name.replace(" ", "_") + ".log")
         began = time.monotonic()
         with log.open("w") as out:
+            running = subprocess.Popen(command, stdout=out, stderr=subprocess.STDOUT, start_new_session=True,
+                                       env=os.environ | {"POINTSKIN_REQUIRE_GPU": "1"})
             try:
-                code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, timeout=limit, check=False,
-                                      env=os.environ | {"POINTSKIN_REQUIRE_GPU": "1"}).returncode
+                code = running.wait(limit)
             except subprocess.TimeoutExpired:
                 code = None
+                os.killpg(running.pid, signal.SIGKILL)  # with the program, which would keep the GPU busy
+                running.wait()
         text = log.read_text(errors="replace")
         summary = SUMMARY.findall(text)
         passed = text.count("[       OK ]")
@@ -63,7 +67,8 @@ class Part:
         skipped = len(re.findall(r"^\[  SKIPPED \] .* ms\)$", text, re.MULTILINE))
         well = code == 0 and found == 0 and passed + skipped == len(self.tests)
         said = "did not end" if code is None else f"exit {code}"
-        line = (f"{self.name}: {passed} of {len(self.tests)} tests{f' ({skipped} skipped)' if skipped else ''}, {time.monotonic() - began:.0f} s, "
+        without = f" ({skipped} skipped)" if skipped else ""
+        line = (f"{self.name}: {passed} of {len(self.tests)} tests{without}, {time.monotonic() - began:.0f} s, "
                 f"{'no summary' if found is None else f'{found} found'}, {said}")
         return line, well
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "console.hpp"
 #include "report.hpp"
 #include "summary_words.hpp"
 
@@ -48,6 +49,7 @@ Json to_json(const BooleanRecord& record) {
   json["op"] = record.op;
   json["files"] = record.files;
   json["options"] = record.shown_options;
+  json["warnings"] = printed_warnings();
   json["a"] = part_json(run.a, record.a_is_mesh, record.a_dropped);
   json["b"] = part_json(run.b, record.b_is_mesh, record.b_dropped);
   json["added"] = run.added;

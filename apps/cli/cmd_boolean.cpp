@@ -83,6 +83,7 @@ BooleanResult compute(const BooleanArgs& args, const Solid& a, const Solid& b, B
   record.run = result.report;
   warn_about_strays("A", record.run.a);
   warn_about_strays("B", record.run.b);
+  for (const Warning& warning : record.run.result.warnings) print_warning(warning.text);
   return result;
 }
 

@@ -68,7 +68,8 @@ struct BooleanReport {
   BooleanPart a, b;
   std::int64_t added = 0;   ///< samples along the creases
   double curve_length = 0;  ///< of the curve in which both surfaces cross, world units; 0 with Creases::none
-  RunReport result;         ///< of the reconstruction of the kept and added points, extraction and download
+  RunReport result;         ///< of the reconstruction of the kept and added points, extraction and download; its
+                            ///< warnings are those of the whole
   double classify_ms = 0, crease_ms = 0, gather_ms = 0, apart_ms = 0;
   double total_ms = 0;  ///< with all reconstructions and copies, on the host's clock
   std::int64_t device_peak_bytes = 0;

@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "boolean/keep_apart.hpp"
 #include "boolean/set_operation.hpp"
 #include "core/announce.hpp"
+#include "diagnose/warnings.hpp"
 #include "exec/this_space.hpp"
 #include "field/surface_distance.hpp"
 #include "mesh/oriented_samples.hpp"
@@ -133,6 +135,8 @@ class Combination {
     second = {};
     announce(part.progress, "extract", 0.8);
     extract_and_release(ex_, field, options.reconstruction, origin_, result.mesh, report.result);
+    diagnose::warn_of_origin(origin_, octree::float_step(frame_), "cells are", cell_at(options.reconstruction.depth),
+                             report.result.warnings);
     report.device_peak_bytes = ex_.pool()->peak_bytes();
     return result;
   }
@@ -185,8 +189,8 @@ class Combination {
   }
 
   void sample(const Mesh& mesh, const Options& options, Solid& solid) {
-    const double cell = frame_.size / static_cast<double>(std::int64_t{1} << options.depth);
-    const Cloud cloud = mesh_detail::sample_surface(mesh, cell / kMeshSamplesPerCell, ex_.host_threads());
+    const double spacing = cell_at(options.depth) / kMeshSamplesPerCell;
+    const Cloud cloud = mesh_detail::sample_surface(mesh, spacing, ex_.host_threads());
     solid.points = detail::upload(ex_, cloud);
     rebase(cloud.origin, solid.points);
   }
@@ -294,6 +298,7 @@ class Combination {
     clock.read();
   }
 
+  [[nodiscard]] double cell_at(int depth) const { return std::ldexp(frame_.size, -depth); }
   [[nodiscard]] Vec3d move_from(const Vec3d& origin) const { return origin - origin_; }
   void rebase(const Vec3d& origin, PointBuffers& points) {
     if (origin == origin_) return;

@@ -63,6 +63,14 @@ void warn_of_digits(double step, double spacing, std::vector<Warning>& warnings)
                    step, spacing)});
 }
 
+void warn_of_origin(const Vec3d& origin, double step, const char* what, double width, std::vector<Warning>& warnings) {
+  if (!(width > 0) || !(step >= kHarmlessStep * width)) return;
+  warnings.push_back({WarningKind::coarse_coordinates, std::min(1.0, step / width),
+                      fmt::format("the coordinates are kept as float32 relative to {:.9g} {:.9g} {:.9g}, in steps of "
+                                  "{:.3g} where {} {:.3g} apart: choose a place near the points, as --shift auto does",
+                                  origin[0], origin[1], origin[2], step, what, width)});
+}
+
 void warn_of_surface(const Findings& findings, const Cube& cube, const Options& options,
                      std::vector<Warning>& warnings) {
   constexpr double kSomeCaps = 0.01;

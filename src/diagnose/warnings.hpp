@@ -29,6 +29,10 @@ void warn_of_fit(const Findings& findings, const Cube& cube, std::vector<Warning
 /// nothing if either is 0 or the steps are small beside the spacing.
 void warn_of_digits(double step, double spacing, std::vector<Warning>& warnings);
 
+/// Coordinates relative to `origin` are kept as floats `step` apart, next to what is `width` wide, "points lie" or "cells
+/// are"; nothing if the steps are small beside it.
+void warn_of_origin(const Vec3d& origin, double step, const char* what, double width, std::vector<Warning>& warnings);
+
 /// Steps below this share of the spacing of the points do no harm: rounding to them moves a point by 4 % of the spacing.
 inline constexpr double kHarmlessStep = 0.125;
 

@@ -50,6 +50,9 @@ struct ToUnit {
 /// box is so small and so far from the origin that floats hardly divide it
 Frame frame_around(const Bounds& box, double scale);
 
+/// How far apart the floats lie in which places in the cube are kept, where they are largest; world units, > 0.
+double float_step(const Frame& frame);
+
 /// Smallest box around `positions`, of which there is at least one. O(n), exact.
 template <exec::Space Exec>
 Bounds box_around(Exec& ex, ArrayView<const Vec3f> positions);

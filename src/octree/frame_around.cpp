@@ -52,4 +52,12 @@ Frame frame_around(const Bounds& box, double scale) {
   return result;
 }
 
+double float_step(const Frame& frame) {
+  constexpr int kFractionBits = 23;
+  double reach = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    reach = std::max({reach, std::abs(frame.lower[a]), std::abs(frame.lower[a] + frame.size)});
+  return std::ldexp(1.0, std::ilogb(reach) - kFractionBits);
+}
+
 }  // namespace pointskin::octree

@@ -92,11 +92,18 @@ std::shared_ptr<FieldImpl> Run::solve(const Input& input, bool keep_all) {
   const diagnose::Findings findings = diagnose::findings_of(field->seen());
   const diagnose::Cube cube{side_, report_.depth};
   diagnose::warn_of_fit(findings, cube, report_.warnings);
-  const double spacing = findings.spacing * cube.cell(cube.depth);
-  if (spacing > 0)
-    diagnose::warn_of_digits(coordinate_step(input, field->frame(), diagnose::kHarmlessStep * spacing), spacing,
-                             report_.warnings);
+  if (findings.spacing > 0) warn_of_digits(input, field->frame(), findings.spacing * cube.cell(cube.depth));
   return field;
+}
+
+/// The coordinates came with too few digits, or have too few relative to their origin.
+void Run::warn_of_digits(const Input& input, const octree::Frame& frame, double spacing) {
+  const double kept = octree::float_step(frame);
+  const double given = coordinate_step(input, frame, diagnose::kHarmlessStep * spacing);
+  if (kept > given)
+    diagnose::warn_of_origin(input.origin(), kept, "points lie", spacing, report_.warnings);
+  else
+    diagnose::warn_of_digits(given, spacing, report_.warnings);
 }
 
 /// Turns a cloud that is inside out, unless it is known where it was seen from: of a room, from inside.

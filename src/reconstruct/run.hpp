@@ -41,6 +41,7 @@ class Run {
   void begin_extraction();
   void end_extraction(const FieldImpl& field, bool is_solid_around);
   void warn_of_normals(const FieldImpl& field);
+  void warn_of_digits(const Input& input, const octree::Frame& frame, double spacing);
   NormalReport orient(Cloud& cloud, NormalMethod method);
   [[nodiscard]] std::optional<double> flipped_parts(const Input& input);
   [[nodiscard]] bool may_take_normals(const Input& input) const;

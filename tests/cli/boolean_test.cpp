@@ -91,6 +91,15 @@ TEST_F(BooleanCommand, SaysWhatItDidOnOneLineUnlessQuiet) {
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 }
 
+TEST_F(BooleanCommand, SaysWhereFloatsAreTooCoarseForTheCells) {
+  const Result result = boolean(a_, b_, "union", {"--shift", "1e6,0,0", "--report", folder_ / "r.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("relative to 1000000 0 0, in steps of 0.0625 where cells are "), std::string::npos)
+      << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_EQ(Json::parse(read_file(folder_ / "r.json"))["warnings"].size(), 1);
+}
+
 TEST_F(BooleanCommand, WritesPlyToStdoutAndReadsStdin) {
   const Result file = boolean(a_, b_, "union");
   ASSERT_EQ(file.exit_code, 0) << file.err;

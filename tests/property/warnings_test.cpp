@@ -251,6 +251,15 @@ TEST(Warnings, OfCoordinatesWithTooFewDigits) {
   EXPECT_FALSE(says(run(far_sphere(0, true, {0, 0, 0}), {{.depth = 6}})));
 }
 
+TEST(Warnings, OfAnOriginFarFromThePoints) {
+  Cloud cloud = test::sphere_cloud(20'000, 29);
+  for (Vec3f& p : cloud.positions) p.x = static_cast<float>(static_cast<double>(p.x) - 1e6);
+  cloud.origin = {1e6, 0, 0};  // what --shift 1e6,0,0 makes of a sphere around 0
+  const Outcome far = run(cloud, {{.depth = 6}});
+  const Warning& warning = only(far, WarningKind::coarse_coordinates);
+  EXPECT_NE(warning.text.find("relative to 1000000 0 0, in steps of 0.0625 "), std::string::npos) << warning.text;
+}
+
 TEST(Warnings, OfStraysComeFirst) {
   Cloud cloud = test::flipped(test::sphere_cloud(10'000, 28));
   cloud.positions.push_back({100, 0, 0});

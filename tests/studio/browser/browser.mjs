@@ -47,14 +47,14 @@ export class Studio {
 
   problems = [];
 
-  /** One more tab. */
+  /** One more tab, which hears keys. */
   async newPage(query = '?test=1') {
     const page = await this.context.newPage();
     page.on('pageerror', error => this.problems.push(String(error)));
     page.on('console', message => { if (message.type() === 'error') this.problems.push(message.text()); });
     const { origin, token } = this.program;
     await page.goto(`${origin}/${query}#${token}`);
-    await page.getByTestId('viewport').waitFor();
+    await page.locator('psk-top-bar').waitFor();  // the canvas is there before the keys are listened to
     return page;
   }
 

@@ -96,3 +96,25 @@ test('what is opened after another scene is shown whole', { skip: noBrowser(), t
     await studio.close();
   }
 });
+
+test('a dialog that is open before the engine answers lists its files then', { skip: noBrowser(), timeout: 120_000 }, async () => {
+  const folder = temporaryFolder();
+  writeSphere(join(folder, 'ball.ply'), { radius: 1, centre: [0, 0, 0] });
+  const studio = await Studio.open({ folder });
+  try {
+    let admit;
+    const admitted = new Promise(resolve => { admit = resolve; });
+    await studio.context.route('**/session', async route => { await admitted; await route.continue(); });
+    await studio.page.close();
+    studio.page = await studio.newPage();
+    await studio.press('Control+o');
+    await studio.at('open-confirm').waitFor();
+    admit();
+    await studio.at('file-ball.ply').click();
+    await studio.at('open-confirm').click();
+    await studio.at('status-points').filter({ hasText: '4,000' }).waitFor();
+    assert.deepEqual(studio.problems, []);
+  } finally {
+    await studio.close();
+  }
+});

@@ -105,9 +105,17 @@ export class OpenDialog extends Part {
   @state() private add = false;
   @state() private busy = "";
   @state() private fraction = 0;
+  private forget: () => void = () => undefined;
 
-  override firstUpdated(): void {
-    void this.enter("");
+  /// The list comes when there is an engine to ask: a dialog that is open before that waits for it.
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.forget = this.context.connection.whenOpen(() => void (this.entries ?? this.enter("")));
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.forget();
   }
 
   private async enter(folder: string): Promise<void> {
@@ -118,7 +126,7 @@ export class OpenDialog extends Part {
       this.folder = named;
       this.chosen = new Set();
     } catch (error) {
-      this.entries ??= [];
+      if (this.context.connection.state === "open") this.entries ??= [];
       tell(this.context, error);
     }
   }

@@ -37,17 +37,27 @@ export class SaveDialog extends Part {
   @state() private format = "ply";
   @state() private name = "";
   @state() private folder = "";
-  @state() private folders: string[] = [];
+  @state() private folders: string[] | null = null;
   @state() private toServer = true;
   @state() private overwrite = false;
   @state() private asked = false; // the file is there already
   @state() private busy = false;
   @state() private said = "";
+  private forget: () => void = () => undefined;
 
   override firstUpdated(): void {
     const cloud = this.store.scene?.clouds[0]?.name ?? "scene";
     this.name = withExtension(cloud.split("/").pop() ?? "scene", "ply").replace(/\.ply$/, "_surface.ply");
-    void this.look("");
+  }
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.forget = this.context.connection.whenOpen(() => void (this.folders ?? this.look("")));
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.forget();
   }
 
   private async look(folder: string): Promise<void> {
@@ -121,7 +131,7 @@ export class SaveDialog extends Part {
     const choices = [
       { value: this.folder, label: this.folder },
       ...(above === null ? [] : [{ value: above, label: "↑ folder above" }]),
-      ...this.folders.map((name) => ({ value: joined(this.folder, name), label: `→ ${name}` })),
+      ...(this.folders ?? []).map((name) => ({ value: joined(this.folder, name), label: `→ ${name}` })),
       ...roots.filter((root) => root !== this.folder && root !== above).map((root) => ({ value: root, label: root })),
     ];
     const go = (value: string) => void this.look(value);

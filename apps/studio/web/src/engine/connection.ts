@@ -80,6 +80,12 @@ export class Connection {
     return () => set.delete(listener);
   }
 
+  /// Calls `listener` now if the connection is open, and after each connect from now on. @returns what ends that
+  whenOpen(listener: () => void): () => void {
+    if (this.state === "open") listener();
+    return this.on("hello", listener);
+  }
+
   private async greet(): Promise<void> {
     try {
       const hello = await this.request("hello");

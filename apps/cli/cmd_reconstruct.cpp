@@ -19,6 +19,7 @@
 #include "report.hpp"
 #include "resident_runs.hpp"
 #include "run_memory.hpp"
+#include "run_mesh.hpp"
 #include "signals.hpp"
 #include "stopwatch.hpp"
 #include "summary_words.hpp"
@@ -128,7 +129,7 @@ void warn_about_unused_normals(const ReconstructArgs& args, const RunReport& run
 }
 
 /// Runs the reconstruction, with progress, and the repeated runs, without.
-Mesh compute(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& memory, Record& record) {
+RunMesh compute(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& memory, Record& record) {
   Reconstructor reconstructor(record.device);
   ProgressLine line(!args.quiet && stderr_is_terminal());
   Options options = record.options;
@@ -137,7 +138,8 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& m
     line.update(progress);
     return !interrupted();
   };
-  Mesh mesh = memory.within_limit([&] { return reconstructor.reconstruct(cloud, options); });
+  RunMesh mesh(reconstructor.workspace());
+  memory.within_limit([&] { mesh.make(reconstructor, cloud, options); });
   line.clear();
   record.run = reconstructor.report();
   for (const Warning& warning : record.run.warnings)
@@ -146,7 +148,7 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& m
   if (record.run.normals && !args.quiet) print_note(summary(*record.run.normals));
   warn_about_unused_normals(args, record.run);
   warn_about_envelope(record.run.envelope, record.run.points);
-  if (mesh.triangles.empty()) throw Error(ErrorCode::empty_result, "the surface has no triangles");
+  if (mesh.triangles() == 0) throw Error(ErrorCode::empty_result, "the surface has no triangles");
   if (args.repeat > 0) {
     options.residuals = false;  // They cost time and are not part of the job.
     options.progress = [](const Progress&) { return !interrupted(); };
@@ -156,11 +158,11 @@ Mesh compute(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& m
   return mesh;
 }
 
-void write_output(const ReconstructArgs& args, const Mesh& mesh, Record& record) {
+void write_output(const ReconstructArgs& args, const RunMesh& mesh, Record& record) {
   throw_if_interrupted();
   if (args.output.empty()) return;
   const Stopwatch watch;
-  write_mesh(args.output, mesh, {.ascii = args.ascii, .threads = args.threads});
+  mesh.write(args.output, {.ascii = args.ascii, .threads = args.threads});
   file_was_written();
   if (args.report.empty() && args.pictures.folder.empty()) ignore_interrupts();
   record.write_ms = watch.ms();
@@ -218,17 +220,20 @@ int run(const ReconstructArgs& given) {
 
   on_interrupt(OnInterrupt::remember);
   warn_about_unused(args.given, record.options, cloud, mesh_file(args));
-  const Mesh mesh = compute(args, cloud, memory, record);
+  RunMesh mesh = compute(args, cloud, memory, record);
   cloud = Cloud();
   write_output(args, mesh, record);
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
 
-  if (record.options.weakness) record.problems = find_problems(mesh, problem_options(args.pictures, args.threads));
-  record.pictures = write_problem_pictures(mesh, record.problems, args.pictures, args.threads, !args.quiet);
-  record.mesh.triangles = static_cast<std::int64_t>(mesh.triangles.size());
-  if (!args.report.empty()) record.mesh = measure(mesh, args.threads);
-  if (!args.quiet) record.shape = args.report.empty() ? shape_words(mesh, args.threads) : shape_words(record.mesh);
+  if (record.options.weakness)
+    record.problems = find_problems(mesh.on_host(), problem_options(args.pictures, args.threads));
+  if (!args.pictures.folder.empty())
+    record.pictures = write_problem_pictures(mesh.on_host(), record.problems, args.pictures, args.threads, !args.quiet);
+  record.mesh.triangles = mesh.triangles();
+  if (!args.report.empty()) record.mesh = measure(mesh.on_host(), args.threads);
+  if (!args.quiet)
+    record.shape = args.report.empty() ? shape_words(mesh.glance(args.threads)) : shape_words(record.mesh);
   if (!args.report.empty()) record.shown_options = shown_options(args, record);
   if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(record)));
   if (args.problems && args.output == "-") print_note(problem_table(record.problems));

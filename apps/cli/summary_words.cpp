@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <pointskin/components.hpp>
-
 #include "console.hpp"
 
 namespace pointskin::cli {
@@ -17,8 +15,9 @@ std::string counted(std::int64_t count, const std::string& word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
 }
 
-std::string shape_words(const Mesh& mesh, int threads) {
-  const MeshGlance glance = glance_at(mesh, threads);
+std::string shape_words(const Mesh& mesh, int threads) { return shape_words(glance_at(mesh, threads)); }
+
+std::string shape_words(const MeshGlance& glance) {
   const char* const closed = !glance.closed ? "open" : glance.oriented ? "closed" : "closed but not oriented";
   return fmt::format("{}, {}", closed, counted(glance.components, "component"));
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include <pointskin/components.hpp>
 #include <pointskin/device.hpp>
 #include <pointskin/mesh.hpp>
 
@@ -18,6 +19,7 @@ std::string counted(std::int64_t count, const std::string& word);
 /// "closed, 1 component" or "open, 3 components", at a glance (glance_at): O(triangles), about a hundredth of what a
 /// reconstruction takes.
 std::string shape_words(const Mesh& mesh, int threads);
+std::string shape_words(const MeshGlance& glance);
 
 /// The same of a mesh that was measured: "watertight" where it is.
 std::string shape_words(const MeshReport& mesh);

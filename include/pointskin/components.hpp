@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include <pointskin/device_data.hpp>
 #include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/vector.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin PSK_EXPORT {
 
@@ -50,5 +52,8 @@ struct MeshGlance {
 /// @param threads  CPU threads, 0: all
 /// @throws Error invalid_input if a triangle names a vertex that does not exist
 MeshGlance glance_at(const Mesh& mesh, int threads = 0);
+
+/// The same of a mesh in the memory of `workspace`'s device, there. Waits.
+MeshGlance glance_at(const Workspace& workspace, const DeviceMesh& mesh);
 
 }  // namespace pointskin

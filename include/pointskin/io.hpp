@@ -6,8 +6,10 @@
 #include <string>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/device_data.hpp>
 #include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/workspace.hpp>
 
 namespace pointskin PSK_EXPORT {
 
@@ -83,6 +85,11 @@ struct WriteOptions {
 ///         exist, and for a vertex, a normal of a mesh, a point or an origin that is not finite
 void write_mesh(const std::string& path, const Mesh& mesh, int threads = 0);
 void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options);
+
+/// The same of a mesh in the memory of `workspace`'s device. Binary PLY without attributes is fetched block by block while
+/// it is written, so that the host never holds the mesh; all else is downloaded first.
+void write_mesh(const std::string& path, const Workspace& workspace, const DeviceMesh& mesh,
+                const WriteOptions& options = {});
 
 /// Writes `cloud` as PLY, or in the format of its extension if that holds clouds; the same promises as write_mesh.
 void write_cloud(const std::string& path, const Cloud& cloud, int threads = 0);

@@ -240,6 +240,10 @@ class Reconstructor {
   /// @throws Error as above; the mesh is then valid but unspecified
   void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh);
 
+  /// The same to a mesh in the memory of the workspace's device, from where write_mesh() takes it. With attributes, density
+  /// or weakness the device holds them beside the field, which takes more of its memory.
+  DeviceMesh reconstruct_on_device(const Cloud& cloud, const Options& options = {});
+
   /// The same from points in the memory of the workspace's device to a mesh there: neither is copied. DevicePoints and
   /// DeviceMesh say who owns what and until when. Where normals are to be repaired or estimated the points go to the
   /// host and back. The same bytes as from the host.

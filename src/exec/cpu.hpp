@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <memory>
 
@@ -42,6 +44,9 @@ class Cpu {
 
   /// Does nothing: CPU work is done when its call returns.
   void synchronize() {}
+
+  /// Copies bytes. For many threads at once.
+  void read(const void* from, void* to, std::size_t bytes) const { std::memcpy(to, from, bytes); }
 
   /// Now, as a point in time of milliseconds_between().
   using Mark = std::chrono::steady_clock::time_point;

@@ -2,11 +2,16 @@
 
 #include <pointskin/error.hpp>
 
+#include <algorithm>
 #include <bit>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "exec/cpu.hpp"
 #include "exec/cuda_check.cuh"
 
 namespace pointskin::exec {
@@ -113,10 +118,61 @@ cudaStream_t make_stream(int index) {
 
 }  // namespace
 
+/// Page-locked blocks of the host's memory, each for one thread at a time: the bus copies to and from them alone.
+class Cuda::Lanes {
+ public:
+  static constexpr std::size_t kBytes = std::size_t{2} << 20;
+  static constexpr int kCount = 8;
+
+  Lanes() = default;
+  ~Lanes() { cudaFreeHost(memory_); }
+  Lanes(const Lanes&) = delete;
+  Lanes& operator=(const Lanes&) = delete;
+
+  /// Calls use(block) with a block of kBytes; waits until one is free. The memory is taken at the first call.
+  template <class Use>
+  void with_block(const Use& use) {
+    const int lane = take();
+    try {
+      use(memory_ + static_cast<std::size_t>(lane) * kBytes);
+    } catch (...) {
+      give_back(lane);
+      throw;
+    }
+    give_back(lane);
+  }
+
+ private:
+  int take() {
+    std::unique_lock lock(mutex_);
+    if (memory_ == nullptr) {
+      cuda_check(cudaMallocHost(reinterpret_cast<void**>(&memory_), kCount * kBytes), "allocating page-locked memory");
+      for (int lane = 0; lane < kCount; ++lane) free_.push_back(lane);
+    }
+    freed_.wait(lock, [&] { return !free_.empty(); });
+    const int lane = free_.back();
+    free_.pop_back();
+    return lane;
+  }
+  void give_back(int lane) {
+    {
+      const std::lock_guard lock(mutex_);
+      free_.push_back(lane);
+    }
+    freed_.notify_one();
+  }
+
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable freed_;
+  std::vector<int> free_;
+  char* memory_ = nullptr;
+};
+
 Cuda::Cuda(int index) : Cuda(index, make_stream(index), true) {}
 Cuda::Cuda(int index, void* stream) : Cuda(index, stream, false) {}
 
-Cuda::Cuda(int index, void* stream, bool owns_stream) : index_(index), stream_(stream) {
+Cuda::Cuda(int index, void* stream, bool owns_stream)
+    : index_(index), stream_(stream), lanes_(std::make_unique<Lanes>()) {
   choose(index);
   cuda_check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, index),
              "reading the GPU's properties");
@@ -153,6 +209,48 @@ double Cuda::milliseconds_between(Mark from, Mark to) const {
 
 void Cuda::synchronize() {
   cuda_check(cudaStreamSynchronize(static_cast<cudaStream_t>(stream_)), "waiting for the GPU");
+}
+
+template <class Copy>
+void Cuda::copy_in_parts(std::size_t bytes, const Copy& copy) {
+  synchronize();
+  const auto parts = static_cast<std::int64_t>((bytes + Lanes::kBytes - 1) / Lanes::kBytes);
+  Cpu(Lanes::kCount).run_blocks(parts, [&](std::int64_t part) {
+    const std::size_t at = static_cast<std::size_t>(part) * Lanes::kBytes;
+    copy(at, std::min(Lanes::kBytes, bytes - at));
+  });
+}
+
+void Cuda::fetch(const void* from, void* to, std::size_t bytes) {
+  copy_in_parts(bytes, [&](std::size_t at, std::size_t part) {
+    read(static_cast<const char*>(from) + at, static_cast<char*>(to) + at, part);
+  });
+}
+
+void Cuda::send(const void* from, void* to, std::size_t bytes) {
+  copy_in_parts(bytes, [&](std::size_t at, std::size_t part) {
+    cuda_check(cudaSetDevice(index_), "choosing the GPU");
+    lanes_->with_block([&](char* block) {
+      std::memcpy(block, static_cast<const char*>(from) + at, part);
+      cuda_check(cudaMemcpyAsync(static_cast<char*>(to) + at, block, part, cudaMemcpyHostToDevice, cudaStreamPerThread),
+                 "copying to the GPU");
+      cuda_check(cudaStreamSynchronize(cudaStreamPerThread), "copying to the GPU");
+    });
+  });
+}
+
+void Cuda::read(const void* from, void* to, std::size_t bytes) const {
+  cuda_check(cudaSetDevice(index_), "choosing the GPU");
+  for (std::size_t at = 0; at < bytes; at += Lanes::kBytes) {
+    const std::size_t part = std::min(Lanes::kBytes, bytes - at);
+    lanes_->with_block([&](char* block) {
+      cuda_check(cudaMemcpyAsync(block, static_cast<const char*>(from) + at, part, cudaMemcpyDeviceToHost,
+                                 cudaStreamPerThread),
+                 "copying to the host");
+      cuda_check(cudaStreamSynchronize(cudaStreamPerThread), "copying to the host");
+      std::memcpy(static_cast<char*>(to) + at, block, part);
+    });
+  }
 }
 
 void Cuda::activate() { cuda_check(cudaSetDevice(index_), "choosing the GPU"); }

@@ -1,6 +1,7 @@
 // The CUDA space: one stream of one GPU and a stream-ordered memory pool. This header needs no CUDA.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -35,6 +36,16 @@ class Cuda {
   /// Waits until the stream's work is done. @throws Error device_unavailable if some of it failed
   void synchronize();
 
+  /// Copies bytes of its memory to the host's. For many threads at once: what makes them is to be done (synchronize()).
+  void read(const void* from, void* to, std::size_t bytes) const;
+
+  /// Copies many bytes to the host's memory or from there, through page-locked memory, by several threads of the host:
+  /// one alone copies, and maps new pages, slower than the bus. Waits.
+  void fetch(const void* from, void* to, std::size_t bytes);
+  void send(const void* from, void* to, std::size_t bytes);
+  /// From here on that is faster than a copy by the driver.
+  static constexpr std::size_t kManyBytes = std::size_t{8} << 20;
+
   /// A point in the stream's work; the last kMarks of them can be asked for. Does not wait.
   using Mark = int;
   static constexpr int kMarks = 16;
@@ -57,11 +68,17 @@ class Cuda {
  private:
   Cuda(int index, void* stream, bool owns_stream);
 
+  /// Calls copy(offset, bytes) for all parts, on several threads.
+  template <class Copy>
+  void copy_in_parts(std::size_t bytes, const Copy& copy);
+
   int index_;
   int multiprocessors_ = 0;
   void* stream_ = nullptr;
   void* staging_ = nullptr;
   void* marks_[kMarks] = {};  // cudaEvent_t
+  class Lanes;
+  std::unique_ptr<Lanes> lanes_;
   int next_mark_ = 0;
   std::shared_ptr<MemoryPool> pool_;
 };

@@ -285,6 +285,7 @@ template <class T>
 void copy_to_host(Cuda& ex, ArrayView<const T> from, T* to) {
   if (from.size == 0) return;
   const std::size_t bytes = static_cast<std::size_t>(from.size) * sizeof(T);
+  if (bytes >= Cuda::kManyBytes) return ex.fetch(from.data, to, bytes);
   const bool staged = bytes <= static_cast<std::size_t>(Cuda::kStagingBytes);
   if (staged) {
     copy_kernel<<<1, kWarp, 0, stream_of(ex)>>>(from.data, static_cast<T*>(ex.staging()), static_cast<int>(from.size));
@@ -300,9 +301,9 @@ void copy_to_host(Cuda& ex, ArrayView<const T> from, T* to) {
 template <class T>
 void copy_to_device(Cuda& ex, const T* from, ArrayView<T> to) {
   if (to.size == 0) return;
-  cuda_check(cudaMemcpyAsync(to.data, from, static_cast<std::size_t>(to.size) * sizeof(T), cudaMemcpyHostToDevice,
-                             stream_of(ex)),
-             "copying to the GPU");
+  const std::size_t bytes = static_cast<std::size_t>(to.size) * sizeof(T);
+  if (bytes >= Cuda::kManyBytes) return ex.send(from, to.data, bytes);
+  cuda_check(cudaMemcpyAsync(to.data, from, bytes, cudaMemcpyHostToDevice, stream_of(ex)), "copying to the GPU");
   ex.synchronize();
 }
 

@@ -23,6 +23,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -39,6 +40,7 @@ concept Space = requires(T ex) {
   { T::kOwnKernels } -> std::convertible_to<bool>;
   { ex.host_threads() } -> std::convertible_to<int>;  // for what is done on the host meanwhile; 0: all
   ex.synchronize();
+  ex.read(nullptr, nullptr, std::size_t{});  // memory of the space to the host's, from any thread
   { ex.milliseconds_between(ex.mark(), ex.mark()) } -> std::convertible_to<double>;
   ex.activate();
 };

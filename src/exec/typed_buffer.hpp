@@ -94,9 +94,9 @@ template <class T, Space Exec>
 void fetch(Exec& ex, Buffer<std::uint8_t>& from, std::vector<T>& to) {
   const std::size_t size = static_cast<std::size_t>(from.size()) / sizeof(T);
   if constexpr (Exec::kOnHost)
-    exec::resize(ex, to, size);
+    exec::resize_to_overwrite(ex, to, size);
   else
-    to.resize(size);
+    exec::resize_to_overwrite(to, size);
   if (size > 0) copy_to_host(ex, from.cview(), reinterpret_cast<std::uint8_t*>(to.data()));
   from.reset();
 }

@@ -155,7 +155,7 @@ std::optional<TriangleRows> find_triangle_rows(exec::Cpu& ex, const PlyInput& in
 
 void read_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, AttributeType type,
                         const TriangleRows& rows, std::vector<Triangle>& triangles) {
-  exec::resize(ex, triangles, static_cast<std::size_t>(face.count));
+  exec::resize_to_overwrite(ex, triangles, static_cast<std::size_t>(face.count));
   const std::int64_t vertices = vertex_count(input.header);
   const bool swapped = input.header.encoding == PlyEncoding::big_endian;
   run_in_order(ex, (face.count + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {

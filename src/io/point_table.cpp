@@ -208,7 +208,7 @@ void fill_block(const PointTable& table, const Roles& roles, std::int64_t b, std
 AttributeValues make_values(exec::Cpu& ex, AttributeType type, std::size_t size) {
   return visit_type(type, [&](auto tag) {
     std::vector<decltype(tag)> values;
-    exec::resize(ex, values, size);
+    exec::resize_to_overwrite(ex, values, size);
     return AttributeValues(std::move(values));
   });
 }
@@ -235,8 +235,8 @@ Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, con
   else if (wants_shift && kept > 0)
     cloud.origin = automatic_shift(found.runs, found.first.back(), table.resolution, !holds_floats(table, roles),
                                    [&](const Box& box) { return points_beyond(ex, table, roles, box); });
-  exec::resize(ex, cloud.positions, kept);
-  if (roles.normal) exec::resize(ex, cloud.normals, kept);
+  exec::resize_to_overwrite(ex, cloud.positions, kept);
+  if (roles.normal) exec::resize_to_overwrite(ex, cloud.normals, kept);
   for (const std::size_t c : roles.attributes) {
     const Column& column = table.columns[c];
     cloud.attributes.push_back({column.name, make_values(ex, column.declared, kept)});

@@ -6,38 +6,38 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "io/blocks.hpp"
 #include "io/formats.hpp"
+#include "io/mesh_checks.hpp"
 #include "io/output.hpp"
+#include "io/writers.hpp"
 
 namespace pointskin {
 namespace {
 
-void check_triangles(exec::Cpu& ex, const Mesh& mesh) {
-  constexpr std::int64_t kBlockRows = 1 << 14;
-  const auto vertices = static_cast<std::int64_t>(mesh.vertices.size());
-  const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
-  io::run_in_order(ex, (triangles + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {
-    for (std::int64_t t = b * kBlockRows; t < std::min(triangles, (b + 1) * kBlockRows); ++t)
-      for (const std::int32_t corner : mesh.triangles[static_cast<std::size_t>(t)])
-        if (corner < 0 || corner >= vertices)
-          throw Error(ErrorCode::invalid_input, fmt::format("a triangle names vertex {} of {}", corner, vertices));
+/// Calls check(first, part) for parts of an array, on all threads. The first that throws counts.
+template <class T, class Check>
+void check_parts(exec::Cpu& ex, const std::vector<T>& all, const Check& check) {
+  constexpr std::size_t kPart = 1 << 14;
+  io::run_in_order(ex, static_cast<std::int64_t>((all.size() + kPart - 1) / kPart), [&](std::int64_t b) {
+    const std::size_t first = static_cast<std::size_t>(b) * kPart;
+    check(first, std::span<const T>(all).subspan(first, std::min(kPart, all.size() - first)));
   });
 }
 
+void check_triangles(exec::Cpu& ex, const Mesh& mesh) {
+  const auto vertices = static_cast<std::int64_t>(mesh.vertices.size());
+  check_parts(ex, mesh.triangles,
+              [&](std::size_t /*first*/, std::span<const Triangle> part) { io::check_corners(vertices, part); });
+}
+
 void check_finite(exec::Cpu& ex, const char* what, const std::vector<Vec3f>& vectors) {
-  constexpr std::int64_t kBlockRows = 1 << 14;
-  const auto count = static_cast<std::int64_t>(vectors.size());
-  io::run_in_order(ex, (count + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {
-    for (std::int64_t i = b * kBlockRows; i < std::min(count, (b + 1) * kBlockRows); ++i) {
-      const Vec3f& v = vectors[static_cast<std::size_t>(i)];
-      if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-        throw Error(ErrorCode::invalid_input, fmt::format("{} {} is not finite", what, i));
-    }
-  });
+  check_parts(ex, vectors,
+              [&](std::size_t first, std::span<const Vec3f> part) { io::check_finite(what, first, part); });
 }
 
 void check_finite(const Vec3d& origin) {
@@ -71,6 +71,15 @@ void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& o
   check_finite(ex, "the normal of vertex", mesh.normals);
   check_finite(mesh.origin);
   format_and_write(ex, path, [&] { return format.run.write_mesh(mesh, options); });
+}
+
+void write_mesh(const std::string& path, const Workspace& workspace, const DeviceMesh& mesh,
+                const WriteOptions& options) {
+  const bool in_blocks = io::mesh_format(path).run.write_mesh == io::format_ply_mesh && !options.ascii;
+  if (!in_blocks || !mesh.attributes.empty()) return write_mesh(path, download(workspace, mesh), options);
+  exec::Cpu ex(options.threads);
+  check_finite(mesh.origin);
+  format_and_write(ex, path, [&] { return io::format_device_ply(workspace, mesh, options.double_coordinates); });
 }
 
 void write_cloud(const std::string& path, const Cloud& cloud, int threads) {

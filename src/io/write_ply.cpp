@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <optional>
 #include <type_traits>
 #include <unordered_set>
 #include <utility>
 
+#include "exec/any_space.hpp"
+#include "io/mesh_checks.hpp"
 #include "io/ply_header.hpp"
 #include "io/writers.hpp"
 
@@ -50,20 +53,48 @@ AttributeType stored_type(const Attribute& attribute) {
   return fits(std::uint32_t{}) ? AttributeType::uint32 : AttributeType::float64;
 }
 
-std::string vertex_header(const VertexArrays& v, const std::vector<AttributeType>& types, const char* encoding) {
-  const char* type = v.is_wide() ? "double" : "float";
-  std::string header = fmt::format("ply\nformat {} 1.0\nelement vertex {}\n", encoding, v.positions.size());
+/// What the header tells of the vertices.
+struct VertexRow {
+  std::size_t count = 0;
+  bool wide = false;  ///< coordinates are double
+  bool normals = false;
+  std::vector<std::string> names{};  ///< of the attributes
+  std::vector<AttributeType> types{};
+
+  [[nodiscard]] std::size_t bytes() const {
+    std::size_t sum = wide ? 3 * sizeof(double) : 3 * sizeof(float);
+    if (normals) sum += sizeof(Vec3f);
+    for (const AttributeType type : types) sum += size_of(type);
+    return sum;
+  }
+};
+
+VertexRow row_of(const VertexArrays& v) {
+  VertexRow row{v.positions.size(), v.is_wide(), !v.normals.empty(), {}, stored_types(v)};
+  for (const Attribute& attribute : v.attributes) row.names.push_back(property_name(attribute.name));
+  return row;
+}
+
+std::string vertex_header(const VertexRow& row, const char* encoding) {
+  std::string header = fmt::format("ply\nformat {} 1.0\nelement vertex {}\n", encoding, row.count);
   std::unordered_set<std::string> names;
   const auto add = [&](const char* property_type, const std::string& name) {
     if (!names.insert(name).second)
       throw Error(ErrorCode::usage, fmt::format("two properties are named '{}'; rename an attribute", name));
     fmt::format_to(std::back_inserter(header), "property {} {}\n", property_type, name);
   };
-  for (const char* axis : {"x", "y", "z"}) add(type, axis);
-  if (!v.normals.empty())
+  for (const char* axis : {"x", "y", "z"}) add(row.wide ? "double" : "float", axis);
+  if (row.normals)
     for (const char* axis : {"nx", "ny", "nz"}) add("float", axis);
-  for (std::size_t a = 0; a < types.size(); ++a) add(ply_name_of(types[a]), property_name(v.attributes[a].name));
+  for (std::size_t a = 0; a < row.types.size(); ++a) add(ply_name_of(row.types[a]), row.names[a]);
   return header;
+}
+
+std::string whole_header(const VertexRow& row, std::optional<std::size_t> faces, const char* encoding) {
+  std::string header = vertex_header(row, encoding);
+  if (faces)
+    fmt::format_to(std::back_inserter(header), "element face {}\nproperty list uchar int vertex_indices\n", *faces);
+  return header + "end_header\n";
 }
 
 void check_shapes(const VertexArrays& v) {
@@ -74,13 +105,6 @@ void check_shapes(const VertexArrays& v) {
     if (a.values.size() != n)
       throw Error(ErrorCode::usage,
                   fmt::format("{} values of '{}' for {} vertices", a.values.size(), property_name(a.name), n));
-}
-
-std::size_t row_bytes_of(const VertexArrays& v, const std::vector<AttributeType>& types) {
-  std::size_t bytes = v.is_wide() ? 3 * sizeof(double) : 3 * sizeof(float);
-  if (!v.normals.empty()) bytes += sizeof(Vec3f);
-  for (const AttributeType type : types) bytes += size_of(type);
-  return bytes;
 }
 
 /// A range of rows and where it goes to.
@@ -127,15 +151,47 @@ void store_faces(const std::vector<Triangle>& triangles, std::size_t first, std:
   }
 }
 
+/// Makes room for `rows` rows at the end. @returns where they begin
+char* append_rows(std::string& bytes, std::size_t rows, std::size_t row_bytes) {
+  const std::size_t before = bytes.size();
+  bytes.resize(before + rows * row_bytes);
+  return bytes.data() + before;
+}
+
+/// Parts of arrays in the memory of a device, for any thread.
+class Parts {
+ public:
+  /// Waits for what makes the arrays.
+  explicit Parts(Workspace workspace) : workspace_(std::move(workspace)) { workspace_.synchronize(); }
+
+  template <class T>
+  void read(const DeviceSpan<T>& from, std::size_t first, std::size_t last,
+            std::vector<std::remove_const_t<T>>& part) const {
+    part.resize(last - first);
+    exec::visit(workspace_.data().space,
+                [&](const auto& ex) { ex.read(from.data + first, part.data(), part.size() * sizeof(T)); });
+  }
+
+ private:
+  Workspace workspace_;
+};
+
+/// What a thread has fetched, in memory that it uses again: blocks are so large that the system would map it anew.
+struct Fetched {
+  std::vector<Vec3f> positions, normals;
+  std::vector<Triangle> triangles;
+};
+Fetched& fetched() {
+  thread_local Fetched memory;
+  return memory;
+}
+
 }  // namespace
 
 std::string ply_header(const VertexArrays& vertices, const std::vector<Triangle>* triangles, const char* encoding) {
   check_shapes(vertices);
-  std::string header = vertex_header(vertices, stored_types(vertices), encoding);
-  if (triangles != nullptr)
-    fmt::format_to(std::back_inserter(header), "element face {}\nproperty list uchar int vertex_indices\n",
-                   triangles->size());
-  return header + "end_header\n";
+  return whole_header(row_of(vertices), triangles != nullptr ? std::optional(triangles->size()) : std::nullopt,
+                      encoding);
 }
 
 std::vector<AttributeType> stored_types(const VertexArrays& vertices) {
@@ -158,19 +214,41 @@ Blocks format_ply_mesh(const Mesh& mesh, const WriteOptions& options) {
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
   std::string header = ply_header(vertices, triangles, "binary_little_endian");
   const std::vector<AttributeType> types = stored_types(vertices);
-  const auto append_vertices = [vertices, types, row_bytes = row_bytes_of(vertices, types)](
+  const auto append_vertices = [vertices, types, row_bytes = row_of(vertices).bytes()](
                                    std::size_t first, std::size_t last, std::string& bytes) {
-    const std::size_t before = bytes.size();
-    bytes.resize(before + (last - first) * row_bytes);
-    store_rows(vertices, types, {first, last, row_bytes}, bytes.data() + before);
+    store_rows(vertices, types, {first, last, row_bytes}, append_rows(bytes, last - first, row_bytes));
   };
   const auto append_faces = [triangles](std::size_t first, std::size_t last, std::string& bytes) {
-    const std::size_t before = bytes.size();
-    bytes.resize(before + (last - first) * kFaceBytes);
-    store_faces(*triangles, first, last, bytes.data() + before);
+    store_faces(*triangles, first, last, append_rows(bytes, last - first, kFaceBytes));
   };
   const std::size_t faces = triangles != nullptr ? triangles->size() : 0;
   return cut_into_blocks(std::move(header), {{vertices.positions.size(), append_vertices}, {faces, append_faces}});
+}
+
+Blocks format_device_ply(const Workspace& workspace, const DeviceMesh& mesh, bool double_coordinates) {
+  const Parts parts(workspace);
+  const VertexRow row{static_cast<std::size_t>(mesh.vertices.size), double_coordinates || !is_zero(mesh.origin),
+                      !mesh.normals.empty()};
+  const auto append_vertices = [parts, mesh, row](std::size_t first, std::size_t last, std::string& bytes) {
+    auto& [positions, normals, triangles] = fetched();
+    parts.read(mesh.vertices, first, last, positions);
+    check_finite("vertex", first, positions);
+    normals.clear();
+    if (row.normals) parts.read(mesh.normals, first, last, normals);
+    check_finite("the normal of vertex", first, normals);
+    const std::vector<Attribute> none;
+    store_rows({mesh.origin, positions, normals, none, row.wide}, {}, {0, last - first, row.bytes()},
+               append_rows(bytes, last - first, row.bytes()));
+  };
+  const auto append_faces = [parts, mesh](std::size_t first, std::size_t last, std::string& bytes) {
+    std::vector<Triangle>& triangles = fetched().triangles;
+    parts.read(mesh.triangles, first, last, triangles);
+    check_corners(mesh.vertices.size, triangles);
+    store_faces(triangles, 0, triangles.size(), append_rows(bytes, triangles.size(), kFaceBytes));
+  };
+  const auto faces = static_cast<std::size_t>(mesh.triangles.size);
+  return cut_into_blocks(whole_header(row, faces, "binary_little_endian"),
+                         {{row.count, append_vertices}, {faces, append_faces}});
 }
 
 }  // namespace pointskin::io

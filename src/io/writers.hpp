@@ -8,8 +8,10 @@
 #include <vector>
 
 #include <pointskin/cloud.hpp>
+#include <pointskin/device_data.hpp>
 #include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/workspace.hpp>
 
 #include "io/output.hpp"
 
@@ -42,6 +44,10 @@ Blocks format_ply_mesh(const Mesh& mesh, const WriteOptions& options);
 /// origin is not zero.
 /// @throws Error usage if an array has the wrong length or a name comes twice
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles);
+
+/// The same of a mesh in the memory of a device, which is fetched block by block; its attributes are left out. Where
+/// the data are wrong, making a block throws.
+Blocks format_device_ply(const Workspace& workspace, const DeviceMesh& mesh, bool double_coordinates);
 
 /// The same as ASCII PLY: a line per vertex and face, numbers in the fewest digits that read back equal.
 Blocks format_ply_ascii(const VertexArrays& vertices, const std::vector<Triangle>* triangles);

@@ -1,21 +1,20 @@
-// Connected pieces of a mesh by union-find over its vertices, and whether its edges cancel.
-//
-// A mesh is closed where the boundary of its triangles is nothing: each edge appears an even number of times, and in a
-// mesh that is oriented as often one way as the other. Both are sums over the triangles' edges, in Z/2 and in Z. Rather
-// than one counter an edge, the sums run over a 64-bit hash of each edge, so that no edge need be found again.
-// Source of the hash: Steele, Lea & Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014 (the finaliser
-// of SplitMix64).
+// Connected pieces of a mesh, by union-find over its vertices.
 #include <pointskin/components.hpp>
 
+#include <pointskin/error.hpp>
+
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "core/vec3.hpp"
 #include "exec/algorithms.hpp"
+#include "exec/any_space.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "exec/disjoint_sets.hpp"
+#include "mesh/glance.hpp"
+#include "mesh/joined_vertices.hpp"
 #include "mesh/mesh_checks.hpp"
 
 namespace pointskin {
@@ -23,37 +22,9 @@ namespace {
 
 using exec::Buffer;
 using exec::Cpu;
-using exec::DisjointSets;
 
 std::int64_t vertex_count(const Mesh& mesh) { return static_cast<std::int64_t>(mesh.vertices.size()); }
 std::int64_t triangle_count(const Mesh& mesh) { return static_cast<std::int64_t>(mesh.triangles.size()); }
-
-/// Vertices joined by triangles, and which of them some triangle uses.
-struct Joined {
-  Buffer<std::int32_t> parents;
-  Buffer<std::uint8_t> used;
-
-  [[nodiscard]] DisjointSets sets() const { return {parents.view()}; }
-  /// True for the smallest vertex of each piece.
-  [[nodiscard]] bool begins_piece(std::int64_t v) const {
-    return used.data()[v] != 0 && sets().is_root(static_cast<std::int32_t>(v));
-  }
-};
-
-Joined join_vertices(Cpu& ex, const Mesh& mesh) {
-  const std::int64_t vertices = vertex_count(mesh);
-  Joined joined{exec::iota(ex, vertices), Buffer<std::uint8_t>(ex.pool(), vertices)};
-  std::uint8_t* const used = joined.used.data();
-  exec::for_each(ex, "components", vertices, [used](std::int64_t v) { used[v] = 0; });
-  const DisjointSets sets = joined.sets();
-  exec::for_each(ex, "components", triangle_count(mesh), [&](std::int64_t i) {
-    const Triangle& t = mesh.triangles[static_cast<std::size_t>(i)];
-    for (const std::int32_t v : t) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
-    sets.unite(t[0], t[1]);
-    sets.unite(t[1], t[2]);
-  });
-  return joined;
-}
 
 /// Runs part(begin, end) over fixed blocks of [0, n). @returns what it gave, in the order of the blocks
 template <class T, class Part>
@@ -65,38 +36,8 @@ std::vector<T> by_blocks(Cpu& ex, std::int64_t n, const Part& part) {
   return parts;
 }
 
-std::uint64_t mix(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
-  return x ^ (x >> 31);
-}
-
-/// What is left of the edges when equal ones have cancelled: 0 and 0 for a mesh that is closed and oriented.
-struct EdgeSums {
-  std::uint64_t even = 0;      ///< exclusive or: 0 where every edge appears an even number of times
-  std::uint64_t balanced = 0;  ///< signed by direction: 0 where every edge appears as often either way
-
-  void add(std::int32_t from, std::int32_t to) {
-    const auto low = static_cast<std::uint64_t>(std::min(from, to));
-    const auto high = static_cast<std::uint64_t>(std::max(from, to));
-    const std::uint64_t hash = mix((high << 32U | low) + 1);  // 0 would be hashed to 0
-    even ^= hash;
-    balanced += from < to ? hash : 0 - hash;
-  }
-};
-
-EdgeSums sum_edges(const Mesh& mesh, std::int64_t begin, std::int64_t end) {
-  EdgeSums sums;
-  for (std::int64_t i = begin; i < end; ++i) {
-    const Triangle& t = mesh.triangles[static_cast<std::size_t>(i)];
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    for (std::size_t k = 0; k < 3; ++k) sums.add(t[k], t[(k + 1) % 3]);
-  }
-  return sums;
-}
-
 /// Labels for the smallest vertices, then for all.
-void label_vertices(Cpu& ex, const Joined& joined, MeshComponents& pieces) {
+void label_vertices(Cpu& ex, const mesh_detail::JoinedView& joined, MeshComponents& pieces) {
   const auto vertices = static_cast<std::int64_t>(pieces.of_vertex.size());
   const Buffer<std::int32_t> firsts =
       exec::select(ex, "components", vertices, [&](std::int64_t v) { return joined.begins_piece(v); });
@@ -104,10 +45,9 @@ void label_vertices(Cpu& ex, const Joined& joined, MeshComponents& pieces) {
   exec::for_each(ex, "components", pieces.count, [&](std::int64_t piece) {
     pieces.of_vertex[static_cast<std::size_t>(firsts.data()[piece])] = static_cast<std::int32_t>(piece);
   });
-  const DisjointSets sets = joined.sets();
   exec::for_each(ex, "components", vertices, [&](std::int64_t v) {
-    const std::int64_t root = sets.root(static_cast<std::int32_t>(v));
-    if (joined.used.data()[v] != 0 && root != v)
+    const std::int64_t root = joined.sets.root(static_cast<std::int32_t>(v));
+    if (joined.is_used(v) && root != v)
       pieces.of_vertex[static_cast<std::size_t>(v)] = pieces.of_vertex[static_cast<std::size_t>(root)];
   });
 }
@@ -145,7 +85,9 @@ MeshComponents label_components(const Mesh& mesh, int threads) {
   mesh_detail::check_indices(ex, mesh);
   MeshComponents pieces;
   pieces.of_vertex.assign(mesh.vertices.size(), -1);
-  label_vertices(ex, join_vertices(ex, mesh), pieces);
+  const mesh_detail::Joined joined =
+      mesh_detail::join_vertices(ex, vertex_count(mesh), {mesh.triangles.data(), triangle_count(mesh)});
+  label_vertices(ex, joined.view(), pieces);
 
   const auto count = static_cast<std::size_t>(pieces.count);
   pieces.triangles.assign(count, 0);
@@ -170,25 +112,17 @@ MeshComponents label_components(const Mesh& mesh, int threads) {
 MeshGlance glance_at(const Mesh& mesh, int threads) {
   Cpu ex(threads);
   mesh_detail::check_indices(ex, mesh);
-  const Joined joined = join_vertices(ex, mesh);
-  const auto count_pieces = [&](std::int64_t begin, std::int64_t end) {
-    std::int64_t count = 0;
-    for (std::int64_t v = begin; v < end; ++v) count += joined.begins_piece(v) ? 1 : 0;
-    return count;
-  };
-  MeshGlance glance;
-  for (const std::int64_t count : by_blocks<std::int64_t>(ex, vertex_count(mesh), count_pieces))
-    glance.components += count;
-  const auto sums = by_blocks<EdgeSums>(
-      ex, triangle_count(mesh), [&](std::int64_t begin, std::int64_t end) { return sum_edges(mesh, begin, end); });
-  EdgeSums all;
-  for (const EdgeSums& part : sums) {
-    all.even ^= part.even;
-    all.balanced += part.balanced;
-  }
-  glance.closed = glance.components > 0 && all.even == 0;
-  glance.oriented = glance.closed && all.balanced == 0;
-  return glance;
+  return mesh_detail::glance(ex, vertex_count(mesh), {mesh.triangles.data(), triangle_count(mesh)});
+}
+
+MeshGlance glance_at(const Workspace& workspace, const DeviceMesh& mesh) {
+  const ArrayView<const Triangle> triangles{mesh.triangles.data, mesh.triangles.size};
+  return exec::visit(workspace.data().space, [&](auto& ex) {
+    const std::int64_t bad = mesh_detail::find_bad_triangle(ex, mesh.vertices.size, triangles);
+    if (bad >= 0)
+      throw Error(ErrorCode::invalid_input, fmt::format("triangle {} names a vertex that is not there", bad));
+    return mesh_detail::glance(ex, mesh.vertices.size, triangles);
+  });
 }
 
 }  // namespace pointskin

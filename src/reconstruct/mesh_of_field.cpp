@@ -12,6 +12,7 @@
 
 #include "diagnose/look.hpp"
 #include "diagnose/verdict.hpp"
+#include "exec/host_array.hpp"
 #include "exec/this_space.hpp"
 #include "field/evaluate.hpp"
 #include "poisson/density.hpp"
@@ -282,7 +283,7 @@ Mesh download_mesh_of(Exec& ex, const DeviceMesh& mesh) {
   Mesh out;
   out.origin = mesh.origin;
   const auto fetch = [&](const auto& from, auto& to) {
-    to.resize(static_cast<std::size_t>(from.size));
+    exec::resize_to_overwrite(to, static_cast<std::size_t>(from.size));
     copy_to_host(ex, ArrayView<const std::remove_pointer_t<decltype(from.data)>>{from.data, from.size}, to.data());
   };
   fetch(mesh.vertices, out.vertices);

@@ -195,7 +195,7 @@ Cloud download_points(Exec& ex, const DevicePoints& points) {
   Cloud cloud;
   cloud.origin = points.origin;
   const auto fetch = [&](const DeviceSpan<const Vec3f>& from, std::vector<Vec3f>& to) {
-    to.resize(static_cast<std::size_t>(from.size));
+    exec::resize_to_overwrite(to, static_cast<std::size_t>(from.size));
     copy_to_host(ex, ArrayView<const Vec3f>{from.data, from.size}, to.data());
   };
   fetch(points.positions, cloud.positions);

@@ -117,9 +117,9 @@ void download(Exec& ex, surface::Surface surface, const octree::Frame& frame, co
 template <class T, exec::Space Exec>
 void download_array(Exec& ex, exec::Buffer<T>& from, std::vector<T>& to) {
   if constexpr (Exec::kOnHost)
-    exec::resize(ex, to, static_cast<std::size_t>(from.size()));
+    exec::resize_to_overwrite(ex, to, static_cast<std::size_t>(from.size()));
   else
-    to.resize(static_cast<std::size_t>(from.size()));
+    exec::resize_to_overwrite(to, static_cast<std::size_t>(from.size()));
   copy_to_host(ex, from.cview(), to.data());
   from.reset();
 }

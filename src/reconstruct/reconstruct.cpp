@@ -108,6 +108,9 @@ Mesh Reconstructor::reconstruct(const Cloud& cloud, const SolveOptions& solve, c
 void Reconstructor::reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh) {
   impl_->reconstruct(cloud, options, mesh);
 }
+DeviceMesh Reconstructor::reconstruct_on_device(const Cloud& cloud, const Options& options) {
+  return impl_->reconstruct(cloud, options);
+}
 DeviceMesh Reconstructor::reconstruct(const DevicePoints& points, const Options& options) {
   return impl_->reconstruct(points, options);
 }

@@ -24,15 +24,17 @@ class WhatIsJudged(unittest.TestCase):
             columns = ["x", "y", "z", "nx", "ny", "nz", name]
             return ply.write([[n, "float"] for n in columns], [(0, 0, 0, *normal, 1)] * count)
 
-        def doubtful(*clouds):
+        def doubtful(*clouds, command="reconstruct"):
             inputs = {str(i): data for i, data in enumerate(clouds)}
-            return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs))
+            return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs, command=lambda: command))
 
         self.assertEqual(doubtful(cloud("heat", 2), cloud("x2", 100)), {"heat", "input_heat"})
         self.assertEqual(doubtful(cloud("heat", 90, (0, 0, 0)), cloud("x2", 100)), {"heat", "input_heat"})
         self.assertEqual(doubtful(cloud("heat", 90), cloud("x2", 100)), set())
         self.assertEqual(doubtful(cloud("heat", 2), cloud("heat", 100)), set())
         self.assertEqual(doubtful(cloud("heat", 2)), set())
+        self.assertLessEqual({"heat", "input_heat"}, doubtful(cloud("heat", 2), command="edit"))
+        self.assertEqual(doubtful(cloud("heat", 90), command="edit"), set())
 
 
 class JudgeOfMeshes(unittest.TestCase):

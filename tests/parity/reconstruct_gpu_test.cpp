@@ -1,8 +1,11 @@
 // The GPU against the CPU through the public API: the same bytes.
 #include <gtest/gtest.h>
 
+#include <pointskin/components.hpp>
 #include <pointskin/device.hpp>
+#include <pointskin/device_data.hpp>
 #include <pointskin/error.hpp>
+#include <pointskin/io.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
 
@@ -16,6 +19,7 @@
 
 #include "parity/gpu_test.hpp"
 #include "property/reconstruction.hpp"
+#include "support/io_files.hpp"
 #include "support/shapes.hpp"
 #include "support/stray_clouds.hpp"
 
@@ -280,6 +284,37 @@ TEST_F(Gpu, LeavesOutTheStraysThatTheCpuLeavesOut) {
     expect_same_bytes(download(on_gpu.workspace(), on_gpu.reconstruct(points, {{.depth = 6}})),
                       on_cpu.reconstruct(clean, {{.depth = 6}}));
   }
+}
+
+TEST_F(Gpu, CopiesManyBytesBothWays) {
+  Cloud cloud = test::sphere_cloud(1'500'007, 31);  // arrays of no whole number of parts
+  ASSERT_GT(cloud.positions.size() * sizeof(Vec3f), std::size_t{16} << 20);
+  cloud.origin = {1, 2, 3};
+  const Workspace workspace(gpu_);
+  const UploadedCloud there = upload(workspace, cloud);
+  const Cloud back = download(workspace, there);
+  EXPECT_EQ(back.positions, cloud.positions);
+  EXPECT_EQ(back.normals, cloud.normals);
+  EXPECT_EQ(back.origin, cloud.origin);
+}
+
+TEST_F(Gpu, WritesFilesOfMeshesThatItHolds) {
+  const Cloud cloud = test::linked_tori_cloud(60'000, 32);
+  const test::TemporaryFolder folder;
+  Reconstructor r(gpu_);
+  const DeviceMesh mesh = r.reconstruct_on_device(cloud, {{.depth = 8}});
+  const Mesh on_cpu = Reconstructor(Device::cpu()).reconstruct(cloud, {{.depth = 8}});
+  ASSERT_GT(mesh.vertices.size, 1 << 15);
+  for (const char* name : {"a.ply", "a.obj"}) {
+    write_mesh(folder.file(name), r.workspace(), mesh);
+    const std::string written = test::bytes_of_file(folder.file(name));
+    write_mesh(folder.file(name), on_cpu);
+    EXPECT_TRUE(written == test::bytes_of_file(folder.file(name))) << name;
+  }
+  const MeshGlance there = glance_at(r.workspace(), mesh);
+  const MeshGlance here = glance_at(on_cpu);
+  EXPECT_EQ(there.components, here.components);
+  EXPECT_TRUE(there.closed && there.oriented);
 }
 
 TEST_F(Gpu, GivesTheSameBytesRunAfterRun) {

@@ -40,6 +40,7 @@ class Serial {
   void activate() {}
   [[nodiscard]] int host_threads() const { return 1; }
   [[nodiscard]] void* stream() const { return nullptr; }
+  void read(const void* from, void* to, std::size_t bytes) const { std::memcpy(to, from, bytes); }
 
   using Mark = std::chrono::steady_clock::time_point;
   [[nodiscard]] Mark mark() const { return std::chrono::steady_clock::now(); }

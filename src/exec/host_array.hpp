@@ -38,8 +38,9 @@ void resize(Cpu& ex, std::vector<T>& values, std::size_t size) {
 template <class T>
 void resize_to_overwrite(std::vector<T>& values, std::size_t size) {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
-#ifdef __GLIBCXX__
+#if defined(__GLIBCXX__) && !defined(_GLIBCXX_DEBUG) && !defined(_GLIBCXX_SANITIZE_VECTOR)
   using Base = std::_Vector_base<T, std::allocator<T>>;
+  static_assert(std::is_base_of_v<Base, std::vector<T>>);
   values.reserve(size);
   Base& base = (Base&)values;  // NOLINT(google-readability-casting): the one cast that reaches a protected base
   base._M_impl._M_finish = base._M_impl._M_start + size;

@@ -226,6 +226,8 @@ Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* tri
 }
 
 Blocks format_device_ply(const Workspace& workspace, const DeviceMesh& mesh, bool double_coordinates) {
+  if (!mesh.normals.empty() && mesh.normals.size != mesh.vertices.size)
+    throw Error(ErrorCode::usage, fmt::format("{} normals for {} vertices", mesh.normals.size, mesh.vertices.size));
   const Parts parts(workspace);
   const VertexRow row{static_cast<std::size_t>(mesh.vertices.size), double_coordinates || !is_zero(mesh.origin),
                       !mesh.normals.empty()};

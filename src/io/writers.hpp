@@ -47,6 +47,7 @@ Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* tri
 
 /// The same of a mesh in the memory of a device, which is fetched block by block; its attributes are left out. Where
 /// the data are wrong, making a block throws.
+/// @throws Error usage if there are not as many normals as vertices
 Blocks format_device_ply(const Workspace& workspace, const DeviceMesh& mesh, bool double_coordinates);
 
 /// The same as ASCII PLY: a line per vertex and face, numbers in the fewest digits that read back equal.

@@ -84,6 +84,10 @@ TEST(DeviceMesh, IsNotWrittenWhereItIsWrong) {
   mesh = ball();
   mesh.origin[2] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(story(mesh), "the origin is not finite");
+  mesh = ball();
+  mesh.normals.pop_back();
+  EXPECT_EQ(test::story_of(ErrorCode::usage, [&] { write_mesh(folder.file("bad.ply"), workspace, in_place(mesh)); }),
+            "40961 normals for 40962 vertices");
   EXPECT_EQ(folder.file_count(), 0);
 }
 

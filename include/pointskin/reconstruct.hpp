@@ -241,7 +241,8 @@ class Reconstructor {
   void reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh);
 
   /// The same to a mesh in the memory of the workspace's device, from where write_mesh() takes it. With attributes, density
-  /// or weakness the device holds them beside the field, which takes more of its memory.
+  /// or weakness the device holds them beside the field, which takes more of its memory. The same bytes, once downloaded.
+  /// @throws Error as above
   DeviceMesh reconstruct_on_device(const Cloud& cloud, const Options& options = {});
 
   /// The same from points in the memory of the workspace's device to a mesh there: neither is copied. DevicePoints and

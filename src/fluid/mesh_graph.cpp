@@ -253,7 +253,7 @@ template <exec::Space Exec>
 bool encloses_volume(Exec& ex, int depth, const surface::Surface& mesh) {
   const auto six =
       exec::reduce<std::uint64_t>(ex, "fluid.volume", mesh.triangles.size(), volumes_of(depth, mesh), AddModulo{});
-  return static_cast<std::int64_t>(six) > 0;
+  return static_cast<std::int64_t>(six) > 6 * mesh.triangles.size();
 }
 
 template <exec::Space Exec>

@@ -36,7 +36,9 @@ template <exec::Space Exec>
 exec::Buffer<Vec3f> normals_of(Exec& ex, const Fans& fans, ArrayView<const Triangle> triangles,
                                ArrayView<const Vec3f> positions);
 
-/// True if a closed mesh encloses more than nothing, measured as below. O(triangles), one host round trip.
+/// True if a closed mesh encloses more than rounding alone can, measured as below: (1/16 cell)^3 for each triangle. A
+/// mesh of the extraction, with about two triangles a cell, has that where it is a thousandth of a cell thick.
+/// O(triangles), one host round trip.
 template <exec::Space Exec>
 bool encloses_volume(Exec& ex, int depth, const surface::Surface& mesh);
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Lets single calls of the program into the C library fail, one run a call, and looks at what is left.
 
-    inject_faults.py PROGRAM SHIM [--long] [--commands NAME...] [--kinds KIND...]
+    inject_faults.py PROGRAM SHIM [--long] [--commands NAME...] [--kinds KIND...] [--device cuda]
 
 Counts the calls of a run first. Then the n-th fails alone, and from the n-th on all fail; reads and writes are cut short
 as well. --long takes every n. Of allocations, of which each run makes tens of thousands, these are all of one command that
 does little more than read its arguments, and of every other command all that it makes beyond so many. Exit 1, and a line
-per finding.
+per finding. With --device cuda, which exits 77 where no GPU answers, the calls are those into its driver.
 """
 import argparse
 import collections
@@ -19,6 +19,7 @@ import runs
 FEW = {"once": 14, "from": 8}  # calls chosen of each command and kind where not all are taken
 MANY_FROM = 200
 ARGUMENTS_ONLY = "formats"
+SKIPPED = 77
 
 
 def chosen_calls(count, mode, everything, first):
@@ -46,20 +47,28 @@ def main():
     parser.add_argument("shim")
     parser.add_argument("--long", action="store_true")
     parser.add_argument("--commands", nargs="*")
-    parser.add_argument("--kinds", nargs="*", default=runs.KINDS, choices=runs.KINDS)
+    parser.add_argument("--kinds", nargs="*", choices=runs.ALL_KINDS)
+    parser.add_argument("--device")
     args = parser.parse_args()
+    commands = runs.chosen(args.commands)
+    if args.device:
+        commands = runs.on_device(commands, args.device)
+    kinds = args.kinds or (runs.DRIVER_KINDS if args.device else runs.KINDS)
     findings = collections.defaultdict(list)
     injected = 0
     with tempfile.TemporaryDirectory(prefix="pointskin-faults-") as root:
         bench = runs.Bench(args.program, args.shim, root)
+        if args.device and bench.run(commands[next(iter(commands))]).code == runs.NO_DEVICE:
+            print(f"no device {args.device} answers")
+            return SKIPPED
         of_arguments = bench.run(runs.COMMANDS[ARGUMENTS_ONLY]).counts["alloc"]
-        for name, one in runs.chosen(args.commands).items():
+        for name, one in commands.items():
             good = bench.run(one)
             problems = bench.judge(one, good, good)
             if good.code != 0 or problems:
                 raise SystemExit(f"{name}: without a fault: exit code {good.code}: {good.err} {problems}")
             first = 1 if name == ARGUMENTS_ONLY else of_arguments
-            faults = list(faults_of(good.counts, args.kinds, args.long, first))
+            faults = list(faults_of(good.counts, kinds, args.long, first))
             results = runs.in_parallel(faults, lambda fault: bench.run(one, fault))
             codes = collections.Counter()
             for fault, result in zip(faults, results):
@@ -68,7 +77,7 @@ def main():
                 for wrong in bench.judge(one, result, good):
                     variables = " ".join(f"{key}={value}" for key, value in fault.items())
                     findings[f"{name}: {wrong}"].append(f"{variables} {shlex.join(one.words)}")
-            told = " ".join(f"{kind}:{good.counts[kind]}" for kind in args.kinds)
+            told = " ".join(f"{kind}:{good.counts[kind]}" for kind in kinds)
             ends = ", ".join(f"{code}: {number}" for code, number in sorted(codes.items(), key=str))
             print(f"{name}: {len(faults)} runs with a fault; calls {told}; exit codes {ends}", flush=True)
     for finding, examples in findings.items():

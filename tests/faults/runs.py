@@ -13,8 +13,11 @@ import tempfile
 import time
 
 KINDS = ("alloc", "map", "thread", "open", "read", "write", "sync", "rename", "close", "stat", "mode")
+DRIVER_KINDS = ("device-alloc", "pinned", "launch", "copy", "wait")
+ALL_KINDS = (*KINDS, *DRIVER_KINDS)
 OLD = b"the old file\n"
 EXIT_CODES = {0, 2, 3, 4, 5, 6, 7, 8, 130}  # 1, an internal error, would be a bug
+NO_DEVICE = 7
 TIMES_OUT_AFTER_S = 120
 WRITTEN_BEFORE = re.compile(r"interrupted; (\d+) files? w(?:as|ere) written before")
 TEMPORARY = re.compile(r"\.(?P<output>.+)\.\d+-[0-9a-f]{16}\.tmp")
@@ -119,7 +122,7 @@ class Bench:
             for name in (*one.outputs, *one.reports):
                 (folder / name).write_bytes(OLD)
             state = pathlib.Path(f"{folder}.state")
-            state.write_bytes(bytes(8 * (len(KINDS) + 2)))
+            state.write_bytes(bytes(8 * (len(ALL_KINDS) + 2)))
             environment = dict(os.environ, LC_ALL="C", LD_PRELOAD=self.shim, FAULT_STATE=str(state), **(fault or {}))
             began = time.monotonic()
             words = [word.replace(str(self.inputs), str(inputs)) for word in self.words(one)] if inputs else self.words(one)
@@ -135,11 +138,11 @@ class Bench:
                 out, err = process.communicate()
                 code = "no end"
             seconds = time.monotonic() - began
-            numbers = struct.unpack(f"<{len(KINDS) + 2}Q", state.read_bytes())
+            numbers = struct.unpack(f"<{len(ALL_KINDS) + 2}Q", state.read_bytes())
             files = {path.name: path.read_bytes() for path in folder.iterdir()}
             if inputs:
                 out = out.replace(str(inputs).encode(), str(self.inputs).encode())
-            return Result(code, out, err.decode(errors="replace"), files, dict(zip(KINDS, numbers)), numbers[-2],
+            return Result(code, out, err.decode(errors="replace"), files, dict(zip(ALL_KINDS, numbers)), numbers[-2],
                           numbers[-1] != 0, seconds)
         finally:
             shutil.rmtree(folder, ignore_errors=True)
@@ -212,6 +215,15 @@ def in_parallel(jobs, work):
     """Runs work(job) for all jobs, as many at a time as there are processors."""
     with concurrent.futures.ThreadPoolExecutor(max(2, os.cpu_count() or 2)) as pool:
         return list(pool.map(work, jobs))
+
+
+# Commands that take --device; `bench` names devices in its own way.
+ON_DEVICES = ("reconstruct", "reconstruct-stdout", "orient", "boolean", "edit", "deform", "fluid", "fluid-simulate", "problems")
+
+
+def on_device(commands, device):
+    """Those of `commands` that take --device, with it."""
+    return {name: one._replace(words=(*one.words, "--device", device)) for name, one in commands.items() if name in ON_DEVICES}
 
 
 def chosen(names):

@@ -32,18 +32,22 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "calls.hpp"
+
 namespace {
 
-enum Kind { kAlloc, kMap, kThread, kOpen, kRead, kWrite, kSync, kRename, kClose, kStat, kMode, kKinds };
+using namespace faults;
 
 struct KindInfo {
   const char* name;
   int error;
 };
 
+/// Errors of the driver are a CUresult: out of memory, out of resources for a launch, unspecified launch failure.
 constexpr KindInfo kKindInfos[kKinds] = {{"alloc", ENOMEM}, {"map", ENOMEM},   {"thread", EAGAIN}, {"open", EACCES},
                                          {"read", EIO},     {"write", ENOSPC}, {"sync", EIO},      {"rename", EIO},
-                                         {"close", EIO},    {"stat", EACCES},  {"mode", EPERM}};
+                                         {"close", EIO},    {"stat", EACCES},  {"mode", EPERM},    {"device-alloc", 2},
+                                         {"pinned", 2},     {"launch", 701},   {"copy", 719},      {"wait", 719}};
 
 enum class Mode { once, from, shorten, truncate };
 
@@ -86,13 +90,6 @@ bool hits(Kind kind) {
   if (hit) ++counted->failed;
   if (hit && mode == Mode::truncate) cut();
   return hit && mode != Mode::truncate;
-}
-
-/// Counts a call. @returns true, with errno set, if it is to fail
-bool fails(Kind kind) {
-  if (!hits(kind) || mode == Mode::shorten) return false;
-  errno = error_number;
-  return true;
 }
 
 /// As fails(), and makes the call a short one in that mode.
@@ -142,6 +139,14 @@ int my_main(int argc, char** argv, char** environment) {
 bool has_mode(int flags) { return (flags & O_CREAT) != 0 || (flags & O_TMPFILE) == O_TMPFILE; }
 
 }  // namespace
+
+bool faults::fails(Kind kind) {
+  if (!hits(kind) || mode == Mode::shorten) return false;
+  errno = error_number;
+  return true;
+}
+
+int faults::error() { return error_number; }
 
 extern "C" {
 

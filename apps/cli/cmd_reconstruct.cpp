@@ -6,6 +6,7 @@
 
 #include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
+#include <pointskin/suggest_device.hpp>
 
 #include "args.hpp"
 #include "commands.hpp"
@@ -182,6 +183,13 @@ int choose_depth(const ReconstructArgs& args, const Cloud& cloud, const RunMemor
   return chosen.depth;
 }
 
+/// The device that is done first.
+Device choose_device(const ReconstructArgs& args, const Cloud& cloud, Options options) {
+  if (args.given.has("--width"))
+    options.depth = depth_for_width(cube_world(cloud, options, args.threads), args.width_world);
+  return suggest_device(cloud, options, args.threads);
+}
+
 /// Settles what depends on the points.
 void settle_options(const ReconstructArgs& args, const Cloud& cloud, const RunMemory& memory, Record& record) {
   Options& options = record.options;
@@ -200,11 +208,13 @@ int run(const ReconstructArgs& given) {
   record.options = library_options(args);
   parse_shift(args.shift);
   check_files(args);
-  record.device = args.chosen();
+  const bool open = args.leaves_device_open() && args.repeat == 0;  // repeated runs pay no start
+  if (!open) record.device = args.chosen();
   warn_about_options(args, record.options);
 
   record.options.envelope = read_envelope(args.envelope, args.threads);
   Cloud cloud = read_input(args, record);
+  if (open) record.device = choose_device(args, cloud, record.options);
   const bool counts = args.dry_run || record.options.max_memory_bytes > 0;
   const RunMemory memory =
       counts ? RunMemory(record.device, record.options, record.options.max_memory_bytes) : RunMemory();

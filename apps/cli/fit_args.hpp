@@ -17,8 +17,11 @@ struct DeviceArgs {
   std::string device = "auto";
   int threads = 0;
 
+  /// Of `auto`, the GPU where there is one: see leaves_device_open().
   /// @throws Error usage, device_unavailable
   [[nodiscard]] Device chosen() const;
+  /// With `auto` a command that knows its work may choose the device that is done first: suggest_device().
+  [[nodiscard]] bool leaves_device_open() const { return device == "auto"; }
 };
 
 /// How a field is solved for, and what is done with it then. The library's options, the envelope left out: see

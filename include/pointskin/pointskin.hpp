@@ -25,6 +25,7 @@
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/render.hpp>
 #include <pointskin/simulation.hpp>
+#include <pointskin/suggest_device.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/vertex_normals.hpp>
 #include <pointskin/workspace.hpp>

@@ -1,12 +1,8 @@
 // pointskin fluid: particles of a simulation, frame after frame, to meshes.
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -18,6 +14,7 @@
 #include <pointskin/io.hpp>
 
 #include "args.hpp"
+#include "at_once.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "file_plan.hpp"
@@ -150,8 +147,7 @@ class Sequence {
   [[nodiscard]] int frames_at_once() const {
     const auto left = static_cast<std::int64_t>(frames_.size()) - 1;
     if (device_.kind == DeviceKind::cuda || left < 2) return 1;
-    const int threads = args_.threads > 0 ? args_.threads : static_cast<int>(std::thread::hardware_concurrency());
-    const std::int64_t wanted = args_.at_once > 0 ? args_.at_once : std::max(1, threads);
+    const std::int64_t wanted = args_.at_once > 0 ? args_.at_once : thread_count(args_.threads);
     const std::int64_t memory =
         args_.max_memory.empty() ? device_.available_bytes() / 5 * 4 : parse_bytes(args_.max_memory, "--max-memory");
     // Frames grow: half as much again, and the file, the particles and the mesh on the host.
@@ -162,33 +158,13 @@ class Sequence {
   }
 
   void run_together() {
-    const int threads = args_.threads > 0 ? args_.threads : static_cast<int>(std::thread::hardware_concurrency());
-    const Device share = Device::cpu(std::max(1, threads / at_once_));
-    std::vector<std::exception_ptr> failures(frames_.size());
-    std::atomic<std::size_t> next{1};
-    const auto work = [&] {
-      const InterruptScope scope;
-      std::size_t i = 0;
-      try {
-        Worker worker(args_, options_, share);
-        for (i = next++; i < frames_.size(); i = next++) {
-          worker.run(frames_[i]);
-          done(frames_[i]);
-        }
-      } catch (...) {
-        failures[std::min(i, frames_.size() - 1)] = std::current_exception();
-        next = frames_.size();
-      }
-    };
-    std::vector<std::thread> workers;
-    try {
-      for (int w = 1; w < at_once_; ++w) workers.emplace_back(work);
-    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): those that could be made do all the work
-    }
-    work();
-    for (std::thread& worker : workers) worker.join();
-    for (const std::exception_ptr& failure : failures)
-      if (failure) std::rethrow_exception(failure);
+    const Device share = Device::cpu(std::max(1, thread_count(args_.threads) / at_once_));
+    run_at_once(1, frames_.size(), at_once_, [&] {
+      return [this, worker = std::make_unique<Worker>(args_, options_, share)](std::size_t i) {
+        worker->run(frames_[i]);
+        done(frames_[i]);
+      };
+    });
   }
 
   const FluidArgs& args_;

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,7 +25,9 @@ bool use_colour() {
   return stderr_is_terminal() && term != nullptr && std::string_view(term) != "dumb";
 }
 
-/// The program is one run of one command: what it has said is its own.
+thread_local WarningsOf* about = nullptr;
+
+/// The program is one run of one command: what it has said is its own. Only its first thread adds to this.
 std::vector<std::string>& warnings() {
   static std::vector<std::string> all;
   return all;
@@ -58,13 +61,18 @@ void print_out_of_memory() noexcept {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kStory.data(), kStory.size());
 }
 
+WarningsOf::WarningsOf(std::string file) : file_(std::move(file)) { about = this; }
+WarningsOf::~WarningsOf() { about = nullptr; }
+
 void print_warning(const std::string& story) {
   const std::string line = one_line(story);
-  warnings().push_back(line);
-  print_note("pointskin: warning: " + line);
+  std::vector<std::string>& told = about != nullptr ? about->stories_ : warnings();
+  told.push_back(line);
+  const bool names_file = about == nullptr || line.starts_with(about->file_ + ":");
+  print_note("pointskin: warning: " + (names_file ? "" : about->file_ + ": ") + line);
 }
 
-const std::vector<std::string>& printed_warnings() { return warnings(); }
+const std::vector<std::string>& printed_warnings() { return about != nullptr ? about->stories_ : warnings(); }
 
 void print_note(const std::string& text) { write_line(without_controls(text)); }
 

@@ -17,10 +17,26 @@ void print_error(const std::string& story);
 /// The error that is told without taking memory.
 void print_out_of_memory() noexcept;
 
-/// Prints "pointskin: warning: `story`" as one line on stderr, and remembers it.
+/// Prints "pointskin: warning: `story`" as one line on stderr, and remembers it. From any thread.
 void print_warning(const std::string& story);
 
-/// The stories of all warnings printed so far, for reports.
+/// While it lives, warnings of the thread that made it are about one of several files, and are printed with its name
+/// before them. Not to be nested.
+class WarningsOf {
+ public:
+  explicit WarningsOf(std::string file);
+  ~WarningsOf();
+  WarningsOf(const WarningsOf&) = delete;
+  WarningsOf& operator=(const WarningsOf&) = delete;
+
+ private:
+  friend void print_warning(const std::string& story);
+  friend const std::vector<std::string>& printed_warnings();
+  std::string file_;
+  std::vector<std::string> stories_;
+};
+
+/// The stories of all warnings printed so far, for reports; those of the file, where this thread has a WarningsOf.
 const std::vector<std::string>& printed_warnings();
 
 /// Prints `text` and a line break on stderr, control characters but line breaks and tabs as "?".

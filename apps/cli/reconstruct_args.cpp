@@ -13,9 +13,12 @@ namespace {
 OptionGroup file_options(ReconstructArgs& args) {
   OptionRow ascii = ascii_row(args.ascii);
   ascii.report = {"ascii", 63, R"({"description": "PLY was written as text"})"};
-  return {"Files",
-          {clouds_row(args.inputs, {}), output_row(args.output), report_row(args.report), ascii,
-           overwrite_row(args.overwrite), shift_row(args.shift)}};
+  OptionGroup group = {"Files",
+                       {clouds_row(args.inputs, {}), output_row(args.output), report_row(args.report), ascii,
+                        overwrite_row(args.overwrite), shift_row(args.shift)}};
+  if (!args.problems)
+    group.rows.insert(group.rows.begin() + 3, option("--each", "a mesh of every IN; {} in OUT: its name", &args.each));
+  return group;
 }
 
 OptionGroup surface_options(ReconstructArgs& args) {

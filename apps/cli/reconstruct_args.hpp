@@ -23,6 +23,7 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   NormalArgs normals;
   double width_world = 0;  ///< > 0: chooses the depth
   int repeat = 0;
+  bool each = false;       ///< a mesh of every input, not one of all
   bool problems = false;   ///< list regions whose topology is doubtful; a mesh is not needed then
   bool overwrite = false;  ///< results may replace inputs
   bool ascii = false;      ///< PLY as text

@@ -5,12 +5,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <pointskin/cloud.hpp>
 #include <pointskin/device.hpp>
 #include <pointskin/device_data.hpp>
+#include <pointskin/error.hpp>
 #include <pointskin/export.hpp>
 #include <pointskin/field.hpp>
 #include <pointskin/mesh.hpp>
@@ -214,6 +216,13 @@ struct RunReport {
   std::int64_t device_peak_bytes = 0;  ///< largest sum of buffers held at once in the space that ran the work
 };
 
+/// One of many reconstructions.
+struct Reconstruction {
+  Mesh mesh;  ///< empty with an error
+  RunReport report;
+  std::optional<Error> error;  ///< why there is no mesh
+};
+
 /// Fits fields to points and makes meshes of them, run after run, in a workspace. Not safe for two threads at once;
 /// several reconstructors may live side by side, each with a workspace of its own or, on one thread, with a shared one.
 ///
@@ -249,6 +258,15 @@ class Reconstructor {
   /// DeviceMesh say who owns what and until when. Where normals are to be repaired or estimated the points go to the
   /// host and back. The same bytes as from the host.
   DeviceMesh reconstruct(const DevicePoints& points, const Options& options = {});
+
+  /// Many clouds, each for itself: element i is what reconstruct() makes of clouds[i], the same bytes. On the CPU as many
+  /// are worked on at once as there are threads, the largest first; a cloud so large that the others would have to wait for
+  /// it, and any of more than a million points, has all threads to itself. On a GPU one comes after the other.
+  /// An Error that one cloud causes is kept with it and ends none of the others.
+  /// @param options  of every cloud. Options::max_memory_bytes counts for each by itself. Options::progress is told the
+  ///                 share of the clouds that are done, in the phase "many", by one thread at a time but not always the same
+  /// @throws Error usage (an option out of range), interrupted
+  std::vector<Reconstruction> reconstruct_many(std::span<const Cloud> clouds, const Options& options = {});
 
   /// Fits the implicit function (SolveOptions::field; by default screened Poisson, Kazhdan & Hoppe 2013) on the octree
   /// of Zhou et al. 2010.

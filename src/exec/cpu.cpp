@@ -156,12 +156,26 @@ struct Cpu::Workers {
     if (count == 1 || !threads_are_limited()) return;
     static std::atomic<int> made_already{1};
     if (made_already >= count) return;
-    make_threads_now(*arena, count);
+    make_threads_now(ready_arena(), count);
     made_already = count;
   }
-  ~Workers() { IdleArenas::instance().put_back(threads, std::move(arena)); }
+  ~Workers() {
+    if (arena) IdleArenas::instance().put_back(threads, std::move(arena));
+  }
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
+
+  /// Whoever uses an arena of oneTBB 2021 whose beginning has once failed, for want of memory, waits forever.
+  tbb::task_arena& ready_arena() {
+    if (!arena) arena = std::make_unique<tbb::task_arena>(threads);
+    try {
+      arena->initialize();
+    } catch (...) {
+      arena.reset();
+      throw;
+    }
+    return *arena;
+  }
 
   int threads;
   Arena arena;
@@ -177,7 +191,7 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
     return;
   }
   with_threads([&] {
-    workers_->arena->execute([&] {
+    workers_->ready_arena().execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::int64_t>(0, count, 1),
           [&](const tbb::blocked_range<std::int64_t>& range) {

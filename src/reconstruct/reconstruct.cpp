@@ -3,11 +3,14 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "reconstruct/engine.hpp"
+#include "reconstruct/many.hpp"
 #include "reconstruct/run.hpp"
 #include "reconstruct/suggest_depth.hpp"
 
@@ -62,6 +65,15 @@ class PSK_HIDDEN Reconstructor::Impl {
     return run.extract(run.solve(input, false));
   }
 
+  std::vector<Reconstruction> reconstruct_many(std::span<const Cloud> clouds, const Options& options,
+                                               Reconstructor& self) {
+    validate(options);
+    const Device& device = workspace().device();
+    if (device.kind != DeviceKind::cpu) return detail::reconstruct_in_turn(clouds, options, self);
+    if (!crew_) crew_ = std::make_unique<detail::Crew>(device.threads);
+    return crew_->reconstruct(clouds, options, self);
+  }
+
   [[nodiscard]] const RunReport& report() const { return report_; }
   [[nodiscard]] const Workspace& workspace() const { return engine_.workspace(); }
 
@@ -89,6 +101,7 @@ class PSK_HIDDEN Reconstructor::Impl {
 
   detail::Engine engine_;
   RunReport report_;
+  std::unique_ptr<detail::Crew> crew_;  // made when it is first needed
 };
 
 Reconstructor::Reconstructor(Workspace workspace) : impl_(std::make_unique<Impl>(std::move(workspace))) {}
@@ -107,6 +120,9 @@ Mesh Reconstructor::reconstruct(const Cloud& cloud, const SolveOptions& solve, c
 }
 void Reconstructor::reconstruct(const Cloud& cloud, const Options& options, Mesh& mesh) {
   impl_->reconstruct(cloud, options, mesh);
+}
+std::vector<Reconstruction> Reconstructor::reconstruct_many(std::span<const Cloud> clouds, const Options& options) {
+  return impl_->reconstruct_many(clouds, options, *this);
 }
 DeviceMesh Reconstructor::reconstruct_on_device(const Cloud& cloud, const Options& options) {
   return impl_->reconstruct(cloud, options);

@@ -72,6 +72,8 @@ def command(words, outputs="", reports="", **more):
 COMMANDS = {
     "reconstruct": command("reconstruct @a.ply -o out.ply --report report.json --depth 4 --threads 2", "out.ply", "report.json"),
     "reconstruct-stdout": command("reconstruct @a.ply -o - --depth 4 --threads 2 -q"),
+    "reconstruct-each": command("reconstruct @a.ply @b.ply --each -o out_{}.ply --depth 4 --threads 2", "out_a.ply out_b.ply",
+                                sequence=True),
     "orient": command("orient @bare.xyz -o out.ply --threads 2", "out.ply"),
     "boolean": command("boolean @a.ply @b.ply --op union -o out.obj --cloud points.ply --depth 4 --threads 2", "out.obj points.ply"),
     "edit": command("edit @a.ply --script @edits.json -o out.ply --save saved.json --report report.json --depth 4 --threads 2",
@@ -218,7 +220,7 @@ def in_parallel(jobs, work):
 
 
 # Commands that take --device; `bench` names devices in its own way.
-ON_DEVICES = ("reconstruct", "reconstruct-stdout", "orient", "boolean", "edit", "deform", "fluid", "fluid-simulate", "problems")
+ON_DEVICES = ("reconstruct", "reconstruct-stdout", "reconstruct-each", "orient", "boolean", "edit", "deform", "fluid", "fluid-simulate", "problems")
 
 
 def on_device(commands, device):

@@ -54,7 +54,8 @@ int run(const ReconstructArgs& given) {
     check_each(args);
   else
     check_files(args);
-  if (!args.leaves_device_open()) (void)args.chosen();
+  // What is wrong is said before files are read; no driver is asked where the CPU may do.
+  (void)(args.leaves_device_open() ? parse_device("cpu", args.threads) : args.chosen());
   warn_about_options(args, options);
   if (args.each) return reconstruct_each(args);
 

@@ -239,10 +239,12 @@ Trials behind(const Args& first, Trials trials, const std::set<std::string>& who
   return trials;
 }
 
-const std::set<std::string> kOutputs = {"--output", "--out", "--overwrite", "--script", "--op", "--frames"};
+const std::set<std::string> kOutputs = {"--output", "--out", "--overwrite", "--each", "--script", "--op", "--frames"};
 
 TEST_F(HelpOptions, OfReconstruct) {
-  try_all("reconstruct", {"reconstruct", "scan.ply"}, behind({"-o", "out.ply"}, reconstruct_trials(), kOutputs));
+  Trials trials = reconstruct_trials();
+  trials.insert({"--each", {{"--each", "-o", "{}_mesh.ply"}, {"-o", "out.ply"}}});
+  try_all("reconstruct", {"reconstruct", "scan.ply"}, behind({"-o", "out.ply"}, trials, kOutputs));
 }
 
 TEST_F(HelpOptions, OfProblems) {

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
-#include <system_error>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -13,39 +13,46 @@
 
 namespace pointskin::cli {
 
-/// As many threads as were asked for, or as the machine has.
+/// As many threads as were asked for, or as the machine has; at most 256 unless the machine has more cores.
 inline int thread_count(int asked) {
-  return std::max(1, asked > 0 ? asked : static_cast<int>(std::thread::hardware_concurrency()));
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return asked > 0 ? std::min(asked, std::max(256, cores)) : cores;
 }
 
 /// Calls worker(i) once for every i in [begin, end), in order but `at_once` at a time. Each thread has a worker of its own,
 /// of make_worker().
-/// @throws what the call with the lowest i threw; no others begin then
+/// @throws what the call with the lowest i threw, or else make_worker(); no others begin then
 template <class MakeWorker>
 void run_at_once(std::size_t begin, std::size_t end, int at_once, const MakeWorker& make_worker) {
   if (begin >= end) return;
-  std::vector<std::exception_ptr> failures(end);
   std::atomic<std::size_t> next{begin};
+  std::mutex mutex;  // guards the failure
+  std::exception_ptr failure;
+  std::size_t failed = end;
   const auto work = [&] {
     const InterruptScope scope;
-    std::size_t i = begin;
+    std::size_t i = end;
     try {
       auto worker = make_worker();
       for (i = next++; i < end; i = next++) worker(i);
     } catch (...) {
-      failures[std::min(i, end - 1)] = std::current_exception();
+      const std::lock_guard lock(mutex);
+      if (!failure || i < failed) {
+        failure = std::current_exception();
+        failed = i;
+      }
       next = end;
     }
   };
   std::vector<std::thread> helpers;
   try {
+    helpers.reserve(static_cast<std::size_t>(std::max(0, at_once - 1)));
     for (int h = 1; h < at_once; ++h) helpers.emplace_back(work);
-  } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): those that could be made do all the work
+  } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): those that could be made do all the work
   }
   work();
   for (std::thread& helper : helpers) helper.join();
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace pointskin::cli

@@ -14,6 +14,7 @@
 #include "reconstruct_each.hpp"
 #include "reconstruct_run.hpp"
 #include "report.hpp"
+#include "stopwatch.hpp"
 #include "summary_words.hpp"
 #include "unused_options.hpp"
 
@@ -46,6 +47,7 @@ void warn_about_options(const ReconstructArgs& args, const Options& options) {
 }
 
 int run(const ReconstructArgs& given) {
+  const Stopwatch watch;
   ReconstructArgs args = given;
   args.inputs.insert(args.inputs.end(), args.named_inputs.begin(), args.named_inputs.end());
   const Options options = library_options(args);
@@ -60,7 +62,7 @@ int run(const ReconstructArgs& given) {
   if (args.each) return reconstruct_each(args);
 
   std::unique_ptr<Reconstructor> reconstructor;
-  const Record record = run_reconstruction(args, reconstructor);
+  const Record record = run_reconstruction(args, watch, reconstructor);
   if (args.dry_run) return 0;
   if (args.problems && args.output == "-") print_note(problem_table(record.problems));
   if (args.problems && args.output != "-") write_stdout(problem_table(record.problems) + "\n");

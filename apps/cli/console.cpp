@@ -27,7 +27,8 @@ bool use_colour() {
 
 thread_local WarningsOf* about = nullptr;
 
-/// The program is one run of one command: what it has said is its own. Only its first thread adds to this.
+/// The program is one run of one command: what it has said is its own. A thread without a WarningsOf that prints while
+/// others do sees to it that they take turns.
 std::vector<std::string>& warnings() {
   static std::vector<std::string> all;
   return all;
@@ -61,7 +62,7 @@ void print_out_of_memory() noexcept {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kStory.data(), kStory.size());
 }
 
-WarningsOf::WarningsOf(std::string file) : file_(std::move(file)) { about = this; }
+WarningsOf::WarningsOf(std::string file) : file_(std::move(file)), stories_(warnings()) { about = this; }
 WarningsOf::~WarningsOf() { about = nullptr; }
 
 void print_warning(const std::string& story) {

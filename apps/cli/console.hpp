@@ -17,11 +17,12 @@ void print_error(const std::string& story);
 /// The error that is told without taking memory.
 void print_out_of_memory() noexcept;
 
-/// Prints "pointskin: warning: `story`" as one line on stderr, and remembers it. From any thread.
+/// Prints "pointskin: warning: `story`" as one line on stderr, and remembers it. Threads with a WarningsOf may do so at
+/// once, others in turn.
 void print_warning(const std::string& story);
 
 /// While it lives, warnings of the thread that made it are about one of several files, and are printed with its name
-/// before them. Not to be nested.
+/// before them. Those about all files, which came before, are among its stories. Not to be nested.
 class WarningsOf {
  public:
   explicit WarningsOf(std::string file);

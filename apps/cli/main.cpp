@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <pointskin/error.hpp>
+#include <pointskin/unfinished_files.hpp>
 
 #include "args.hpp"
 #include "command_line.hpp"
@@ -72,7 +73,10 @@ void remember_and_throw() {
 /// Where an exception leaves a function that may throw none, as there are in libraries, or cannot be thrown for want of
 /// memory, nothing can be unwound: tell what was the matter, and end.
 [[noreturn]] void end_at_once() {
-  if (memory_ran_out.load()) _exit(without_memory());
+  if (memory_ran_out.load()) {
+    remove_unfinished_files();  // other threads may be writing
+    _exit(without_memory());
+  }
   library_terminate();
   std::abort();
 }

@@ -1,6 +1,7 @@
 // The command line of `pointskin reconstruct`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,11 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   NormalArgs normals;
   double width_world = 0;  ///< > 0: chooses the depth
   int repeat = 0;
-  bool each = false;       ///< a mesh of every input, not one of all
-  bool problems = false;   ///< list regions whose topology is doubtful; a mesh is not needed then
-  bool overwrite = false;  ///< results may replace inputs
-  bool ascii = false;      ///< PLY as text
+  bool each = false;                ///< a mesh of every input, not one of all
+  std::optional<DeviceArgs> asked;  ///< with --each: what was given, of which a run has a share
+  bool problems = false;            ///< list regions whose topology is doubtful; a mesh is not needed then
+  bool overwrite = false;           ///< results may replace inputs
+  bool ascii = false;               ///< PLY as text
   ProblemPictureArgs pictures;
   std::string poisson_recon_data;  ///< pull factor of --data, or kDataAlone; empty: not given
   GivenOptions given;

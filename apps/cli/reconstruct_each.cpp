@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -65,6 +67,19 @@ void refuse_with_each(bool given, const char* option) {
 void needs_name(const std::string& output, const char* option) {
   if (!scene::is_pattern(output))
     throw_usage(fmt::format("{}: {} needs {{}}, where the input's name goes, because of --each", option, output));
+  if (scene::is_pattern(scene::with_number(output, "")))
+    throw_usage(fmt::format("{}: {} has {{}} twice", option, output));
+}
+
+/// Inputs in different folders may have the same name.
+void check_distinct_names(const std::vector<OneOfMany>& clouds) {
+  std::map<std::string, const OneOfMany*> by_output;
+  for (const OneOfMany& cloud : clouds) {
+    const auto [other, is_new] = by_output.emplace(cloud.output, &cloud);
+    if (!is_new)
+      throw_usage(
+          fmt::format("-o: {} would be the mesh of both {} and {}", cloud.output, other->second->input, cloud.input));
+  }
 }
 
 /// The arguments of a run of its own.
@@ -73,9 +88,9 @@ ReconstructArgs args_of(const ReconstructArgs& all, const OneOfMany& cloud, cons
   args.inputs = {cloud.input};
   args.output = cloud.output;
   args.report = cloud.report;
-  args.envelope.clear();  // has been read for all
+  args.asked = all;
   args.device = device.kind == DeviceKind::cpu ? "cpu" : fmt::format("cuda:{}", device.index);
-  args.threads = device.threads;
+  if (device.kind == DeviceKind::cpu) args.threads = device.threads;
   args.quiet = true;
   return args;
 }
@@ -91,7 +106,7 @@ class Worker {
     const Stopwatch watch;
     const WarningsOf warnings(cloud.input);
     try {
-      const Record record = run_reconstruction(args_of(args_, cloud, device_), reconstructor_);
+      const Record record = run_reconstruction(args_of(args_, cloud, device_), watch, reconstructor_);
       cloud.points = record.run.points;
       cloud.triangles = record.mesh.triangles;
       cloud.needs = record.run.device_peak_bytes + 64 * (record.points + cloud.triangles) + (std::int64_t{1} << 20);
@@ -100,6 +115,10 @@ class Worker {
       cloud.error = error;
     } catch (const std::bad_alloc&) {
       cloud.error = Error(ErrorCode::over_limit, "the system has no memory left");
+    } catch (const std::filesystem::filesystem_error& error) {
+      cloud.error = Error(ErrorCode::invalid_input, "cannot be found, " + error.code().message());
+    } catch (const std::system_error& error) {
+      cloud.error = Error(ErrorCode::over_limit, "the system refuses, " + error.code().message());
     }
     if (cloud.error) cloud.needs = 20 * static_cast<std::int64_t>(cloud.bytes);
     cloud.ms = watch.ms();
@@ -143,15 +162,16 @@ class Batch {
 
   void done(const OneOfMany& cloud) {
     const std::lock_guard lock(mutex_);
+    if (cloud.error) line_.clear();
     if (cloud.error) print_note("pointskin: warning: " + one_line(story_of(cloud)));
     ++done_;
     line_.update({"clouds", static_cast<double>(done_) / static_cast<double>(order_.size())});
   }
 
-  /// A GPU works on one after the other, and so do runs whose memory is to be watched.
+  /// A GPU works on one after the other.
   [[nodiscard]] int clouds_at_once() const {
     const auto left = static_cast<std::int64_t>(order_.size()) - 1;
-    if (device_.kind == DeviceKind::cuda || args_.options.max_memory_bytes > 0 || left < 2) return 1;
+    if (device_.kind == DeviceKind::cuda || left < 2) return 1;
     const std::int64_t memory = device_.available_bytes() / 5 * 4;
     const std::int64_t fits = memory / std::max<std::int64_t>(order_.front()->needs, std::int64_t{1} << 20);
     return static_cast<int>(std::clamp<std::int64_t>(std::min(fits, left), 1, thread_count(args_.threads)));
@@ -192,6 +212,7 @@ void check_each(const ReconstructArgs& args) {
   refuse_with_each(args.dry_run, "--dry-run");
   refuse_with_each(args.given.has("--repeat"), "--repeat");
   refuse_with_each(args.verbose, "--verbose");
+  refuse_with_each(args.options.max_memory_bytes > 0, "--max-memory");
   if (args.output.empty()) throw_usage("no output; name it with -o, {} where the input's name goes");
   needs_name(args.output, "-o");
   if (!args.report.empty()) needs_name(args.report, "--report");
@@ -205,9 +226,14 @@ void check_each(const ReconstructArgs& args) {
     plan.outputs.push_back({"-o", cloud.output, OutputKind::file, frame});
     if (!cloud.report.empty()) plan.outputs.push_back({"--report", cloud.report, OutputKind::report, frame});
   }
+  check_distinct_names(clouds);
   check_files(plan);
-  check_mesh_output(clouds.front().output);
-  if (!args.report.empty()) check_replaceable(clouds.front().report);
+  std::set<std::filesystem::path> folders;
+  for (const OneOfMany& cloud : clouds) {
+    if (folders.insert(std::filesystem::path(cloud.output).parent_path()).second) check_mesh_output(cloud.output);
+    if (!cloud.report.empty() && folders.insert(std::filesystem::path(cloud.report).parent_path()).second)
+      check_replaceable(cloud.report);
+  }
 }
 
 int reconstruct_each(const ReconstructArgs& given) {
@@ -219,7 +245,6 @@ int reconstruct_each(const ReconstructArgs& given) {
   on_interrupt(OnInterrupt::remember);
   Batch batch(args, device, clouds);
   batch.run();
-  throw_if_interrupted();
   throw_if_failed(clouds);
   if (args.quiet) return 0;
   std::int64_t points = 0, triangles = 0;

@@ -79,6 +79,7 @@ void print_estimate(const ReconstructArgs& args, const Cloud& cloud, const Recor
 /// The options of the report, after the run.
 nlohmann::ordered_json shown_options(const ReconstructArgs& args, const Record& record) {
   ReconstructArgs shown = args;
+  if (args.asked) static_cast<DeviceArgs&>(shown) = *args.asked;
   shown.options = record.options;
   if (record.options.trim == Options::kAutomaticTrim) shown.options.trim = record.run.trim.quantile;
   shown.normals.options = record.options.normal_estimation;
@@ -131,10 +132,7 @@ void write_output(const ReconstructArgs& args, const RunMesh& mesh, Record& reco
   if (args.output.empty()) return;
   const Stopwatch watch;
   mesh.write(args.output, {.ascii = args.ascii, .threads = args.threads});
-  if (args.each)
-    frame_was_written();
-  else
-    file_was_written();
+  file_was_written();
   if (!args.each && args.report.empty() && args.pictures.folder.empty()) ignore_interrupts();
   record.write_ms = watch.ms();
 }
@@ -155,6 +153,7 @@ int choose_depth(const ReconstructArgs& args, const Cloud& cloud, const RunMemor
 
 /// The device that is done first.
 Device choose_device(const ReconstructArgs& args, const Cloud& cloud, Options options) {
+  if (!built_with_cuda()) return Device::cpu(args.threads);
   if (args.given.has("--width"))
     options.depth = depth_for_width(cube_world(cloud, options, args.threads), args.width_world);
   return suggest_device(cloud, options, args.threads);
@@ -175,15 +174,16 @@ std::string mesh_file(const ReconstructArgs& args) {
   return args.output.empty() && (args.dry_run || args.given.has("--repeat")) ? "-" : args.output;
 }
 
-Record run_reconstruction(const ReconstructArgs& args, std::unique_ptr<Reconstructor>& reconstructor) {
-  const Stopwatch watch;
+Record run_reconstruction(const ReconstructArgs& args, const Stopwatch& watch,
+                          std::unique_ptr<Reconstructor>& reconstructor) {
   Record record;
   if (args.problems) record.command = "problems";
   record.options = library_options(args);
-  const bool open = args.leaves_device_open() && args.repeat == 0;  // repeated runs pay no start
+  // Repeated runs pay no start; what a limit counts depends on the device.
+  const bool open = args.leaves_device_open() && args.repeat == 0 && record.options.max_memory_bytes == 0;
   if (!open) record.device = args.chosen();
 
-  if (!args.envelope.empty()) record.options.envelope = read_envelope(args.envelope, args.threads);
+  if (record.options.envelope == nullptr) record.options.envelope = read_envelope(args.envelope, args.threads);
   Cloud cloud = read_input(args, record);
   if (open) record.device = choose_device(args, cloud, record.options);
   const bool counts = args.dry_run || record.options.max_memory_bytes > 0;
@@ -218,6 +218,7 @@ Record run_reconstruction(const ReconstructArgs& args, std::unique_ptr<Reconstru
     record.shape = args.report.empty() ? shape_words(mesh.glance(args.threads)) : shape_words(record.mesh);
   if (!args.report.empty()) record.shown_options = shown_options(args, record);
   if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(record)));
+  if (!args.report.empty() && args.each) file_was_written();
   return record;
 }
 

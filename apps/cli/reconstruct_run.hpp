@@ -8,6 +8,7 @@
 
 #include "reconstruct_args.hpp"
 #include "report.hpp"
+#include "stopwatch.hpp"
 
 namespace pointskin::cli {
 
@@ -15,8 +16,10 @@ namespace pointskin::cli {
 std::string mesh_file(const ReconstructArgs& args);
 
 /// Reads, reconstructs and writes what `args` name, the report included. Names have been checked.
+/// @param watch          since the run began
 /// @param reconstructor  is used, or made where there is none
 /// @throws Error
-Record run_reconstruction(const ReconstructArgs& args, std::unique_ptr<Reconstructor>& reconstructor);
+Record run_reconstruction(const ReconstructArgs& args, const Stopwatch& watch,
+                          std::unique_ptr<Reconstructor>& reconstructor);
 
 }  // namespace pointskin::cli

@@ -26,6 +26,7 @@
 #include <pointskin/render.hpp>
 #include <pointskin/simulation.hpp>
 #include <pointskin/suggest_device.hpp>
+#include <pointskin/unfinished_files.hpp>
 #include <pointskin/vector.hpp>
 #include <pointskin/vertex_normals.hpp>
 #include <pointskin/workspace.hpp>

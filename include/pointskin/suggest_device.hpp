@@ -15,8 +15,8 @@ namespace pointskin PSK_EXPORT {
 /// octree's nodes; the choice costs little where times are alike. What options but `depth` cost does not count.
 /// @param options  those of the run; a depth of Options::kAutomaticDepth is guessed at
 /// @param threads  of the CPU, also where it is chosen; 0: all
-/// @returns the CPU in a build without CUDA and where no GPU answers
-/// @throws Error usage (an option out of range), invalid_input (points that are not finite, or hardly apart)
+/// @returns the CPU in a build without CUDA, where no GPU answers, and for points that no run can use
+/// @throws Error usage (an option out of range)
 /// Looks at 2^18 points at most: O(1) beyond, milliseconds. Deterministic for one machine, whatever the threads do.
 Device suggest_device(const Cloud& cloud, const Options& options = {}, int threads = 0);
 

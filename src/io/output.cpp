@@ -2,6 +2,7 @@
 
 #include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
+#include <pointskin/unfinished_files.hpp>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <climits>
@@ -85,12 +87,27 @@ std::uint64_t random_number() {
   return number;
 }
 
+/// Names of temporary files that are there now; null: a free place.
+std::array<std::atomic<const char*>, 256> unfinished_files{};
+static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler must not take a lock");
+
+/// @returns the place where the name is remembered; null if all are taken
+std::atomic<const char*>* remember_unfinished(const char* name) noexcept {
+  for (std::atomic<const char*>& place : unfinished_files) {
+    const char* nothing = nullptr;
+    if (place.compare_exchange_strong(nothing, name)) return &place;
+  }
+  return nullptr;
+}
+
 /// A new file next to `target` that vanishes unless it is renamed.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& path, const std::string& target) : path_(path), fd_(create(target)) {}
+  TemporaryFile(const std::string& path, const std::string& target)
+      : path_(path), fd_(create(target)), place_(remember_unfinished(name_.c_str())) {}
   ~TemporaryFile() {
     if (!name_.empty()) ::unlink(name_.c_str());
+    if (place_ != nullptr) place_->store(nullptr);
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -111,6 +128,8 @@ class TemporaryFile {
     exec::throw_if_cancelled();
     if (fd_.close() != 0 && errno != EINTR) fail_to_write(path_, errno);
     if (::rename(name_.c_str(), target.c_str()) != 0) fail_to_write(path_, errno);
+    if (place_ != nullptr) place_->store(nullptr);
+    place_ = nullptr;
     name_.clear();
   }
 
@@ -135,6 +154,7 @@ class TemporaryFile {
   const std::string& path_;
   std::string name_;
   FileDescriptor fd_;
+  std::atomic<const char*>* place_;
 };
 
 /// Runs the writer; what the system refuses becomes an Error about `path`.
@@ -193,6 +213,11 @@ void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks) 
 }  // namespace pointskin::io
 
 namespace pointskin {
+
+void remove_unfinished_files() noexcept {
+  for (const std::atomic<const char*>& place : io::unfinished_files)
+    if (const char* const name = place.load(); name != nullptr) ::unlink(name);
+}
 
 void write_file_atomically(const std::string& path, const std::string& bytes) {
   exec::Cpu ex(1);

@@ -1,5 +1,7 @@
 #include "reconstruct/run_seconds.hpp"
 
+#include <pointskin/error.hpp>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -26,12 +28,15 @@ struct PointKey {
   }
 };
 
-/// Every n-th point, all of a small cloud.
+/// Every n-th point, all of a small cloud, but those that are not finite.
 std::vector<Vec3f> sample_of(const Cloud& cloud) {
   const std::int64_t step = (cloud.size() + kSample - 1) / kSample;
   std::vector<Vec3f> sample;
   sample.reserve(static_cast<std::size_t>(cloud.size() / step + 1));
-  for (std::int64_t i = 0; i < cloud.size(); i += step) sample.push_back(cloud.positions[static_cast<std::size_t>(i)]);
+  for (std::int64_t i = 0; i < cloud.size(); i += step) {
+    const Vec3f& p = cloud.positions[static_cast<std::size_t>(i)];
+    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) sample.push_back(p);
+  }
   return sample;
 }
 
@@ -58,6 +63,7 @@ class SurfaceCells {
     constexpr std::int64_t kFilled = 8;  // points a cell by which hardly any cell of the surface is missed
     const std::vector<Vec3f> sample = sample_of(cloud);
     const ArrayView<const Vec3f> positions{sample.data(), static_cast<std::int64_t>(sample.size())};
+    if (positions.empty()) throw Error(ErrorCode::empty_result, "no point is finite");
     auto keys = exec::make_buffer<std::uint64_t>(ex, positions.size);
     const octree::Frame frame = frame_of(ex, positions, options);
     for_each(ex, "suggest.keys", keys.size(), PointKey{frame, positions, keys.view()});
@@ -96,7 +102,7 @@ struct Times {
   double per_node;   ///< s
 };
 
-/// Of 61 runs from file to file, in docs/performance.md: three generated shapes of 10^4 to 10^7 points and a scan, depths
+/// Of 61 runs from file to file (docs/decisions/0053): three generated shapes of 10^4 to 10^7 points and a scan, depths
 /// 6 to 10. The CPU is that of the H200's host.
 constexpr Times kCpu{0.026, 0.083e-6, 0.056e-6};
 constexpr double kCpuThreads = 16;

@@ -19,7 +19,7 @@ struct RunWork {
 /// Guesses at the nodes from a sample of the points: the cells of a level that the sample fills well tell the area of
 /// the surface, and that how many nodes a finer level has, fewer where points lie farther apart than its cells.
 /// Within a third of RunReport::nodes for surfaces whose points are about equally dense.
-/// @throws Error as octree::frame_around
+/// @throws Error as octree::frame_around; empty_result if no point of the sample is finite
 /// O(sample), at most 2^18 points.
 RunWork guess_work(exec::Cpu& ex, const Cloud& cloud, const Options& options);
 

@@ -1,4 +1,8 @@
+#include <pointskin/error.hpp>
 #include <pointskin/suggest_device.hpp>
+
+#include <algorithm>
+#include <thread>
 
 #include "exec/cpu.hpp"
 #include "reconstruct/run_seconds.hpp"
@@ -10,9 +14,15 @@ Device suggest_device(const Cloud& cloud, const Options& options, int threads) {
   const Device cpu = Device::cpu(threads);
   if (!built_with_cuda() || cloud.size() == 0) return cpu;
   exec::Cpu ex(threads);
-  const detail::RunWork work = detail::guess_work(ex, cloud, options);
-  const bool cpu_is_first = detail::seconds_on_cpu(work, ex.threads()) <= detail::seconds_on_gpu(work);
-  return cpu_is_first ? cpu : Device::automatic(threads);
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  try {
+    const detail::RunWork work = detail::guess_work(ex, cloud, options);
+    const double on_cpu = detail::seconds_on_cpu(work, std::min(ex.threads(), cores));
+    return on_cpu <= detail::seconds_on_gpu(work) ? cpu : Device::automatic(threads);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::interrupted) throw;
+    return cpu;  // the run will tell what is wrong with the points
+  }
 }
 
 }  // namespace pointskin

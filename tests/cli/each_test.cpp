@@ -52,13 +52,6 @@ TEST_F(Each, MakesTheMeshesOfOneByOne) {
   }
 }
 
-TEST_F(Each, MemoryThatIsWatchedIsTakenOneAfterTheOther) {
-  const Result result = pointskin_run(words({"--max-memory", "2G", "--threads", "3"}));
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("1 at once"), std::string::npos) << result.err;
-  expect_as_one_by_one();
-}
-
 TEST_F(Each, WritesAReportOfEveryCloudWithItsOwnWarnings) {
   std::vector<Sample> samples = sphere(400);
   samples[3].normal = {};
@@ -96,7 +89,10 @@ TEST_F(Each, RefusesWhatHasNoMeaning) {
   refuse({"reconstruct", "--each", "-o", out}, "no input");
   refuse({"reconstruct", cloud(0), "--each"}, "no output");
   refuse({"reconstruct", "-", "--each", "-o", out}, "stdin");
-  refuse({"reconstruct", cloud(0), cloud(0), "--each", "-o", out}, "the same file twice");
+  refuse({"reconstruct", cloud(0), cloud(0), "--each", "-o", out}, "would be the mesh of both");
+  refuse({"reconstruct", cloud(0), "--each", "-o", folder_ / "{}_{}.ply"}, "twice");
+  expect_error(pointskin_run({"reconstruct", cloud(0), "--each", "-o", folder_ / "none/{}.ply"}), 8, "none");
+  refuse({"reconstruct", cloud(0), "--each", "-o", out, "--max-memory", "1G"}, "--each and --max-memory");
   refuse({"reconstruct", cloud(0), "--each", "-o", folder_ / "{}.ply"}, "would overwrite the input");
   refuse({"reconstruct", cloud(0), "--each", "-o", folder_ / "m_{}.txt"}, "m_c0.txt");
   for (const char* other : {"--dry-run", "--verbose"})

@@ -6,14 +6,41 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <thread>
 
 namespace pointskin::test {
 
-/// Does `work` in a forked child. @returns how it ended: "well", "wrong", "hung", or by which signal
+/// True if every thread of this process but the calling one sleeps. Those of oneTBB look for work for a while after the
+/// last of it, longer where others want the processors, and take locks on their way to sleep.
+inline bool others_sleep() {
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    if (task.path().filename() == std::to_string(::gettid())) continue;
+    std::ifstream file(task.path() / "stat");
+    std::string line;
+    std::getline(file, line);
+    const std::size_t name_ends = line.rfind(')');
+    if (name_ends != std::string::npos && line.size() > name_ends + 2 && line[name_ends + 2] != 'S') return false;
+  }
+  return true;
+}
+
+/// Waits until they have slept for a while: a process must not fork while one of its threads works.
+inline void wait_for_others() {
+  constexpr int kLooks = 5;
+  int asleep = 0;
+  for (int look = 0; look < 5000 && asleep < kLooks; ++look) {
+    asleep = others_sleep() ? asleep + 1 : 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+/// Does `work` in a forked child, once all other threads sleep. @returns how it ended: "well", "wrong", "hung", or by which signal
 inline std::string end_of_child(const std::function<bool()>& work) {
+  wait_for_others();
   const ::pid_t child = ::fork();
   if (child < 0) return "no child";
   if (child == 0) {

@@ -263,7 +263,9 @@ class Reconstructor {
   /// are worked on at once as there are threads, the largest first; a cloud so large that the others would have to wait for
   /// it, and any of more than a million points, has all threads to itself. On a GPU one comes after the other.
   /// An Error that one cloud causes is kept with it and ends none of the others. Threads of the CPU have workspaces of
-  /// their own, which Workspace::limit_memory does not bind; they keep their memory for the next call.
+  /// their own, which Workspace::limit_memory does not bind; they keep their memory for the next call, and together they
+  /// take that of as many runs. The bytes do not depend on the number of threads, but for Options::kAutomaticDepth where
+  /// memory is short. Time as of the runs, shared by the threads.
   /// @param options  of every cloud. Options::max_memory_bytes counts for each by itself. Options::progress is told the
   ///                 share of the clouds that are done, in the phase "many", by one thread at a time but not always the same
   /// @throws Error usage (an option out of range), interrupted

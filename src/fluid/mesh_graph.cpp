@@ -255,8 +255,8 @@ bool encloses_volume(Exec& ex, int depth, const surface::Surface& mesh) {
       exec::reduce<std::uint64_t>(ex, "fluid.volume", mesh.triangles.size(), volumes_of(depth, mesh), AddModulo{});
   // (1/16 cell)^3 in quanta, which are coarser than that at the deepest levels.
   const double of_triangle = std::ldexp(1.0, 3 * (depth_of_quanta(depth) - depth - 4));
-  return static_cast<std::int64_t>(six) > 0 && static_cast<double>(static_cast<std::int64_t>(six)) >
-                                                   6 * of_triangle * static_cast<double>(mesh.triangles.size());
+  return static_cast<double>(static_cast<std::int64_t>(six)) >
+         6 * of_triangle * static_cast<double>(mesh.triangles.size());
 }
 
 template <exec::Space Exec>

@@ -7,6 +7,7 @@
 
 #include "cli/files.hpp"
 #include "cli/program.hpp"
+#include "cli/schema.hpp"
 
 namespace pointskin::test {
 namespace {
@@ -65,6 +66,27 @@ TEST_F(Each, WritesAReportOfEveryCloudWithItsOwnWarnings) {
     EXPECT_EQ(report["input"]["points"], i == 2 ? 400 : 200 + 150 * i);
     EXPECT_EQ(report["warnings"].size(), i == 2 ? 1 : 0) << report["warnings"];
   }
+}
+
+TEST_F(Each, AnEnvelopeIsForAllAndReportsSayWhatWasGiven) {
+  const std::string hull = folder_ / "hull.ply";
+  write_file(hull, cube_mesh_ply(2));
+  const Result result =
+      pointskin_run({"reconstruct", cloud(0), cloud(1), "--each", "-o", folder_ / "m_{}.obj", "--report",
+                     folder_ / "r_{}.json", "--envelope", hull, "--depth", "4", "--threads", "2"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto schema = nlohmann::json::parse(read_file(POINTSKIN_SOURCE_DIR "/docs/report.schema.json"));
+  for (const char* name : {"r_c0.json", "r_c1.json"}) {
+    const auto report = nlohmann::json::parse(read_file(folder_ / name));
+    EXPECT_TRUE(schema_violations(schema, report).empty()) << testing::PrintToString(schema_violations(schema, report));
+    EXPECT_EQ(report["envelope"]["file"], hull);
+    EXPECT_EQ(report["options"]["threads"], 2);
+    EXPECT_EQ(report["options"]["device"], "auto");
+  }
+  ASSERT_EQ(
+      pointskin_run({"reconstruct", cloud(1), "-o", folder_ / "one.obj", "--envelope", hull, "--depth", "4"}).exit_code,
+      0);
+  EXPECT_EQ(read_file(folder_ / "m_c1.obj"), read_file(folder_ / "one.obj"));
 }
 
 TEST_F(Each, GoesOnWhereOneFailsAndEndsWithTheFirstOnesCode) {

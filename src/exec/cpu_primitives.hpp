@@ -52,6 +52,8 @@ void for_each(Cpu& ex, const char* /*label*/, std::int64_t n, const F& f) {
   });
 }
 
+inline int lanes_apart(const Cpu& /*ex*/, std::int64_t /*n*/) { return 1; }
+
 /// The same: on a CPU an index has its thread to itself.
 template <class F>
 void for_each_apart(Cpu& ex, const char* label, std::int64_t n, const F& f) {
@@ -74,7 +76,8 @@ void for_each_by_lanes(Cpu& ex, const char* label, std::int64_t n, const F& f) {
 /// one after another.
 template <class F>
 void sweep(Cpu& ex, const char* label, int rounds, std::int64_t n, const F& f) {
-  for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});
+  for (int round = 0; round < rounds; ++round)
+    for_each(ex, label, indices_of_round(f, round, static_cast<int>(n)), SweepRound<F>{f, round});
 }
 
 /// out[0] = the combination of at most kReduceTail values, in the order of exec::reduce.

@@ -3,7 +3,9 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
+#include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
@@ -178,7 +180,9 @@ Cuda::Cuda(int index, void* stream, bool owns_stream)
              "reading the GPU's properties");
   pool_ = std::make_shared<CudaPool>(index, static_cast<cudaStream_t>(stream),
                                      owns_stream);  // owns the stream: buffers may outlive this object
-  cuda_check(cudaMallocHost(&staging_, kStagingBytes), "allocating page-locked memory");
+  cuda_check(cudaMallocHost(&staging_, kStagingBytes + sizeof(std::uint32_t)), "allocating page-locked memory");
+  arrived_ = reinterpret_cast<std::uint32_t*>(static_cast<char*>(staging_) + kStagingBytes);
+  *arrived_ = ticket_;
   for (void*& mark : marks_) {
     cudaEvent_t event = nullptr;
     cuda_check(cudaEventCreate(&event), "creating a timer");
@@ -209,6 +213,17 @@ double Cuda::milliseconds_between(Mark from, Mark to) const {
 
 void Cuda::synchronize() {
   cuda_check(cudaStreamSynchronize(static_cast<cudaStream_t>(stream_)), "waiting for the GPU");
+}
+
+void Cuda::wait_for(std::uint32_t ticket) {
+  constexpr auto kSoon = std::chrono::microseconds(200);  // a longer wait may cost a few microseconds more, and no core
+  const auto begin = std::chrono::steady_clock::now();
+  while (*arrived_ != ticket) {
+    if (std::chrono::steady_clock::now() - begin < kSoon) continue;
+    synchronize();
+    break;
+  }
+  std::atomic_thread_fence(std::memory_order_acquire);
 }
 
 template <class Copy>

@@ -65,6 +65,13 @@ class Cuda {
   [[nodiscard]] void* staging() const noexcept { return staging_; }
   static constexpr std::int64_t kStagingBytes = 4096;
 
+  /// What a kernel that fills staging() writes to `arrived()` when all is there, and the wait for it: it sees the ticket sooner than
+  /// the driver would say that the stream's work is done.
+  [[nodiscard]] std::uint32_t next_ticket() noexcept { return ++ticket_; }
+  [[nodiscard]] volatile std::uint32_t* arrived() const noexcept { return arrived_; }
+  /// @throws Error device_unavailable if some of the work before failed
+  void wait_for(std::uint32_t ticket);
+
  private:
   Cuda(int index, void* stream, bool owns_stream);
 
@@ -76,6 +83,8 @@ class Cuda {
   int multiprocessors_ = 0;
   void* stream_ = nullptr;
   void* staging_ = nullptr;
+  volatile std::uint32_t* arrived_ = nullptr;  // behind the staging memory
+  std::uint32_t ticket_ = 0;
   void* marks_[kMarks] = {};  // cudaEvent_t
   class Lanes;
   std::unique_ptr<Lanes> lanes_;

@@ -52,13 +52,18 @@ struct OneOfLanes {
   }
 };
 
-/// for_each for work that takes another path at every index. Threads of a warp that part wait for each other, so as few
-/// indices share a warp as the GPU has room for.
+/// Threads for each of n indices that take other paths, which wait for each other in a warp: as many as the GPU has room for.
+inline int lanes_apart(const Cuda& ex, std::int64_t n) {
+  constexpr std::int64_t kRoom = 1024;  // threads a multiprocessor
+  int lanes = kWarp;
+  while (lanes > 1 && n * lanes > kRoom * ex.multiprocessors()) lanes /= 2;
+  return lanes;
+}
+
+/// for_each for work that takes another path at every index.
 template <class F>
 void for_each_apart(Cuda& ex, const char* label, std::int64_t n, const F& f) {
-  constexpr std::int64_t kRoom = 1024;  // threads a multiprocessor
-  unsigned lanes = kWarp;
-  while (lanes > 1 && n * lanes > kRoom * ex.multiprocessors()) lanes /= 2;
+  const auto lanes = static_cast<unsigned>(lanes_apart(ex, n));
   for_each(ex, label, n * lanes, OneOfLanes<F>{f, lanes});
 }
 
@@ -146,8 +151,34 @@ __global__ void __launch_bounds__(kSweepThreads) sweep_kernel(int rounds, int n,
   const bool takes_part = i < n && f.takes_part(i);
   const auto prepared = f.prepare(takes_part ? i : 0);
   for (int round = 0; round < rounds; ++round) {
+    if (round > 0) cooperative_groups::this_grid().sync();
     if (takes_part) f(round, i, prepared);
-    cooperative_groups::this_grid().sync();
+  }
+}
+
+/// The same where rounds have indices of their own. Those that one block has threads for are done by the first block alone: it
+/// waits for its own threads in a fraction of the time that all blocks take to wait for each other.
+template <HasRoundsOfItsOwn F>
+__global__ void __launch_bounds__(kSweepThreads) sweep_rounds_kernel(int rounds, const F f) {
+  const auto thread = static_cast<int>(threadIdx.x);
+  const auto block = static_cast<int>(blockIdx.x);
+  const int spread = (thread / kWarp * static_cast<int>(gridDim.x) + block) * kWarp + thread % kWarp;
+  const auto all = static_cast<int>(gridDim.x * blockDim.x);
+  bool was_alone = false;
+  for (int round = 0; round < rounds; ++round) {
+    const int n = f.indices(round);
+    const bool is_alone = n <= static_cast<int>(blockDim.x);
+    if (round > 0) {
+      if (is_alone && was_alone)
+        __syncthreads();
+      else
+        cooperative_groups::this_grid().sync();
+    }
+    was_alone = is_alone;
+    if (is_alone && block > 0) continue;
+    const int step = is_alone ? static_cast<int>(blockDim.x) : all;
+    for (int i = is_alone ? thread : spread; i < n; i += step)
+      if (f.takes_part(i)) f(round, i, f.prepare(i));
   }
 }
 
@@ -157,21 +188,26 @@ inline std::int64_t sweep_threads(const Cuda& ex, std::int64_t n) {
   return kWarp * ((warps + ex.multiprocessors() - 1) / ex.multiprocessors());
 }
 
+/// Threads of a block that does small rounds alone: enough for three complete levels, and few enough that the others are spread.
+inline constexpr std::int64_t kFewestAlone = 256;
+
 /// True if a sweep over n items takes one launch.
 inline bool is_one_launch(const Cuda& ex, std::int64_t n) {
   return n <= std::int64_t{ex.multiprocessors()} * kSweepThreads;
 }
 
-/// Calls f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i) and every round in [0, rounds), rounds
-/// one after another. Asynchronous. What fits onto the GPU at one block a multiprocessor takes one cooperative launch,
+/// Calls f(round, i, f.prepare(i)) for every i in [0, n), or [0, f.indices(round)), with f.takes_part(i) and every round in
+/// [0, rounds), rounds one after another. Asynchronous. What fits onto the GPU at one block a multiprocessor takes one cooperative launch,
 /// with a barrier between rounds and one call of prepare, whose result stays in registers.
 template <class F>
 void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) {
   if (n <= 0 || rounds <= 0) return;
-  const std::int64_t threads = sweep_threads(ex, n);
+  std::int64_t threads = sweep_threads(ex, n);
+  if constexpr (HasRoundsOfItsOwn<F>) threads = threads < kFewestAlone ? kFewestAlone : threads;
   const std::int64_t blocks = (n + threads - 1) / threads;
   if (!is_one_launch(ex, n)) {
-    for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});
+    for (int round = 0; round < rounds; ++round)
+      for_each(ex, label, indices_of_round(f, round, static_cast<int>(n)), SweepRound<F>{f, round});
     return;
   }
   cudaLaunchAttribute cooperative{};
@@ -183,7 +219,10 @@ void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) 
   config.stream = stream_of(ex);
   config.attrs = &cooperative;
   config.numAttrs = 1;
-  cuda_check(cudaLaunchKernelEx(&config, sweep_kernel<F>, rounds, static_cast<int>(n), f), label);
+  if constexpr (HasRoundsOfItsOwn<F>)
+    cuda_check(cudaLaunchKernelEx(&config, sweep_rounds_kernel<F>, rounds, f), label);
+  else
+    cuda_check(cudaLaunchKernelEx(&config, sweep_kernel<F>, rounds, static_cast<int>(n), f), label);
 }
 
 inline constexpr int kTailThreads = 128;
@@ -274,9 +313,13 @@ void copy(Cuda& ex, ArrayView<const T> from, ArrayView<T> to) {
              "copying on the GPU");
 }
 
+/// One warp. The ticket is written last.
 template <class T>
-__global__ void copy_kernel(const T* from, T* to, int n) {
+__global__ void copy_kernel(const T* from, T* to, int n, volatile std::uint32_t* arrived, std::uint32_t ticket) {
   for (int i = static_cast<int>(threadIdx.x); i < n; i += kWarp) to[i] = from[i];
+  __threadfence_system();
+  __syncwarp();
+  if (threadIdx.x == 0) *arrived = ticket;
 }
 
 /// Waits until the data is there. Little is written by a kernel into page-locked memory: the copy engine would take
@@ -286,15 +329,17 @@ void copy_to_host(Cuda& ex, ArrayView<const T> from, T* to) {
   if (from.size == 0) return;
   const std::size_t bytes = static_cast<std::size_t>(from.size) * sizeof(T);
   if (bytes >= Cuda::kManyBytes) return ex.fetch(from.data, to, bytes);
-  const bool staged = bytes <= static_cast<std::size_t>(Cuda::kStagingBytes);
-  if (staged) {
-    copy_kernel<<<1, kWarp, 0, stream_of(ex)>>>(from.data, static_cast<T*>(ex.staging()), static_cast<int>(from.size));
+  if (bytes <= static_cast<std::size_t>(Cuda::kStagingBytes)) {
+    const std::uint32_t ticket = ex.next_ticket();
+    copy_kernel<<<1, kWarp, 0, stream_of(ex)>>>(from.data, static_cast<T*>(ex.staging()), static_cast<int>(from.size),
+                                                ex.arrived(), ticket);
     cuda_check(cudaGetLastError(), "copying to the host");
-  } else {
-    cuda_check(cudaMemcpyAsync(to, from.data, bytes, cudaMemcpyDeviceToHost, stream_of(ex)), "copying to the host");
+    ex.wait_for(ticket);
+    std::memcpy(to, ex.staging(), bytes);
+    return;
   }
+  cuda_check(cudaMemcpyAsync(to, from.data, bytes, cudaMemcpyDeviceToHost, stream_of(ex)), "copying to the host");
   ex.synchronize();
-  if (staged) std::memcpy(to, ex.staging(), bytes);
 }
 
 /// Returns when `from` may be reused.

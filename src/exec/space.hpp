@@ -4,6 +4,7 @@
 //
 //   for_each(ex, "label", n, f)                f(i) for every i in [0, n)
 //   for_each_apart(ex, "label", n, f)          the same, for f that takes another path for every i
+//   lanes_apart(ex, n)                         threads that for_each_apart gives an index
 //   for_each_long(ex, "label", n, f)           the same, for few indices that take long
 //   for_each_by_lanes(ex, "label", n, f)       f.finish(i, s) for every i in [0, n), s the sum of f.part(i, lane) over
 //                                              F::kLanes lanes in the order of lanes.hpp

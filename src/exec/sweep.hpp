@@ -14,6 +14,21 @@ struct SweepAll {
   PSK_HD static Nothing prepare(int /*i*/) { return {}; }
 };
 
+/// A sweep's function whose rounds have different numbers of indices: f.indices(round) of them.
+template <class F>
+concept HasRoundsOfItsOwn = requires(const F& f) {
+  f.indices(0);
+};
+
+/// Indices of a round of a sweep over n.
+template <class F>
+PSK_HD int indices_of_round(const F& f, int round, int n) {
+  if constexpr (HasRoundsOfItsOwn<F>)
+    return f.indices(round);
+  else
+    return n;
+}
+
 /// One round of a sweep: what for_each calls.
 template <class F>
 struct SweepRound {

@@ -17,13 +17,17 @@ namespace pointskin::octree {
 /// above: the mean of the 1, 2, 4 or 8 corners around it. Exact for hat functions, whose spaces are nested.
 template <class T>
 PSK_HD T prolonged(const LevelView& level_above, const T* above, std::int32_t parent, int slot) {
+  // All reads of a kind are asked for before any is waited for, and what is not there adds 0.
+  std::int32_t corner[8];
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s)
+    corner[s] = (s & ~slot) != 0 ? -1 : level_above.neighbour(parent, slot_x(s), slot_y(s), slot_z(s));
+  T value[8];  // corners of cells have all that are asked for; other nodes are never read
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) value[s] = corner[s] < 0 ? T{} : above[corner[s]];
   T sum{};
   PSK_UNROLL
-  for (int s = 0; s < 8; ++s) {
-    if ((s & ~slot) != 0) continue;
-    const std::int32_t corner = level_above.neighbour(parent, slot_x(s), slot_y(s), slot_z(s));
-    if (corner >= 0) sum += above[corner];  // corners of cells have all; other nodes are never read
-  }
+  for (int s = 0; s < 8; ++s) sum += value[s];
   return sum * (1.0F / static_cast<float>(1 << count_bits(static_cast<std::uint64_t>(slot))));
 }
 
@@ -32,16 +36,19 @@ PSK_HD T prolonged(const LevelView& level_above, const T* above, std::int32_t pa
 /// @param values  anything that has the value of finer node i at [i]
 template <class Values>
 PSK_HD auto restricted(const LevelView& level, const LevelView& below, const Values& values, std::int32_t n) {
-  std::decay_t<decltype(values[std::int64_t{0}])> sum{};
+  using Value = std::decay_t<decltype(values[std::int64_t{0}])>;
+  // All reads of a kind are asked for before any is waited for, and what is not there adds 0.
+  std::int32_t node[8];
   PSK_UNROLL
-  for (int s = 0; s < 8; ++s) {  // the brick below node n - s holds finer corners -2 s, -2 s + 1 along each axis
-    const int x = slot_x(s);
-    const int y = slot_y(s);
-    const int z = slot_z(s);
-    const std::int32_t node = level.neighbour(n, -x, -y, -z);
-    const std::int32_t brick = node < 0 ? -1 : level.child_brick[node];
-    if (brick < 0 || brick >= below.bricks) continue;
-    const std::int64_t first = std::int64_t{8} * brick;
+  for (int s = 0; s < 8; ++s) node[s] = level.neighbour(n, -slot_x(s), -slot_y(s), -slot_z(s));
+  std::int32_t brick[8];  // below node n - s: holds the finer corners -2 s, -2 s + 1 along each axis
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) brick[s] = node[s] < 0 ? -1 : level.child_brick[node[s]];
+  Value sum{};
+  PSK_UNROLL
+  for (int s = 0; s < 8; ++s) {
+    const bool exists = brick[s] >= 0 && brick[s] < below.bricks;
+    const std::int64_t first = std::int64_t{8} * brick[s];
     // Along an axis, the node's own brick gives offsets 0 and 1, the lower brick only offset -1 (its slot 1).
     PSK_UNROLL
     for (int i = 0; i < 2; ++i) {
@@ -49,12 +56,10 @@ PSK_HD auto restricted(const LevelView& level, const LevelView& below, const Val
       for (int j = 0; j < 2; ++j) {
         PSK_UNROLL
         for (int k = 0; k < 2; ++k) {
-          if (i < x || j < y || k < z) continue;
+          if (i < slot_x(s) || j < slot_y(s) || k < slot_z(s)) continue;
           const int distance = (i != 0) + (j != 0) + (k != 0);
-          sum += values[first + slot_of(i, j, k)] * (distance == 0   ? 1.0F
-                                                     : distance == 1 ? 0.5F
-                                                     : distance == 2 ? 0.25F
-                                                                     : 0.125F);
+          const Value value = exists ? values[first + slot_of(i, j, k)] : Value{};
+          sum += value * (distance == 0 ? 1.0F : distance == 1 ? 0.5F : distance == 2 ? 0.25F : 0.125F);
         }
       }
     }
@@ -92,9 +97,11 @@ struct Leaf {
   std::int32_t cell = 0;
 };
 
-/// Descends from the root to level `last` or to the leaf above it. O(depth).
+/// Descends from the complete levels, whose cells come in Morton order, to level `last` or to the leaf above it. O(depth).
 PSK_HD inline Leaf locate(const OctreeView& tree, std::uint64_t point_key, int last) {
-  Leaf leaf;
+  const int shallower = last < tree.depth ? last : tree.depth;
+  Leaf leaf{shallower < kCompleteDepth ? shallower : kCompleteDepth, 0};
+  leaf.cell = static_cast<std::int32_t>(cell_key(point_key, leaf.depth));
   while (leaf.depth < last && tree.is_split(leaf.depth, leaf.cell)) {
     const std::int32_t brick = tree.levels[leaf.depth].child_brick[leaf.cell];
     ++leaf.depth;

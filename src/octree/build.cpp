@@ -33,6 +33,16 @@ struct PointKey {
   }
 };
 
+/// The same, and the index.
+struct KeyAndIndex {
+  PointKey key;
+  ArrayView<std::int32_t> indices;
+  PSK_HD void operator()(std::int64_t i) const {
+    key(i);
+    indices[i] = static_cast<std::int32_t>(i);
+  }
+};
+
 /// Puts points sorted by the upper bits of their keys into the order of whole keys and, where those are equal, of the
 /// tie break. Points whose upper bits agree are few: each counts those that belong before it.
 struct SettleRuns {
@@ -83,8 +93,8 @@ bool sort_by_upper_bits(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<co
   constexpr int kKeyBits = 3 * kPointBits;
   const std::int64_t n = positions.size;
   auto keys = exec::make_buffer<std::uint64_t>(ex, n);
-  exec::Buffer<std::int32_t> order = exec::iota(ex, n);
-  for_each(ex, "octree.keys", n, PointKey{positions, keys.view()});
+  auto order = exec::make_buffer<std::int32_t>(ex, n);
+  for_each(ex, "octree.keys", n, KeyAndIndex{{positions, keys.view()}, order.view()});
   sort_pairs(ex, "octree.sort", keys, order, kKeyBits, low_bits);
   sorted = {exec::make_buffer<std::uint64_t>(ex, n), exec::make_buffer<std::int32_t>(ex, n)};
   auto too_long = exec::make_buffer<std::uint32_t>(ex, 1);
@@ -411,12 +421,17 @@ void assign_points(Exec& ex, OctreeData& tree, ArrayView<const std::uint64_t> po
 template <exec::Space Exec>
 SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break) {
   constexpr int kKeyBits = 3 * kPointBits;
-  constexpr int kSettledBits =
-      15;  // of 63: points within 2^-16 of the cube are few, and two passes of the sort are saved
+  // Points within 2^-13 of the cube are few where there are not many points, and within 2^-16 nearly always: three or two passes of the
+  // sort are saved.
+  constexpr std::int64_t kNotMany = std::int64_t{1} << 20;
+  constexpr int kFewerPasses = 23;
+  constexpr int kFewPasses = 15;
   const std::int64_t n = positions.size;
   SortedPoints sorted;
-  for (const int low_bits : {kSettledBits, 0})
+  for (const int low_bits : {kFewerPasses, kFewPasses, 0}) {
+    if (low_bits == kFewerPasses && n > kNotMany) continue;
     if (sort_by_upper_bits(ex, positions, tie_break, low_bits, sorted)) return sorted;
+  }
 
   // Many points share a key: sort by the tie break first, then, stably, by key.
   sorted = {};

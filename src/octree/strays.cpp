@@ -13,6 +13,7 @@
 #include "core/stray_limit.hpp"
 #include "exec/this_space.hpp"
 #include "octree/bounding_box.hpp"
+#include "octree/extent.hpp"
 
 namespace pointskin::octree {
 namespace {
@@ -29,25 +30,12 @@ struct BoxOfLane {
   }
 };
 
-/// The box of all points, and the part of space that the boxes of all lanes have in common: along every axis, each lane
-/// has a point at or beyond either end. The ends are in wrong order where the lanes are apart.
-struct Extent {
-  Bounds all, inner;
-};
 struct ExtentOfLane {
   ArrayView<const Vec3f> positions;
   std::int64_t lanes;
   ArrayView<Extent> out;
   PSK_HD void operator()(std::int64_t lane) const {
-    const Bounds box = exec::combine_lane(BoxOf{positions}, JoinBoxes{}, positions.size, lanes, lane);
-    out[lane] = {box, box};
-  }
-};
-struct JoinExtents {
-  static constexpr bool kAnyOrder = true;
-  PSK_HD Extent operator()(const Extent& a, const Extent& b) const {
-    return {JoinBoxes{}(a.all, b.all),
-            {JoinBoxes::upper_of(a.inner.lower, b.inner.lower), JoinBoxes::lower_of(a.inner.upper, b.inner.upper)}};
+    out[lane] = extent_of_lane(exec::combine_lane(BoxOf{positions}, JoinBoxes{}, positions.size, lanes, lane));
   }
 };
 
@@ -119,7 +107,11 @@ Candidates find_candidates(Exec& ex, ArrayView<const Vec3f> positions, const Bou
 template <exec::Space Exec>
 StrayPoints find_strays(Exec& ex, ArrayView<const Vec3f> positions) {
   if (positions.empty()) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
-  const Extent extent = measure_extent(ex, positions);
+  return find_strays_in(ex, positions, measure_extent(ex, positions));
+}
+
+template <exec::Space Exec>
+StrayPoints find_strays_in(Exec& ex, ArrayView<const Vec3f> positions, const Extent& extent) {
   const std::int64_t limit = stray_limit(positions.size);
   const bool countable = positions.size <= std::numeric_limits<std::int32_t>::max();
   if (limit == 0 || !countable || !may_have_strays(extent.all, extent.inner)) return {{}, {}, extent.all};
@@ -146,6 +138,7 @@ exec::Buffer<std::int32_t> without_strays(Exec& ex, std::int64_t n, const StrayP
 }
 
 PSK_INSTANTIATE(find_strays);
+PSK_INSTANTIATE(find_strays_in);
 PSK_INSTANTIATE(find_outside);
 PSK_INSTANTIATE(without_strays);
 

@@ -32,6 +32,13 @@ struct StrayPoints {
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(indices.size()); }
 };
 
+/// What tells of most clouds that no point is a stray: the box of all points, and the part of space that the boxes of all lanes
+/// (exec/reduce_order.hpp) have in common. Along every axis, each lane has a point at or beyond either end; the ends are in wrong
+/// order where the lanes are apart.
+struct Extent {
+  Bounds all, inner;
+};
+
 /// Finds the strays of `positions`, at most stray_limit(n) of them (core/stray_limit.hpp).
 /// @param positions  shape (n), finite
 /// @throws Error empty_result if there are no points
@@ -39,6 +46,10 @@ struct StrayPoints {
 /// that can rule out, O(n) twice more, up to 8 n bytes of scratch and four waits.
 template <exec::Space Exec>
 StrayPoints find_strays(Exec& ex, ArrayView<const Vec3f> positions);
+
+/// The same where the extent of the points is known (octree/extent.hpp): without that reduction and its wait.
+template <exec::Space Exec>
+StrayPoints find_strays_in(Exec& ex, ArrayView<const Vec3f> positions, const Extent& extent);
 
 /// The points outside of a cube, as strays: those that turned out to belong to no surface, of points around a core that do.
 /// Of the places, the first kMostReported are the farthest from the core; the others are in no order.

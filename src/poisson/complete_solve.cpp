@@ -135,21 +135,29 @@ class Planner {
 
   void relax(int level, bool of_correction, int iterations, double lower) {
     Chebyshev chebyshev(lower);
-    for (int i = 0; i < iterations; ++i) {
-      add(CompleteStep::relax, level, of_correction, chebyshev.next());
-      now(level, of_correction) ^= 1;
-    }
+    for (int i = 0; i < iterations; ++i) relax_once(level, of_correction, chebyshev);
+  }
+  void relax_once(int level, bool of_correction, Chebyshev& chebyshev) {
+    add(CompleteStep::relax, level, of_correction, chebyshev.next());
+    now(level, of_correction) ^= 1;
+  }
+
+  /// A correction of the level below: its system, and iterations from 0.
+  void begin_correction(int level, int iterations, double lower) {
+    Chebyshev chebyshev(lower);
+    correction_[level] = 0;
+    add(CompleteStep::restrict_below, level, true, chebyshev.next());
+    correction_[level] = 1;
+    for (int i = 1; i < iterations; ++i) relax_once(level, true, chebyshev);
   }
 
   void correct(int level, bool of_correction, const ChebyshevStep& over_cycles) {
     const int above = level - 1;
     add(CompleteStep::find_residual, level, of_correction);
-    correction_[above] = 0;
-    add(CompleteStep::restrict_below, above, true);
     if (above <= kBottom) {
-      relax(above, true, kBottomIterations, kBottomLower);
+      begin_correction(above, kBottomIterations, kBottomLower);
     } else {
-      relax(above, true, kSmoothing, kSmoothingLower);
+      begin_correction(above, kSmoothing, kSmoothingLower);
       correct(above, true, {});
       relax(above, true, kSmoothing, kSmoothingLower);
     }

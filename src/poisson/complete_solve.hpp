@@ -25,17 +25,18 @@ inline constexpr int kFirstIterations = 3;
 /// One thing that is done at all corners of a level, for its field or for the correction of the level below.
 struct CompleteStep {
   enum Task : std::uint8_t {
-    start,           ///< the field starts as the interpolation of the level above, or as poisson/previous.hpp has it
-    relax,           ///< one Chebyshev step, from one of the two arrays into the other
-    find_residual,   ///< of the field or the correction
-    restrict_below,  ///< the residual of the level below becomes the system of a correction, which starts at 0
+    start,          ///< the field starts as the interpolation of the level above, or as poisson/previous.hpp has it
+    relax,          ///< one Chebyshev step, from one of the two arrays into the other
+    find_residual,  ///< of the field or the correction
+    restrict_below,  ///< the residual of the level below becomes the system of a correction, which starts at 0 and takes its
+                     ///< first Chebyshev step at once
     add_correction,  ///< of the level above, interpolated; to a field as a Chebyshev step over cycles
   };
   Task task;
   std::uint8_t level;
   bool of_correction;         ///< else of the field
   std::uint8_t from, above;   ///< which of the two arrays holds what is read, on this level and the one above
-  ChebyshevStep chebyshev{};  ///< of relax, and of add_correction to the field
+  ChebyshevStep chebyshev{};  ///< of relax, restrict_below, and add_correction to the field
 };
 
 /// Arrays of the complete levels, small enough to travel as a kernel's argument. Each has the nodes of its level.

@@ -17,10 +17,10 @@ struct SweepComplete : exec::SweepAll {
   CompleteAt at;
   CompleteStep steps[kMostSteps];
 
-  PSK_HD void operator()(int round, int n, Nothing) const {
-    const CompleteStep& step = steps[round];
-    if (n < at.levels.fields[step.level].level.nodes()) at(step, n);
+  [[nodiscard]] PSK_HD int indices(int round) const {
+    return static_cast<int>(at.levels.fields[steps[round].level].level.nodes());
   }
+  PSK_HD void operator()(int round, int n, Nothing) const { at(steps[round], n); }
 };
 static_assert(sizeof(SweepComplete) <= 4000, "arguments of a kernel have 4 KiB");
 

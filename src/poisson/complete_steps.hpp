@@ -61,7 +61,13 @@ struct CompleteAt {
     const auto node = static_cast<std::int32_t>(n);
     levels.b[d][n] = 0.5F * octree::restricted(level, below, levels.residual[d + 1], node);
     levels.weights[d][n] = 0.5F * octree::restricted(level, below, levels.weights[d + 1], node);
-    levels.e[d][0][n] = levels.e[d][1][n] = 0;
+    levels.e[d][0][n] = 0;
+    levels.e[d][1][n] = is_among(level.unknowns, n) ? first_correction(step, levels.b[d][n], levels.weights[d][n]) : 0;
+  }
+
+  /// What relax() makes of a correction that is 0 everywhere, with the same bits: there, the residual is b.
+  PSK_HD static float first_correction(const CompleteStep& step, float b, float weight) {
+    return step.chebyshev.next(0.0F, 0.0F, b / (kLargestEigenvalue + weight));
   }
 
   PSK_HD void add_correction(const CompleteStep& step, std::int64_t n) const {

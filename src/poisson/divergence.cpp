@@ -30,10 +30,12 @@ struct ProlongField {
     const float share = 0.5F / static_cast<float>(1 << count_bits(static_cast<std::uint64_t>(slot)));
     PSK_UNROLL
     for (int a = 0; a < 3; ++a) {
+      float value[8];
+      PSK_UNROLL
+      for (int s = 0; s < 8; ++s) value[s] = corner[s] < 0 ? 0.0F : above_field.axis[a][corner[s]];
       float sum = 0;
       PSK_UNROLL
-      for (int s = 0; s < 8; ++s)
-        if (corner[s] >= 0) sum += above_field.axis[a][corner[s]];
+      for (int s = 0; s < 8; ++s) sum += value[s];
       field.axis[a][n] = sum * share;
     }
   }
@@ -57,10 +59,11 @@ struct RestrictLevels : exec::SweepAll {
   int first;  // depth of round 0
   float* b;
 
+  [[nodiscard]] PSK_HD int indices(int round) const { return static_cast<int>(tree.levels[first - round].nodes()); }
   PSK_HD void operator()(int round, int n, Nothing) const {
     const octree::LevelView& level = tree.levels[first - round];
     const octree::LevelView& below = tree.levels[first - round + 1];
-    if (n < level.nodes()) b[level.first_node + n] = 0.5F * octree::restricted(level, below, b + below.first_node, n);
+    b[level.first_node + n] = 0.5F * octree::restricted(level, below, b + below.first_node, n);
   }
 };
 

@@ -7,9 +7,7 @@
 
 #include "exec/atomic.hpp"
 #include "exec/this_space.hpp"
-#include "poisson/bend.hpp"
-#include "poisson/noise.hpp"
-#include "poisson/outliers.hpp"
+#include "poisson/examine_sample.hpp"
 
 namespace pointskin::poisson {
 namespace {
@@ -38,18 +36,35 @@ struct Tally {
 constexpr float kFixed = 65536;
 constexpr float kDensest = 17'179'869'184.0F;  // 2^34: of kLookedAt samples the sum is below 2^63
 
+/// What a few of the samples that are looked at add.
+struct LookedAt {
+  std::uint64_t tally = 0, density = 0;
+  PSK_HD LookedAt operator+(const LookedAt& other) const { return {tally + other.tally, density + other.density}; }
+};
+
+/// By lanes, whose sums are added to the words at once.
 struct LookAt {
+  static constexpr int kLanes = 32;
+  using Sum = LookedAt;
+
   Around around;
   std::int64_t looked_at;
   float cell_area;  // of a finest cell's face
   ArrayView<const float> own_side, areas;
   std::uint64_t* words;
 
-  PSK_HD void operator()(std::int64_t s) const {
+  [[nodiscard]] PSK_HD LookedAt part(std::int64_t group, int lane) const {
+    const std::int64_t s = group * kLanes + lane;
+    return s < looked_at ? look_at(s * around.positions.size / looked_at) : LookedAt{};
+  }
+  PSK_HD void finish(std::int64_t /*group*/, const LookedAt& sum) const {
+    exec::add(words + kDensity, sum.density);
+    exec::add(words + kTallies, sum.tally);
+  }
+
+  [[nodiscard]] PSK_HD LookedAt look_at(std::int64_t i) const {
     const std::int64_t n = around.positions.size;
-    const std::int64_t i = s * n / looked_at;
     const float density = 1 / (std::abs(own_side[i]) * cell_area * static_cast<float>(n));
-    exec::add(words + kDensity, static_cast<std::uint64_t>(kFixed * (density < kDensest ? density : kDensest)));
     const Seen seen = around.seen_from(i);
     Tally tally{seen.can_tell(), seen.can_tell() && seen.faces_like_others(), 0};
     if (i + Followed::kFourth < n) {
@@ -57,15 +72,8 @@ struct LookAt {
       if (followed.on_line) tally.on_lines = 1;
       if (followed.is_pair) exec::add(words + kPairs + NoiseBin::of(followed.noise2), 1);
     }
-    exec::add(words + kTallies, tally.word());
+    return {tally.word(), static_cast<std::uint64_t>(kFixed * (density < kDensest ? density : kDensest))};
   }
-};
-
-/// What a look at the whole cloud says.
-struct Cloudwide {
-  Averaging averaging{};
-  float largest_usual_area = 0;  ///< finest cells^2
-  bool is_alike = false;         ///< neighbours mostly face the same way, as far as can be told
 };
 
 /// One thread.
@@ -86,59 +94,11 @@ struct Judge {
   }
 };
 
-struct Examine {
-  Around around;
-  ArrayView<const Cloudwide> found;
-  float cell_area, coarsest, finest;
-  ArrayView<float> areas;
-  ArrayView<float> bends_to_urges;
-  ArrayView<float> own_side_to_depths;  // read, then written: others still look at the depths that were
-  std::uint64_t* lonely;
-
-  PSK_HD void operator()(std::int64_t i) const {
-    const Cloudwide cloud = found[0];
-    const bool disagrees = own_side_to_depths[i] < 0;
-    const float own = std::abs(own_side_to_depths[i]);
-    const float largest = cloud.largest_usual_area;
-    const bool is_usual = !(own > largest);
-    if (own > kLonely * largest) exec::add(lonely, 1);
-    Seen seen;
-    BendAmongNeighbours bend;
-    const float per_sample = 1 / (own * cell_area);
-    around(i, [&](std::int64_t /*j*/, const Vec3f& normal, const Vec3f& step) {
-      const float cosine = dot(around.normals[i], normal);
-      seen.add(cosine, normal, step);
-      bend.add(cosine, squared_length(step) * per_sample);
-    });
-    float area = own;
-    if ((!is_usual && !Around::is_confirmed(around, i)) || is_outlier_near_others(i, seen, disagrees, cloud.is_alike)) {
-      area = 0;
-    } else if (!is_usual) {
-      area = areas[i] < largest ? largest : areas[i];
-    }
-    areas[i] = area;
-    float depth = around.splat_depths[i];
-    float urge = 1;
-    if (area > 0) {
-      const float near = bend.value();
-      const float samples = cloud.averaging.samples(near > bends_to_urges[i] ? near : bends_to_urges[i]);
-      depth += Averaging::levels_finer(samples);
-      urge = Averaging::urge(samples, depth - finest);
-    }
-    bends_to_urges[i] = urge;
-    own_side_to_depths[i] = depth > coarsest ? depth : coarsest;
-  }
-
-  [[nodiscard]] PSK_HD bool faces_like_others(std::int64_t i, const Seen& seen) const {
-    return seen.faces_like_others() && (seen.surely_does() || Around::is_among_such(around, i));
-  }
-
-  [[nodiscard]] PSK_HD bool is_outlier_near_others(std::int64_t i, const Seen& seen, bool disagrees,
-                                                   bool is_alike) const {
-    if (seen.stands_off(areas[i] * cell_area)) return true;
-    return is_alike && ((seen.can_tell() && !faces_like_others(i, seen)) || (disagrees && seen.none_faces_it()));
-  }
-};
+/// A GPU has a kernel of its own for it (examine_kernel.cuh).
+template <exec::Space Exec>
+requires(!Exec::kOwnKernels) void examine_each(Exec& ex, const char* label, std::int64_t n, const Examine& examine) {
+  for_each(ex, label, n, examine);
+}
 
 }  // namespace
 
@@ -151,13 +111,14 @@ void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_
   const float cell_area = 1 / static_cast<float>(std::int64_t{1} << 2 * depth);
   samples.lonely = exec::make_buffer<std::uint64_t>(ex, kWords);
   exec::fill(ex, samples.lonely.view(), std::uint64_t{0});
-  for_each(ex, kLabel, looked_at,
-           LookAt{around, looked_at, cell_area, own_side.cview(), samples.areas.cview(), samples.lonely.data()});
+  for_each_by_lanes(
+      ex, kLabel, (looked_at + LookAt::kLanes - 1) / LookAt::kLanes,
+      LookAt{around, looked_at, cell_area, own_side.cview(), samples.areas.cview(), samples.lonely.data()});
   auto found = exec::make_buffer<Cloudwide>(ex, 1);
   for_each(ex, kLabel, 1, Judge{samples.lonely.data(), n, looked_at, cell_area, found.view()});
-  for_each(ex, kLabel, n,
-           Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), static_cast<float>(depth),
-                   samples.areas.view(), bends.view(), own_side.view(), samples.lonely.data() + kLonelyOnes});
+  examine_each(ex, kLabel, n,
+               Examine{around, found.cview(), cell_area, static_cast<float>(coarsest), static_cast<float>(depth),
+                       samples.areas.view(), bends.view(), own_side.view(), samples.lonely.data() + kLonelyOnes});
   samples.splat_depths = std::move(own_side);
   samples.trust = std::move(bends);
 }

@@ -120,7 +120,7 @@ struct Around {
   /// whether it is near: reads that wait for others take longer.
   template <class Visit>
   PSK_HD void operator()(std::int64_t i, const Visit& visit) const {
-    const float near = kNearCells / static_cast<float>(std::int64_t{1} << static_cast<int>(splat_depths[i]));
+    const float near = reach(i);
     const std::int64_t first = i > kWindow ? i - kWindow : 0;
     const std::int64_t end = i + kWindow < positions.size ? i + kWindow + 1 : positions.size;
     const Vec3f here = positions[i];
@@ -131,34 +131,55 @@ struct Around {
     }
   }
 
+  /// How near neighbours of sample i are.
+  [[nodiscard]] PSK_HD float reach(std::int64_t i) const {
+    return kNearCells / static_cast<float>(std::int64_t{1} << static_cast<int>(splat_depths[i]));
+  }
+
   /// Whether the neighbours confirm a sample, and kLeastConfirmed of them are confirmed by their own: of outliers far from
   /// the surface some confirm a third by chance, but seldom each other.
   [[nodiscard]] PSK_HD PSK_SELDOM static bool is_confirmed(Around around, std::int64_t i) {
     if (!around.do_neighbours_confirm(i)) return false;
     const Vec3f own = around.normals[i];
-    int neighbours = 0;
-    int confirmed = 0;
+    Confirming counted;
     around(i, [&](std::int64_t j, const Vec3f& normal, const Vec3f& /*step*/) {
-      if (dot(own, normal) < kOtherSideCosine) return;
-      ++neighbours;
-      if (around.do_neighbours_confirm(j)) ++confirmed;
+      if (is_asked(own, normal)) counted.add(around.do_neighbours_confirm(j));
     });
-    return confirmed > 0 && static_cast<float>(confirmed) >= kLeastConfirmed * static_cast<float>(neighbours);
+    return counted.are_enough_confirmed();
   }
 
   [[nodiscard]] PSK_HD bool do_neighbours_confirm(std::int64_t i) const {
     const Vec3f own = normals[i];
-    int neighbours = 0;
-    int confirming = 0;
+    Confirming counted;
     (*this)(i, [&](std::int64_t /*j*/, const Vec3f& normal, const Vec3f& step) {
-      const float cosine = dot(own, normal);
-      if (cosine < kOtherSideCosine) return;
-      ++neighbours;
-      const float across = 0.5F * dot(own + normal, step);
-      if (cosine > kLeastCosine && across * across <= kMostBend * squared_length(step)) ++confirming;
+      if (is_asked(own, normal)) counted.add(does_confirm(own, normal, step));
     });
-    return confirming >= kFewestConfirming &&
-           static_cast<float>(confirming) >= kLeastConfirming * static_cast<float>(neighbours);
+    return counted.are_enough();
+  }
+
+  /// Neighbours that are asked, and those that say yes.
+  struct Confirming {
+    int asked = 0, confirming = 0;
+
+    PSK_HD void add(bool confirms) {
+      ++asked;
+      if (confirms) ++confirming;
+    }
+    [[nodiscard]] PSK_HD bool are_enough() const {
+      return confirming >= kFewestConfirming &&
+             static_cast<float>(confirming) >= kLeastConfirming * static_cast<float>(asked);
+    }
+    [[nodiscard]] PSK_HD bool are_enough_confirmed() const {
+      return confirming > 0 && static_cast<float>(confirming) >= kLeastConfirmed * static_cast<float>(asked);
+    }
+  };
+
+  /// Whether a neighbour with this normal is not on the other side of a thin wall.
+  PSK_HD static bool is_asked(const Vec3f& own, const Vec3f& normal) { return !(dot(own, normal) < kOtherSideCosine); }
+
+  PSK_HD static bool does_confirm(const Vec3f& own, const Vec3f& normal, const Vec3f& step) {
+    const float across = 0.5F * dot(own + normal, step);
+    return dot(own, normal) > kLeastCosine && across * across <= kMostBend * squared_length(step);
   }
 
   /// Whether kFewestSuch of those that face like sample i face like others themselves.
@@ -166,9 +187,14 @@ struct Around {
     const Vec3f own = around.normals[i];
     int such = 0;
     around(i, [&](std::int64_t j, const Vec3f& normal, const Vec3f& /*step*/) {
-      if (dot(own, normal) > kAlikeCosine && around.seen_from(j).faces_like_others()) ++such;
+      if (around.is_such(own, j, normal)) ++such;
     });
     return such >= kFewestSuch;
+  }
+
+  /// Whether neighbour j, with this normal, faces like a sample and like others.
+  [[nodiscard]] PSK_HD bool is_such(const Vec3f& own, std::int64_t j, const Vec3f& normal) const {
+    return dot(own, normal) > kAlikeCosine && seen_from(j).faces_like_others();
   }
 
   [[nodiscard]] PSK_HD Seen seen_from(std::int64_t i) const {

@@ -73,6 +73,18 @@ struct CollapsePoints {
   }
 };
 
+/// Two levels at once.
+struct CollapseTwoLevels {
+  CollapsePoints coarser, finer;
+  PSK_HD void operator()(std::int64_t i) const {
+    const std::int64_t cells = std::int64_t{8} * coarser.level.cell_bricks;
+    if (i < cells)
+      coarser(i);
+    else
+      finer(i - cells);
+  }
+};
+
 /// The same where cells hold many samples: kLanes threads share them.
 struct CollapseManyPoints {
   using Sum = Collapse;
@@ -125,11 +137,11 @@ struct CollapseLevels : exec::SweepAll {
   std::int32_t* brick_index;
   CollapsedSample* samples;
 
+  [[nodiscard]] PSK_HD int indices(int round) const { return 8 * tree.levels[first - round].cell_bricks; }
   PSK_HD void operator()(int round, int cell, Nothing) const {
     const octree::LevelView& level = tree.levels[first - round];
     const octree::LevelView& below = tree.levels[first - round + 1];
-    if (cell < 8 * level.cell_bricks)
-      CollapseChildren{level, brick_index + level.first_node / 8, brick_index + below.first_node / 8, samples}(cell);
+    CollapseChildren{level, brick_index + level.first_node / 8, brick_index + below.first_node / 8, samples}(cell);
   }
 };
 
@@ -192,19 +204,25 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
   result.samples =
       exec::make_buffer<CollapsedSample>(ex, std::int64_t{8} * exec::read_element(ex, before.cview(), bricks));
   const int complete = std::min({view.depth - 1, samples.coarsest_splat_depth - 1, octree::kCompleteDepth});
-  for (int d = view.depth; d > complete; --d) {
-    const octree::LevelView& level = view.levels[d];
-    const std::int64_t cells = std::int64_t{8} * level.cell_bricks;
-    const std::int32_t* brick_index = result.view(d).brick_index;
-    const CollapsePoints collapse{level, samples, brick_index, result.samples.data()};
-    if (d >= std::max(samples.coarsest_splat_depth, view.depth - 1))
-      for_each(ex, "screening.collapse", cells, collapse);
-    else if (d >= samples.coarsest_splat_depth)
-      for_each_by_lanes(ex, "screening.collapse", cells, CollapseManyPoints{collapse});
-    else
-      for_each(ex, "screening.collapse", cells,
-               CollapseChildren{level, brick_index, result.view(d + 1).brick_index, result.samples.data()});
+  const auto collapse_points = [&](int d) {
+    return CollapsePoints{view.levels[d], samples, result.view(d).brick_index, result.samples.data()};
+  };
+  const auto cells_of = [&](int d) { return std::int64_t{8} * view.levels[d].cell_bricks; };
+  int d = view.depth;
+  if (d > samples.coarsest_splat_depth) {
+    for_each(ex, "screening.collapse", cells_of(d - 1) + cells_of(d),
+             CollapseTwoLevels{collapse_points(d - 1), collapse_points(d)});
+    d -= 2;
+  } else {
+    for_each(ex, "screening.collapse", cells_of(d), collapse_points(d));
+    --d;
   }
+  for (; d >= samples.coarsest_splat_depth; --d)
+    for_each_by_lanes(ex, "screening.collapse", cells_of(d), CollapseManyPoints{collapse_points(d)});
+  for (; d > complete; --d)
+    for_each(ex, "screening.collapse", cells_of(d),
+             CollapseChildren{view.levels[d], result.view(d).brick_index, result.view(d + 1).brick_index,
+                              result.samples.data()});
   if (complete >= 0)
     sweep(ex, "screening.collapse", complete + 1, std::int64_t{8} * view.levels[complete].cell_bricks,
           CollapseLevels{{}, view, complete, result.brick_index.data(), result.samples.data()});

@@ -38,6 +38,38 @@ struct SumInCell {
   }
 };
 
+/// The same with a thread for every corner of a cell, for spaces with many. Of a full cell, it fetches several samples before it
+/// uses one.
+template <class What>
+struct SumAtCorner {
+  static constexpr int kAtOnce = 8;
+
+  SumInCell<What> in_cell;
+  PSK_HD void operator()(std::int64_t corner) const {
+    const std::int64_t cell = corner >> 3;
+    const std::int32_t first = in_cell.level.point_begin[cell];
+    const std::int32_t last = in_cell.level.point_begin[cell + 1];
+    const octree::Coordinates at = octree::decode(in_cell.level.node_key(static_cast<std::int32_t>(cell)));
+    typename What::Value sum{};
+    for (std::int32_t i = first; i < last; i += kAtOnce) {
+      Vec3f position[kAtOnce];
+      typename What::Value value[kAtOnce];
+      PSK_UNROLL
+      for (int k = 0; k < kAtOnce; ++k) {
+        const std::int32_t j = i + k < last ? i + k : last - 1;
+        position[k] = in_cell.positions[j];
+        value[k] = in_cell.what(j);
+      }
+      PSK_UNROLL
+      for (int k = 0; k < kAtOnce; ++k) {
+        const Vec3f local = octree::local_in_cell(position[k], at, in_cell.level.depth);
+        if (i + k < last) sum += octree::corner_weight(static_cast<int>(corner & 7), local) * value[k];
+      }
+    }
+    in_cell.sums[corner] = sum;
+  }
+};
+
 /// Sum over the 8 cells around a corner.
 template <class T>
 struct Gather {
@@ -73,10 +105,11 @@ struct RestrictLevels : exec::SweepAll {
   int first;  // depth of round 0
   T* sums;
 
+  [[nodiscard]] PSK_HD int indices(int round) const { return static_cast<int>(tree.levels[first - round].nodes()); }
   PSK_HD void operator()(int round, int n, Nothing) const {
     const octree::LevelView& level = tree.levels[first - round];
     const octree::LevelView& below = tree.levels[first - round + 1];
-    if (n < level.nodes()) sums[level.first_node + n] = octree::restricted(level, below, sums + below.first_node, n);
+    sums[level.first_node + n] = octree::restricted(level, below, sums + below.first_node, n);
   }
 };
 
@@ -96,7 +129,11 @@ exec::Buffer<typename What::Value> sum_hats(Exec& ex, const octree::OctreeView& 
   auto sums = exec::make_buffer<T>(ex, counted.first_node + counted.nodes());
   {
     auto in_cells = exec::make_buffer<T>(ex, 8 * counted.cells());
-    for_each(ex, "density.splat", counted.cells(), hats::SumInCell<What>{counted, positions, what, in_cells.view()});
+    const hats::SumInCell<What> sum{counted, positions, what, in_cells.view()};
+    if constexpr (Exec::kManyThreads)
+      for_each(ex, "density.splat", in_cells.size(), hats::SumAtCorner<What>{sum});
+    else
+      for_each(ex, "density.splat", counted.cells(), sum);
     for_each(ex, "density.splat", counted.nodes(),
              hats::Gather<T>{counted, in_cells.cview(), sums.view().part(counted.first_node, counted.nodes())});
   }

@@ -13,6 +13,8 @@ inline constexpr int kCellsPerWarp = kWarp / kLanes;
 
 /// A warp's work on kCellsPerWarp cells.
 struct TrustByLanes {
+  static constexpr int kAtOnce = 4;
+
   TrustInCells cells;
 
   struct Shared {};
@@ -25,9 +27,24 @@ struct TrustByLanes {
     const int own = lane % kLanes;
     Scatter scatter;
     bool any = false;
-    for (std::int32_t i = first + own; i < end; i += kLanes) {
-      any = any || cells.is_meant(i);
-      if (i + 1 < end) scatter.add(cells.scatter_of(i));
+    const std::int32_t last_pair = end - 2;
+    for (std::int32_t from = first + own; from < end; from += kAtOnce * kLanes) {
+      // All that is read is asked for before any of it is waited for; what is beyond the end adds nothing.
+      PSK_UNROLL
+      for (int k = 0; k < kAtOnce; ++k) {
+        const std::int32_t i = from + k * kLanes;
+        any = (cells.is_meant(i < end ? i : end - 1) && i < end) || any;
+      }
+      if (last_pair < first) continue;
+      Scatter part[kAtOnce];
+      PSK_UNROLL
+      for (int k = 0; k < kAtOnce; ++k) {
+        const std::int32_t i = from + k * kLanes;
+        const Scatter pair = cells.scatter_of(i < last_pair ? i : last_pair);
+        part[k] = i <= last_pair ? pair : Scatter{};
+      }
+      PSK_UNROLL
+      for (int k = 0; k < kAtOnce; ++k) scatter.add(part[k]);
     }
     if (__ballot_sync(~0U, any) == 0) return;
     for (int step = kLanes / 2; step > 0; step /= 2)

@@ -14,8 +14,8 @@ namespace {
 
 /// The points of a run with what the mesh may keep of them.
 template <exec::Space Exec>
-PointBuffers upload_all(Exec& ex, const Input& input, bool attributes) {
-  PointBuffers points = upload(ex, input);
+PointBuffers upload_all(Exec& ex, const Input& input, bool attributes, octree::Extent& extent) {
+  PointBuffers points = upload(ex, input, &extent);
   if (attributes) points.attributes = upload_attributes(ex, input);
   return points;
 }
@@ -109,12 +109,14 @@ std::shared_ptr<FieldImpl> Engine::solve(const Input& input, const Options& opti
     ex.pool()->reset_peak();
     std::shared_ptr<const envelope::Envelope> envelope = make_envelope(ex, options, input.origin());
     PhaseClock clock(ex);
-    PointBuffers points = upload_all(ex, input, keep_all || options.attributes);
+    octree::Extent extent;
+    PointBuffers points = upload_all(ex, input, keep_all || options.attributes, extent);
     clock.lap(report.upload_ms);
-    clock.read();
     FieldData data =
-        fit_field(ex, points, {.core = core, .envelope = std::move(envelope), .keep_all = keep_all, .look = true},
+        fit_field(ex, points,
+                  {.extent = extent, .core = core, .envelope = std::move(envelope), .keep_all = keep_all, .look = true},
                   options, report);
+    clock.read();
     for (Vec3d& p : report.farthest_strays)
       for (std::size_t a = 0; a < 3; ++a) p[a] += input.origin()[a];
     report.device_peak_bytes = ex.pool()->peak_bytes();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 
 #include "octree/frame.hpp"
 #include "octree/strays.hpp"
@@ -21,12 +22,17 @@ inline void report_strays(const octree::StrayPoints& strays, RunReport& report) 
 }
 
 /// The working cube; leaves strays out of the points that are used, unless they are to be kept.
+/// @param extent  of all points, where it is known
 template <exec::Space Exec>
-octree::Frame fit_cube(Exec& ex, PointBuffers& points, const Options& options, RunReport& report) {
+octree::Frame fit_cube(Exec& ex, PointBuffers& points, const Options& options, RunReport& report,
+                       const std::optional<octree::Extent>& extent = {}) {
+  const ArrayView<const Vec3f> positions = points.positions.cview();
   report.strays = 0;
   report.farthest_strays.clear();
-  if (options.keep_strays) return octree::fit_frame(ex, points.positions.cview(), options.scale);
-  const octree::StrayPoints strays = octree::find_strays(ex, points.positions.cview());
+  if (options.keep_strays)
+    return extent ? octree::frame_around(extent->all, options.scale) : octree::fit_frame(ex, positions, options.scale);
+  const octree::StrayPoints strays =
+      extent ? octree::find_strays_in(ex, positions, *extent) : octree::find_strays(ex, positions);
   report_strays(strays, report);
   leave_out(ex, strays, points);
   return octree::frame_around(strays.core, options.scale);

@@ -254,7 +254,7 @@ FieldData fit_to_points(Exec& ex, PointBuffers& points, const FitSetup& setup, c
   announce(options.progress, "octree", 0.05);
   field.frame = setup.cube   ? *setup.cube
                 : setup.core ? cube_around(ex, *setup.core, points, options, report)
-                             : fit_cube(ex, points, options, report);
+                             : fit_cube(ex, points, options, report, setup.extent);
   report.points = points.used_count();
   SortedSamples sorted = sort_into_cube(ex, points, field.frame);
   field.attributes = std::move(sorted.attributes);

@@ -60,8 +60,9 @@ struct FieldData {
 
 /// What a fit depends on besides the points and the options.
 struct FitSetup {
-  bool keep_points = false;             ///< false: `points` are freed once they are sorted
-  std::optional<octree::Frame> cube{};  ///< the working cube, for all points; unset: fitted, and strays are left out
+  bool keep_points = false;                ///< false: `points` are freed once they are sorted
+  std::optional<octree::Extent> extent{};  ///< of the points, where it is known
+  std::optional<octree::Frame> cube{};     ///< the working cube, for all points; unset: fitted, and strays are left out
   /// What FieldData::core said of a fit of these points: the cube is made for it, and points outside are left out.
   std::optional<Bounds> core{};
   std::shared_ptr<const envelope::Envelope> envelope{};  ///< made ready from Options::envelope, or null

@@ -5,11 +5,13 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "core/mix_bits.hpp"
 #include "exec/host_array.hpp"
 #include "exec/this_space.hpp"
+#include "octree/extent.hpp"
 #include "octree/octree_data.hpp"
 #include "reconstruct/point_hash.hpp"
 
@@ -28,6 +30,16 @@ struct Turn {
   PSK_HD void operator()(std::int64_t i) const {
     const Vec3f n = normals[i];
     turned[i] = {-n.x, -n.y, -n.z};
+  }
+};
+
+/// A point's place in the unit cube, and its hash.
+struct UnitAndHash {
+  octree::ToUnit unit;
+  HashPoint hash;
+  PSK_HD void operator()(std::int64_t i) const {
+    unit(i);
+    hash(i);
   }
 };
 
@@ -64,6 +76,55 @@ struct AddFlaws {
     return {a.not_finite + b.not_finite, a.with_normal + b.with_normal};
   }
 };
+
+/// What one look at all points tells.
+struct Seen {
+  octree::Extent extent;
+  Flaws flaws;
+};
+struct JoinSeen {
+  static constexpr bool kAnyOrder = true;
+  PSK_HD Seen operator()(const Seen& a, const Seen& b) const {
+    return {octree::JoinExtents{}(a.extent, b.extent), AddFlaws{}(a.flaws, b.flaws)};
+  }
+};
+
+/// The points of a lane of exec/reduce_order.hpp.
+struct SeeLane {
+  struct Part {
+    Bounds box;
+    Flaws flaws;
+  };
+  struct Join {
+    PSK_HD Part operator()(const Part& a, const Part& b) const {
+      return {octree::JoinBoxes{}(a.box, b.box), AddFlaws{}(a.flaws, b.flaws)};
+    }
+  };
+  struct Point {
+    octree::BoxOf box;
+    FindFlaws flaws;
+    PSK_HD Part operator()(std::int64_t i) const { return {box(i), flaws(i)}; }
+  };
+
+  ArrayView<const Vec3f> positions, normals;
+  std::int64_t lanes;
+  ArrayView<Seen> out;
+  PSK_HD void operator()(std::int64_t lane) const {
+    const Point point{{positions}, {positions, normals}};
+    const Part part = exec::combine_lane(point, Join{}, positions.size, lanes, lane);
+    out[lane] = {octree::extent_of_lane(part.box), part.flaws};
+  }
+};
+
+/// Extent and flaws of all points. Waits.
+template <exec::Space Exec>
+Seen look_at_points(Exec& ex, const PointBuffers& points) {
+  const std::int64_t lanes = exec::reduce_lanes(points.positions.size());
+  auto seen = exec::make_buffer<Seen>(ex, lanes);
+  for_each_long(ex, "upload.check", lanes,
+                SeeLane{points.positions.cview(), points.normals.cview(), lanes, seen.view()});
+  return exec::read_element(ex, exec::reduce_lane_values(ex, "upload.check", std::move(seen), JoinSeen{}).cview(), 0);
+}
 
 /// Flaws of the points to use. Waits.
 template <exec::Space Exec>
@@ -156,14 +217,15 @@ PointBuffers upload_some(Exec& ex, const Input& input) {
 }
 
 template <exec::Space Exec>
-PointBuffers upload(Exec& ex, const Input& input) {
+PointBuffers upload(Exec& ex, const Input& input, octree::Extent* extent) {
   require_points(input);
   if (!input.has_normals())
     throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
   PointBuffers points = taken(ex, input);
-  const Flaws flaws = find_flaws(ex, points);
-  require_finite(flaws);
-  require_normals(flaws);
+  const Seen seen = look_at_points(ex, points);
+  require_finite(seen.flaws);
+  require_normals(seen.flaws);
+  if (extent != nullptr) *extent = seen.extent;
   if (input.turned()) points.normals = turned(ex, points.normals);
   return points;
 }
@@ -218,8 +280,9 @@ SortedSamples sort_into_cube(Exec& ex, const PointBuffers& points, const octree:
   const octree::Selection selection{points.used.cview()};
   auto unit = exec::make_buffer<Vec3f>(ex, n);
   auto hashes = exec::make_buffer<std::uint64_t>(ex, n);
-  for_each(ex, "octree.unit", n, octree::ToUnit{frame, points.positions.cview(), unit.view(), selection});
-  for_each(ex, "octree.hash", n, HashPoint{points.positions.cview(), points.normals.cview(), hashes.view(), selection});
+  for_each(ex, "octree.unit", n,
+           UnitAndHash{{frame, points.positions.cview(), unit.view(), selection},
+                       {points.positions.cview(), points.normals.cview(), hashes.view(), selection}});
   for (const AttributeBuffer& attribute : points.attributes)
     for_each(ex, "octree.hash", n, HashAttribute{attribute.values.view(), hashes.view(), selection});
   octree::SortedPoints sorted = octree::sort_points(ex, unit.cview(), hashes.cview());

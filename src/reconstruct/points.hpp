@@ -65,11 +65,12 @@ template <exec::Space Exec>
 PointBuffers upload_some(Exec& ex, const Input& input);
 
 /// Brings points to the space, without attributes. Arrays that are there already are borrowed.
+/// @param extent  receives that of the points, unless it is null
 /// @throws Error no_normals if there are none or all have zero length, empty_result without points, invalid_input if
 /// some
 ///         are not finite, over_limit beyond 2^31 - 1
 template <exec::Space Exec>
-PointBuffers upload(Exec& ex, const Input& input);
+PointBuffers upload(Exec& ex, const Input& input, octree::Extent* extent = nullptr);
 
 /// Brings the attributes to the space.
 /// @param what  the points are called in errors

@@ -148,23 +148,48 @@ struct EmitVertex {
   }
 };
 
-/// Vertex on an edge.
-struct VertexLookup {
-  octree::OctreeView tree;
-  Numbering numbering;
-  PSK_HD std::int32_t operator()(const EdgeOwner& owner) const {
-    return numbering.vertex(tree.levels[owner.level].first_node + owner.node, owner.axis);
+/// Triangles and centre vertices of a cell.
+struct CellCounts {
+  std::int32_t triangles = 0, centres = 0;
+};
+
+/// A traced loop of three crossings is a triangle; a longer one is a fan around a vertex at its centre, which has no
+/// diagonals that a neighbour could share.
+PSK_HD CellCounts count_loop(int length) { return length == 3 ? CellCounts{1, 0} : CellCounts{length, 1}; }
+
+/// Packed triangles and centres of the traced cells.
+struct CountTraced {
+  field::FieldView f;
+  ArrayView<const std::int32_t> cells;
+  ArrayView<std::uint64_t> counts;
+  PSK_HD void operator()(std::int64_t i) const {
+    const Place place = place_of(f.tree, cells[i]);
+    std::uint64_t total = 0;
+    LeafCell(f, place.level, place.node).trace().for_loops([&](int, int length) {
+      const CellCounts counted = count_loop(length);
+      total += pack(static_cast<std::uint64_t>(counted.triangles), static_cast<std::uint64_t>(counted.centres));
+    });
+    counts[i] = total;
   }
 };
 
-/// A triangle of a leaf without finer neighbours that ListItems has noted. Needs all positions.
-struct EmitTriangle {
+/// All triangles, and the centres of loops. Needs the vertices on edges.
+struct EmitTriangles {
   field::FieldView f;
   const Case* cases;
-  VertexLookup vertex_on;
+  Numbering numbering;
   MeshView mesh;
+  std::int32_t edge_vertices, table_triangles;
+  ArrayView<const std::int32_t> traced;
+  ArrayView<const std::uint64_t> first_traced;  // packed, as counted
 
-  PSK_HD void operator()(std::int64_t t) const {
+  /// Vertex on an edge.
+  [[nodiscard]] PSK_HD std::int32_t vertex_on(const EdgeOwner& owner) const {
+    return numbering.vertex(f.tree.levels[owner.level].first_node + owner.node, owner.axis);
+  }
+
+  /// A triangle of a leaf without finer neighbours that ListItems has noted.
+  PSK_HD void emit_from_table(std::int64_t t) const {
     const std::int32_t* item = mesh.triangles[t].data();
     const Place place = place_of(f.tree, item[0]);
     const LeafCell cell(f, place.level, place.node);
@@ -199,46 +224,13 @@ struct EmitTriangle {
     const float off = octree::interpolated(l, f.values + l.first_node, place.node, local) - f.isovalue;
     return off < 0 ? -off : off;
   }
-};
 
-/// Triangles and centre vertices of a cell.
-struct CellCounts {
-  std::int32_t triangles = 0, centres = 0;
-};
-
-/// A traced loop of three crossings is a triangle; a longer one is a fan around a vertex at its centre, which has no
-/// diagonals that a neighbour could share.
-PSK_HD CellCounts count_loop(int length) { return length == 3 ? CellCounts{1, 0} : CellCounts{length, 1}; }
-
-/// Packed triangles and centres of the traced cells.
-struct CountTraced {
-  field::FieldView f;
-  ArrayView<const std::int32_t> cells;
-  ArrayView<std::uint64_t> counts;
-  PSK_HD void operator()(std::int64_t i) const {
-    const Place place = place_of(f.tree, cells[i]);
-    std::uint64_t total = 0;
-    LeafCell(f, place.level, place.node).trace().for_loops([&](int, int length) {
-      const CellCounts counted = count_loop(length);
-      total += pack(static_cast<std::uint64_t>(counted.triangles), static_cast<std::uint64_t>(counted.centres));
-    });
-    counts[i] = total;
-  }
-};
-
-struct EmitTraced {
-  field::FieldView f;
-  VertexLookup vertex_on;
-  ArrayView<const std::int32_t> cells;
-  ArrayView<const std::uint64_t> first;  // packed, as counted
-  std::int32_t edge_vertices, table_triangles;
-  MeshView mesh;
-
-  PSK_HD void operator()(std::int64_t i) const {
-    const Place place = place_of(f.tree, cells[i]);
+  /// The triangles and centres of a traced cell.
+  PSK_HD void emit_traced(std::int64_t i) const {
+    const Place place = place_of(f.tree, traced[i]);
     const LeafCell cell(f, place.level, place.node);
-    std::int32_t triangle = table_triangles + low_count(first[i]);
-    std::int32_t centre = edge_vertices + high_count(first[i]);
+    std::int32_t triangle = table_triangles + low_count(first_traced[i]);
+    std::int32_t centre = edge_vertices + high_count(first_traced[i]);
     const CellTracer tracer = cell.trace();
     tracer.for_loops([&](int start, int length) {
       const auto vertex = [&](int crossing) { return vertex_on(cell.owner_of(crossing)); };
@@ -272,10 +264,56 @@ struct EmitTraced {
   }
 };
 
+struct EmitFromTable {
+  EmitTriangles emit;
+  PSK_HD void operator()(std::int64_t t) const { emit.emit_from_table(t); }
+};
+struct EmitTraced {
+  EmitTriangles emit;
+  PSK_HD void operator()(std::int64_t i) const { emit.emit_traced(i); }
+};
+
+/// Both side by side: the traced cells, which take long, come first, and are spread.
+struct EmitTogether {
+  EmitTriangles emit;
+  int lanes;  // indices for each of the traced cells
+
+  [[nodiscard]] PSK_HD std::int64_t spread() const { return lanes * emit.traced.size; }
+  PSK_HD void operator()(std::int64_t index) const {
+    if (index >= spread())
+      emit.emit_from_table(index - spread());
+    else if (index % lanes == 0)
+      emit.emit_traced(index / lanes);
+  }
+};
+
+template <exec::Space Exec>
+void emit_triangles(Exec& ex, const EmitTriangles& emit) {
+  constexpr const char* kLabel = "extract.triangles";
+  if constexpr (Exec::kManyThreads) {
+    const EmitTogether together{emit, lanes_apart(ex, emit.traced.size)};
+    for_each(ex, kLabel, together.spread() + emit.table_triangles, together);
+  } else {
+    for_each(ex, kLabel, emit.table_triangles, EmitFromTable{emit});
+    for_each_apart(ex, kLabel, emit.traced.size, EmitTraced{emit});
+  }
+}
+
 struct Invert {
   ArrayView<const std::int32_t> order;
   ArrayView<std::int32_t> rank;
   PSK_HD void operator()(std::int64_t i) const { rank[order[i]] = static_cast<std::int32_t>(i); }
+};
+
+struct TakeVertex {
+  ArrayView<const std::int32_t> order;
+  ArrayView<const Vec3f> positions, normals;
+  ArrayView<Vec3f> taken_positions, taken_normals;
+  PSK_HD void operator()(std::int64_t i) const {
+    const std::int32_t from = order[i];
+    taken_positions[i] = positions[from];
+    if (!normals.empty()) taken_normals[i] = normals[from];
+  }
 };
 
 struct Renumber {
@@ -295,21 +333,32 @@ struct AddCounts {
   PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
 };
 
-/// Exclusive scan of packed counts, with the total and what follows it on the host.
-/// @param first           shape (counts + kRead), receives the scan and the total
+/// Exclusive scan of packed counts.
+/// @param first           shape (counts + 1), receives the scan and the total
 /// @param most_per_entry  bound of the low counts, which must not spill into the high ones
 /// @throws Error over_limit if a total does not fit into 32 bits
-template <std::size_t kRead, exec::Space Exec>
-std::array<std::uint64_t, kRead> scan_counts(Exec& ex, const exec::Buffer<std::uint64_t>& counts,
-                                             ArrayView<std::uint64_t> first, std::int64_t most_per_entry) {
+template <exec::Space Exec>
+void scan_counts(Exec& ex, const exec::Buffer<std::uint64_t>& counts, ArrayView<std::uint64_t> first,
+                 std::int64_t most_per_entry) {
   if (counts.size() > std::numeric_limits<std::int32_t>::max() / most_per_entry)
     check_size("elements",
                exec::reduce<std::int64_t>(ex, "extract.scan", counts.size(), LowCount{counts.cview()}, AddCounts{}));
-  exclusive_scan(ex, "extract.scan", counts.cview(), first.part(0, counts.size() + 1));
-  std::array<std::uint64_t, kRead> read;
-  copy_to_host(ex, ArrayView<const std::uint64_t>(first.part(counts.size(), kRead)), read.data());
-  return read;
+  exclusive_scan(ex, "extract.scan", counts.cview(), first);
 }
+
+/// What the sizes of the mesh follow from, beside each other, so that it is read at once.
+struct Totals {
+  std::uint64_t table, traced;  ///< packed
+  std::uint64_t lone_corners;
+};
+struct CollectTotals {
+  ArrayView<const std::uint64_t> first, first_traced;  // the second may be empty
+  ArrayView<const std::uint64_t> lone_corners;
+  ArrayView<Totals> out;
+  PSK_HD void operator()(std::int64_t /*i*/) const {
+    out[0] = {first[first.size - 1], first_traced.empty() ? 0 : first_traced[first_traced.size - 1], lone_corners[0]};
+  }
+};
 
 /// Vertices in the order of their keys, triangles renumbered.
 template <exec::Space Exec>
@@ -324,8 +373,9 @@ Surface sort_vertices(Exec& ex, Surface unsorted, exec::Buffer<std::uint64_t> ke
   rank.reset();
   Surface sorted{exec::make_buffer<Vec3f>(ex, n), exec::make_buffer<Vec3f>(ex, unsorted.normals.size()),
                  std::move(unsorted.triangles)};
-  exec::gather(ex, unsorted.positions.cview(), order.cview(), sorted.positions.view());
-  exec::gather(ex, unsorted.normals.cview(), order.cview(), sorted.normals.view());
+  for_each(ex, "extract.take", n,
+           TakeVertex{order.cview(), unsorted.positions.cview(), unsorted.normals.cview(), sorted.positions.view(),
+                      sorted.normals.view()});
   return sorted;
 }
 
@@ -348,10 +398,9 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   auto marks = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
   auto signs = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
   const std::int64_t bricks = f.tree.nodes / 8;
-  auto first =
-      exec::make_buffer<std::uint64_t>(ex, bricks + 2);  // and the number of lone corners, to be read with the total
-  exec::fill(ex, first.view().part(bricks + 1, 1), std::uint64_t{0});
-  const Marker marker{f, count_triangles(kCases), marks.view(), signs.view(), first.data() + bricks + 1};
+  auto lone_corners = exec::make_buffer<std::uint64_t>(ex, 1);
+  exec::fill(ex, lone_corners.view(), std::uint64_t{0});
+  const Marker marker{f, count_triangles(kCases), marks.view(), signs.view(), lone_corners.data()};
   if constexpr (Exec::kManyThreads)
     for_each(ex, "extract.mark", f.tree.nodes, MarkNode{marker});
   else
@@ -359,7 +408,8 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
 
   auto counts = exec::make_buffer<std::uint64_t>(ex, bricks);
   for_each(ex, "extract.count", counts.size(), CountBrick{marks.cview(), counts.view()});
-  const auto [table, lone_corners] = scan_counts<2>(ex, counts, first.view(), kMostEdgesPerBrick);
+  auto first = exec::make_buffer<std::uint64_t>(ex, bricks + 1);
+  scan_counts(ex, counts, first.view(), kMostEdgesPerBrick);
   counts.reset();
   exec::Buffer<std::int32_t> traced;
   if (f.tree.finest().first_node > 0)  // there are coarser leaves
@@ -367,10 +417,13 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
   for_each_apart(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
   auto first_traced = exec::make_buffer<std::uint64_t>(ex, traced.empty() ? 0 : traced.size() + 1);
-  std::uint64_t more = 0;
-  if (!traced.empty()) more = scan_counts<1>(ex, traced_counts, first_traced.view(), kMostTrianglesPerCell)[0];
-  const std::int64_t vertices = std::int64_t{low_count(table)} + high_count(more);
-  const std::int64_t triangles = std::int64_t{high_count(table)} + low_count(more);
+  if (!traced.empty()) scan_counts(ex, traced_counts, first_traced.view(), kMostTrianglesPerCell);
+  auto collected = exec::make_buffer<Totals>(ex, 1);
+  for_each(ex, "extract.scan", 1,
+           CollectTotals{first.cview(), first_traced.cview(), lone_corners.cview(), collected.view()});
+  const Totals totals = exec::read_element(ex, collected.cview(), 0);
+  const std::int64_t vertices = std::int64_t{low_count(totals.table)} + high_count(totals.traced);
+  const std::int64_t triangles = std::int64_t{high_count(totals.table)} + low_count(totals.traced);
   check_size("vertices", vertices);
   check_size("triangles", triangles);
 
@@ -379,10 +432,9 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   auto keys = exec::make_buffer<std::uint64_t>(ex, vertices);
   const MeshView mesh{surface.positions.view(), surface.normals.view(), keys.view(), surface.triangles.view()};
   const Numbering numbering{marks.cview(), first.cview()};
-  const VertexLookup vertex_on{f.tree, numbering};
   for_each(ex, "extract.list", f.tree.nodes, ListItems{numbering, signs.cview(), mesh});
   signs.reset();
-  const std::int32_t on_edges = low_count(table);
+  const std::int32_t on_edges = low_count(totals.table);
   exec::Buffer<Vec3f> inside_ends;
   if (options.move_vertices) {
     inside_ends = exec::make_buffer<Vec3f>(ex, on_edges);
@@ -391,14 +443,12 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   for_each(ex, "extract.vertices", on_edges, EmitVertex{f, options.curvature, mesh});
   if (options.move_vertices) options.move_vertices(surface.positions.view().part(0, on_edges), inside_ends.cview());
   inside_ends.reset();
-  for_each(ex, "extract.triangles", high_count(table), EmitTriangle{f, cases.data(), vertex_on, mesh});
-  for_each_apart(
-      ex, "extract.traced", traced.size(),
-      EmitTraced{f, vertex_on, traced.cview(), first_traced.cview(), low_count(table), high_count(table), mesh});
+  emit_triangles(ex, EmitTriangles{f, cases.data(), numbering, mesh, on_edges, high_count(totals.table), traced.cview(),
+                                   first_traced.cview()});
   marks.reset();
   first.reset();
   surface = sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth);
-  surface.lone_corners = static_cast<std::int64_t>(lone_corners);
+  surface.lone_corners = static_cast<std::int64_t>(totals.lone_corners);
   return surface;
 }
 

@@ -105,6 +105,7 @@ struct Marker {
       d[(axis + 2) % 3] = -(i & 1);
       const std::int32_t cell = l.neighbour(node, d[0], d[1], d[2]);
       if (!f.is_cell(level, cell)) continue;
+      if (level == f.tree.depth) return true;  // where nothing is split
       if (f.is_split(level, cell)) return false;
       any_leaf = true;
     }

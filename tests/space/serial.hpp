@@ -57,6 +57,8 @@ void for_each(Serial& /*ex*/, const char* /*label*/, std::int64_t n, const F& f)
   for (std::int64_t i = n - 1; i >= 0; --i) f(i);  // backwards: no functor may count on an order
 }
 
+inline int lanes_apart(const Serial& /*ex*/, std::int64_t /*n*/) { return 1; }
+
 template <class F>
 void for_each_apart(Serial& ex, const char* label, std::int64_t n, const F& f) {
   for_each(ex, label, n, f);
@@ -74,7 +76,8 @@ void for_each_by_lanes(Serial& ex, const char* label, std::int64_t n, const F& f
 
 template <class F>
 void sweep(Serial& ex, const char* label, int rounds, std::int64_t n, const F& f) {
-  for (int round = 0; round < rounds; ++round) for_each(ex, label, n, SweepRound<F>{f, round});
+  for (int round = 0; round < rounds; ++round)
+    for_each(ex, label, indices_of_round(f, round, static_cast<int>(n)), SweepRound<F>{f, round});
 }
 
 template <class T, class Combine>

@@ -449,6 +449,58 @@ TYPED_TEST_P(Primitives, AddToSharedWordsWithoutLosingAny) {
   }
 }
 
+/// Rounds of different sizes, from one array into the other: each index adds up three of the round before, near and far.
+struct SumInRounds : exec::SweepAll {
+  static constexpr int kRounds = 24;
+
+  std::int32_t sizes[kRounds];
+  std::uint64_t* from_to[2];  // all elements of both are set before
+
+  [[nodiscard]] PSK_HD int indices(int round) const { return sizes[round]; }
+  PSK_HD void operator()(int round, int i, Nothing) const {
+    const std::uint64_t* from = from_to[round % 2];
+    const std::int32_t last = sizes[round > 0 ? round - 1 : 0];
+    from_to[1 - round % 2][i] = from[i % last] + 3 * from[(i + last / 2) % last] + from[last - 1 - i % last];
+  }
+};
+
+TYPED_TEST_P(Primitives, SweepRoundsOfTheirOwnSizesOneAfterAnother) {
+  auto& ex = this->space();
+  for (const std::int32_t most : {1, 200, 257, 5'832, 39'304, 1'000'000}) {  // the last does not fit into one launch
+    SCOPED_TRACE(most);
+    SumInRounds sum{};
+    for (int round = 0; round < SumInRounds::kRounds; ++round)
+      sum.sizes[round] = std::max<std::int32_t>(1, most >> (3 * (round / 2 % 5)));
+    std::vector<std::uint64_t> expected[2] = {random_keys(most, 3), random_keys(most, 5)};
+    exec::Buffer<std::uint64_t> buffers[2] = {upload(ex, expected[0]), upload(ex, expected[1])};
+    sum.from_to[0] = buffers[0].data();
+    sum.from_to[1] = buffers[1].data();
+    sweep(ex, "test", SumInRounds::kRounds, most, sum);
+    sum.from_to[0] = expected[0].data();
+    sum.from_to[1] = expected[1].data();
+    for (int round = 0; round < SumInRounds::kRounds; ++round)
+      for (int i = 0; i < sum.sizes[round]; ++i) sum(round, i, {});
+    expect_same(to_host(ex, buffers[0]), expected[0]);
+    expect_same(to_host(ex, buffers[1]), expected[1]);
+  }
+}
+
+TYPED_TEST_P(Primitives, ReadWhatTheWorkBeforeHasWritten) {
+  auto& ex = this->space();
+  constexpr std::int64_t kCount = 2'000'000;  // takes longer than the copy
+  auto words = exec::make_buffer<std::uint64_t>(ex, kCount);
+  exec::fill<std::uint64_t>(ex, words.view(), 0);
+  std::uint64_t expected = 0;
+  for (int round = 0; round < 50; ++round) {
+    for_each(ex, "test", kCount, AddHash{words.view()});
+    expected += hash(static_cast<std::uint64_t>(kCount - 1));
+    ASSERT_EQ(exec::read_element(ex, words.cview(), kCount - 1), expected);
+    std::vector<std::uint64_t> some(512);  // as much as is staged
+    copy_to_host(ex, ArrayView<const std::uint64_t>(words.view().part(kCount - 512, 512)), some.data());
+    ASSERT_EQ(some.back(), expected);
+  }
+}
+
 TYPED_TEST_P(Primitives, BuffersMoveTheirMemoryAndKeepTheirPool) {
   auto& ex = this->space();
   exec::Buffer<std::int32_t> a = upload(ex, counted(100));
@@ -485,6 +537,7 @@ REGISTER_TYPED_TEST_SUITE_P(Primitives, CallEveryIndexOnce, CallEveryIndexOfLong
                             CopyToTheSpaceWithinItAndBack, FillGatherAndCount, ReduceByTheDocumentedTree,
                             ReduceInAnyOrderWhatIsExact, FindWhereRunsStart, SortUniqueLeavesEveryKeyOnce,
                             DisjointSetsEndAtTheirSmallestMembers, AddToSharedWordsWithoutLosingAny,
+                            SweepRoundsOfTheirOwnSizesOneAfterAnother, ReadWhatTheWorkBeforeHasWritten,
                             PoolsCountWhatIsHeldAndItsPeak, MoreMemoryThanThereIsIsOverTheLimit,
                             MoreBytesThan64BitsCountIsOverTheLimit, BuffersMoveTheirMemoryAndKeepTheirPool);
 

@@ -261,8 +261,10 @@ class Reconstructor {
 
   /// Many clouds, each for itself: element i is what reconstruct() makes of clouds[i], the same bytes. On the CPU as many
   /// are worked on at once as there are threads, the largest first; a cloud so large that the others would have to wait for
-  /// it, and any of more than a million points, has all threads to itself. On a GPU one comes after the other.
-  /// An Error that one cloud causes is kept with it and ends none of the others. Threads of the CPU have workspaces of
+  /// it, and any of more than a million points, has all threads to itself. A GPU works on up to twelve clouds at once, each on a
+  /// stream of its own and under a thread of the host; one of more than 200,000 points has it to itself, and so has in the end one
+  /// for which the others left no memory.
+  /// An Error that one cloud causes is kept with it and ends none of the others. Those that work at once have workspaces of
   /// their own, which Workspace::limit_memory does not bind; they keep their memory for the next call, and together they
   /// take that of as many runs. The bytes do not depend on the number of threads, but for Options::kAutomaticDepth where
   /// memory is short. Time as of the runs, shared by the threads.

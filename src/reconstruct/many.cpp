@@ -9,6 +9,7 @@
 #include <new>
 #include <numeric>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "exec/cancel.hpp"
@@ -68,9 +69,25 @@ std::vector<std::size_t> by_size(std::span<const Cloud> clouds) {
   return order;
 }
 
-/// How many clouds of `order` are to have all threads: those that would still be worked on when all others are done, or
-/// whose memory should not be taken many times at once.
-std::size_t count_alone(std::span<const Cloud> clouds, const std::vector<std::size_t>& order, int threads) {
+/// Streams of a GPU that work at once: launches and waits of one overlap the work of others, and small clouds leave most of a GPU
+/// idle (bench/many.cpp).
+constexpr int kStreams = 12;
+
+/// Clouds of more points fill a GPU.
+constexpr std::int64_t kFillsGpu = 200'000;
+
+Device member_of(const Device& device) { return device.kind == DeviceKind::cpu ? Device::cpu(1) : device; }
+
+int at_once_on(const Device& device) {
+  if (device.kind == DeviceKind::cpu) return device.threads;
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::clamp(cores, 2, kStreams);
+}
+
+/// How many clouds of `order` are to have the whole device: on the CPU those that would still be worked on when all others are
+/// done, and whose memory should not be taken many times at once.
+std::size_t count_alone(std::span<const Cloud> clouds, const std::vector<std::size_t>& order, const Device& device,
+                        int at_once) {
   constexpr std::int64_t kGainsByThreads = 20'000;
   constexpr std::int64_t kLarge = 1'000'000;
   std::int64_t left = 0;
@@ -78,13 +95,18 @@ std::size_t count_alone(std::span<const Cloud> clouds, const std::vector<std::si
   std::size_t alone = 0;
   for (; alone < order.size(); ++alone) {
     const std::int64_t points = clouds[order[alone]].size();
-    if (points <= kLarge && (points < kGainsByThreads || points * threads <= left)) break;
+    const bool is_alone = device.kind == DeviceKind::cpu
+                              ? points > kLarge || (points >= kGainsByThreads && points * at_once > left)
+                              : points > kFillsGpu;
+    if (!is_alone) break;
     left -= points;
   }
   return alone;
 }
 
 }  // namespace
+
+Crew::Crew(const Device& device) : member_(member_of(device)), cpu_(at_once_on(device)) {}
 
 std::unique_ptr<Reconstructor> Crew::take() {
   {
@@ -95,7 +117,7 @@ std::unique_ptr<Reconstructor> Crew::take() {
       return reconstructor;
     }
   }
-  return std::make_unique<Reconstructor>(Device::cpu(1));
+  return std::make_unique<Reconstructor>(member_);
 }
 
 void Crew::put_back(std::unique_ptr<Reconstructor> reconstructor) {
@@ -103,18 +125,27 @@ void Crew::put_back(std::unique_ptr<Reconstructor> reconstructor) {
   idle_.push_back(std::move(reconstructor));
 }
 
+void Crew::release_memory() {
+  const std::lock_guard lock(mutex_);
+  idle_.clear();
+}
+
 std::vector<Reconstruction> Crew::reconstruct(std::span<const Cloud> clouds, const Options& options,
-                                              Reconstructor& all_threads) {
+                                              Reconstructor& whole) {
   std::vector<Reconstruction> results(clouds.size());
   Tally tally(options, clouds.size());
   const Options one = options_of_one(options, tally);
   const std::vector<std::size_t> order = by_size(clouds);
-  const std::size_t alone = count_alone(clouds, order, cpu_.threads());
-  for (std::size_t i = 0; i < alone; ++i) {
-    results[order[i]] = reconstruct_one(all_threads, clouds[order[i]], one);
+  const auto reconstruct_alone = [&](std::size_t i) {
+    results[i] = reconstruct_one(whole, clouds[i], one);
     tally.add();
-  }
+  };
+  const std::size_t alone = count_alone(clouds, order, whole.device(), cpu_.threads());
+  for (std::size_t i = 0; i < alone; ++i) reconstruct_alone(order[i]);
+  const bool on_gpu = member_.kind != DeviceKind::cpu;
   const std::atomic<bool>* const cancelled = exec::cancel_flag();
+  std::mutex mutex;                // guards what follows
+  std::vector<std::size_t> again;  // those for which the others left no memory
   std::atomic<std::size_t> next{alone};
   cpu_.run_blocks(static_cast<std::int64_t>(order.size() - alone), [&](std::int64_t /*any*/) {
     std::optional<CancelScope> scope;
@@ -123,21 +154,15 @@ std::vector<Reconstruction> Crew::reconstruct(std::span<const Cloud> clouds, con
     std::unique_ptr<Reconstructor> reconstructor = take();
     results[i] = reconstruct_one(*reconstructor, clouds[i], one);
     put_back(std::move(reconstructor));
-    tally.add();
+    if (on_gpu && results[i].error && results[i].error->code() == ErrorCode::over_limit) {
+      const std::lock_guard lock(mutex);
+      again.push_back(i);
+    } else {
+      tally.add();
+    }
   });
-  return results;
-}
-
-std::vector<Reconstruction> reconstruct_in_turn(std::span<const Cloud> clouds, const Options& options,
-                                                Reconstructor& reconstructor) {
-  std::vector<Reconstruction> results;
-  results.reserve(clouds.size());
-  Tally tally(options, clouds.size());
-  const Options one = options_of_one(options, tally);
-  for (const Cloud& cloud : clouds) {
-    results.push_back(reconstruct_one(reconstructor, cloud, one));
-    tally.add();
-  }
+  if (!again.empty()) release_memory();
+  for (const std::size_t i : again) reconstruct_alone(i);
   return results;
 }
 

@@ -1,4 +1,4 @@
-// Many clouds at once on the CPU, each on one thread.
+// Many clouds at once: each on one thread of the CPU, or on one stream of a GPU.
 #pragma once
 
 #include <memory>
@@ -12,29 +12,25 @@
 
 namespace pointskin::detail {
 
-/// Reconstructors of one thread each, kept with their memory from one call to the next.
+/// Reconstructors that work side by side, kept with their memory from one call to the next.
 class Crew {
  public:
-  /// @param threads  as of Device
-  explicit Crew(int threads) : cpu_(threads) {}
+  explicit Crew(const Device& device);
 
-  /// Reconstructor::reconstruct_many on the CPU.
-  /// @param all_threads  for clouds that are reconstructed alone
-  std::vector<Reconstruction> reconstruct(std::span<const Cloud> clouds, const Options& options,
-                                          Reconstructor& all_threads);
+  /// Reconstructor::reconstruct_many.
+  /// @param whole  a reconstructor of the whole device, for clouds that are reconstructed alone
+  std::vector<Reconstruction> reconstruct(std::span<const Cloud> clouds, const Options& options, Reconstructor& whole);
 
  private:
   /// One that no thread uses now.
   std::unique_ptr<Reconstructor> take();
   void put_back(std::unique_ptr<Reconstructor> reconstructor);
+  void release_memory();
 
-  exec::Cpu cpu_;
+  Device member_;     // of each reconstructor
+  exec::Cpu cpu_;     // as many threads as work at once
   std::mutex mutex_;  // guards idle_
   std::vector<std::unique_ptr<Reconstructor>> idle_;
 };
-
-/// Reconstructor::reconstruct_many, one cloud after the other.
-std::vector<Reconstruction> reconstruct_in_turn(std::span<const Cloud> clouds, const Options& options,
-                                                Reconstructor& reconstructor);
 
 }  // namespace pointskin::detail

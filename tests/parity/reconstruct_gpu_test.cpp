@@ -68,6 +68,14 @@ struct NamedCloud {
   std::string name;
   Cloud cloud;
 };
+/// Samples that neighbours of neighbours decide on: outliers all around, and a part that was seen sparsely.
+Cloud cloud_with_outliers() {
+  Cloud cloud = test::sphere_cloud(20'000, 10);
+  test::append(cloud, test::jittered(test::sphere_cloud(1'500, 11), 12, 0.8));
+  test::append(cloud, test::sphere_cloud(300, 13, 0.5, {2.5, 0, 0}));
+  return test::shuffled(cloud, 14);
+}
+
 NamedCloud cloud_number(int i) {
   switch (i) {
     case 0:
@@ -82,6 +90,8 @@ NamedCloud cloud_number(int i) {
       return {"plane", test::plane_cloud(10'000, 5)};
     case 5:
       return {"noisy sphere", test::jittered(test::sphere_cloud(20'000, 6), 7, 0.03)};
+    case 6:
+      return {"outliers and a sparse part", cloud_with_outliers()};
     default:
       break;
   }
@@ -89,7 +99,7 @@ NamedCloud cloud_number(int i) {
   test::append(repeated, test::sphere_cloud(3'000, 8));
   return {"repeated points", test::shuffled(repeated, 9)};
 }
-constexpr int kClouds = 7;
+constexpr int kClouds = 8;
 
 /// Small tests of their own, so that slow checkers can run many at once.
 class GpuOnCloud : public Gpu, public testing::WithParamInterface<std::tuple<int, int>> {};
@@ -328,6 +338,25 @@ TEST_F(Gpu, GivesTheSameBytesRunAfterRun) {
     expect_same_bytes(r.reconstruct(torus, {{.depth = 7}}), other);
   }
   expect_same_bytes(r.reconstruct(test::shuffled(sphere, 14), {{.depth = 8}, {.density = true}}), first);
+}
+
+TEST_F(Gpu, ReconstructsManyCloudsAsOneByOne) {
+  std::vector<Cloud> clouds{test::sphere_cloud(250'000, 1)};  // alone
+  for (std::uint64_t i = 0; i < 60; ++i) clouds.push_back(test::torus_cloud(500 + 331 * static_cast<int>(i), i));
+  clouds.emplace_back();
+  Options options;
+  options.depth = 6;
+  Reconstructor on_cpu(Device::cpu());
+  Reconstructor on_gpu(gpu_);
+  for (int round = 0; round < 3; ++round) {
+    const std::vector<Reconstruction> results = on_gpu.reconstruct_many(clouds, options);
+    for (std::size_t i = 0; i + 1 < clouds.size(); ++i) {
+      ASSERT_FALSE(results[i].error) << results[i].error->what();
+      expect_same_bytes(results[i].mesh, on_cpu.reconstruct(clouds[i], options));
+    }
+    ASSERT_TRUE(results.back().error);
+    EXPECT_EQ(results.back().error->code(), ErrorCode::empty_result);
+  }
 }
 
 TEST_F(Gpu, KeepsAFieldAliveAfterItsReconstructor) {

@@ -3,9 +3,10 @@
 
     bench/device_choice.py --bin build/bin [--points 1e4,1e5,1e6,1e7] [--depths 6,7,8,9,10,11] [--shapes knot,sphere] [--json FILE]
 
-Generates clouds, reconstructs each from file to file on the CPU, on the GPU and with `auto`, in turn, and prints medians of the wall
-clock of the whole process, which device `auto` took, and how much longer that is than the better one. The last lines fit the model
-of src/reconstruct/run_seconds.cpp to the same runs. Needs a GPU. Exit code 1 if a choice costs more than --limit, 2 on usage.
+Generates clouds, reconstructs each from file to file on the CPU, on the GPU and with `auto`, in turn --repeat times (those of a
+million points and more once), and prints medians of the wall clock of the whole process, which device `auto` took, and how much
+longer that is than the better one. The last lines fit the model of src/reconstruct/run_seconds.cpp to the same runs. Needs a GPU.
+Exit code 1 if a choice costs more than --limit, 2 on usage.
 """
 import argparse
 import itertools
@@ -26,20 +27,14 @@ def words(kind):
 
 
 def timed(program, cloud, folder, device, depth):
-    """Seconds of one run."""
+    """Seconds of one run, which device it took, and the nodes of its octree."""
+    report = folder / "report.json"
     begin = time.monotonic()
     subprocess.run([program, "reconstruct", cloud, "-o", folder / "mesh.ply", "--overwrite", "-q", "--device", device,
-                    "--depth", str(depth)], check=True)
-    return time.monotonic() - begin
-
-
-def reported(program, cloud, folder, depth):
-    """What `auto` took, and the nodes of the octree."""
-    report = folder / "report.json"
-    subprocess.run([program, "reconstruct", cloud, "-o", folder / "mesh.ply", "--overwrite", "-q", "--depth", str(depth),
-                    "--report", report], check=True)
+                    "--depth", str(depth), "--report", report], check=True)
+    seconds = time.monotonic() - begin
     told = json.loads(report.read_text())
-    return told["device"]["kind"], told["octree"]["nodes"]
+    return seconds, told["device"]["kind"], told["octree"]["nodes"]
 
 
 def fit(rows, device):
@@ -77,10 +72,10 @@ def main():
                            stdout=subprocess.DEVNULL)
             for depth in args.depths:
                 runs = {device: [] for device in DEVICES}
-                for _ in range(args.repeat):
-                    for device in DEVICES:
-                        runs[device].append(timed(program, cloud, folder, device, depth))
-                taken, nodes = reported(program, cloud, folder, depth)
+                for _ in range(args.repeat if points < 10**6 else 1):
+                    for device in DEVICES:  # `auto` is the last, whose choice is kept
+                        seconds, taken, nodes = timed(program, cloud, folder, device, depth)
+                        runs[device].append(seconds)
                 row = {"shape": shape, "points": points, "depth": depth, "nodes": nodes, "taken": taken,
                        **{device: statistics.median(seconds) for device, seconds in runs.items()}}
                 row["over"] = row["auto"] / min(row["cpu"], row["cuda"])

@@ -102,12 +102,12 @@ struct Times {
   double per_node;   ///< s
 };
 
-/// Of 61 runs from file to file (docs/decisions/0053): three generated shapes of 10^4 to 10^7 points and a scan, depths
-/// 6 to 10. The CPU is that of the H200's host.
-constexpr Times kCpu{0.026, 0.083e-6, 0.056e-6};
+/// The mean over 61 and 120 runs from file to file on two machines (docs/decisions/0053): five generated shapes of 10^4 to 10^7 points
+/// and a scan, depths 6 to 11. The CPU is that of an H200's host.
+constexpr Times kCpu{0.0235, 0.07e-6, 0.051e-6};
 constexpr double kCpuThreads = 16;
 constexpr double kCpuGain = 0.86;  ///< twice the threads are 2^0.86 as fast
-constexpr Times kGpu{0.372, 0.024e-6, 0.0102e-6};
+constexpr Times kGpu{0.36, 0.017e-6, 0.009e-6};
 
 }  // namespace
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,16 +23,11 @@ constexpr const char* kUsage =
     "by\n"
     "one, then all of them with Reconstructor::reconstruct_many. Prints clouds per second, medians of the repeats.\n";
 
-Device device_of(const std::string& name, int threads) {
-  if (name == "cpu") return Device::cpu(threads);
-  return name == "cuda" ? Device::cuda(0) : Device::automatic();
-}
-
 /// Median clouds per second of `work`, which is done once more before.
 template <class Work>
 double median_rate(int repeats, std::size_t clouds, const Work& work) {
   std::vector<double> rates;
-  for (int i = -1; i < repeats; ++i) {
+  for (int i = -1; i < std::max(1, repeats); ++i) {
     const auto start = std::chrono::steady_clock::now();
     work();
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
@@ -80,7 +74,7 @@ int run(const std::vector<std::string>& words) {
       clouds.push_back(clouds[static_cast<std::size_t>(i % kDifferent)]);
     }
   }
-  Reconstructor reconstructor(device_of(device, sampling.threads));
+  Reconstructor reconstructor(Device::parse(device, sampling.threads));
   const std::span<const Cloud> some(clouds.data(), std::min<std::size_t>(clouds.size(), 256));
   Mesh mesh;
   const double one_by_one = median_rate(repeats, some.size(), [&] {
@@ -95,11 +89,4 @@ int run(const std::vector<std::string>& words) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  try {
-    return run({argv + 1, argv + argc});
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "pointskin_many: %s\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return pointskin::bench::run_main("pointskin_many", argc, argv, run); }

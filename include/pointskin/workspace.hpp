@@ -26,7 +26,7 @@ class Workspace {
   /// @param cuda_stream  a cudaStream_t of the GPU `device`, also the default stream (null). It must live as long as
   /// this
   ///                     workspace and all in it. Work is enqueued there in the order of the calls; where a call
-  ///                     returns results to the host it waits for the stream.
+  ///                     returns results to the host it waits for them.
   /// @throws Error usage unless `device` is a GPU, device_unavailable if it does not answer
   Workspace(const Device& device, void* cuda_stream);
 

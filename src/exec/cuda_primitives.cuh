@@ -197,8 +197,9 @@ inline bool is_one_launch(const Cuda& ex, std::int64_t n) {
 }
 
 /// Calls f(round, i, f.prepare(i)) for every i in [0, n), or [0, f.indices(round)), with f.takes_part(i) and every round in
-/// [0, rounds), rounds one after another. Asynchronous. What fits onto the GPU at one block a multiprocessor takes one cooperative launch,
-/// with a barrier between rounds and one call of prepare, whose result stays in registers.
+/// [0, rounds), rounds one after another. Asynchronous. What fits onto the GPU at one block a multiprocessor takes one cooperative
+/// launch, with a barrier between rounds and, unless rounds have indices of their own, one call of prepare, whose result stays in
+/// registers.
 template <class F>
 void sweep(Cuda& ex, const char* label, int rounds, std::int64_t n, const F& f) {
   if (n <= 0 || rounds <= 0) return;

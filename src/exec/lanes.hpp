@@ -9,7 +9,7 @@
 namespace pointskin::exec {
 
 /// What for_each_by_lanes does, on one thread. F has kLanes (a power of two, at most 32), a trivially copyable type Sum
-/// of 4-byte members with `+`, part(i, lane) and finish(i, sum).
+/// of members of 4 or 8 bytes with `+`, part(i, lane) and finish(i, sum).
 template <class F>
 struct SumOfLanes {
   F f;

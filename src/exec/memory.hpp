@@ -39,6 +39,7 @@ class MemoryPool {
     set_limit(bytes);
   }
   [[nodiscard]] std::int64_t limit() const noexcept { return limit_; }
+  [[nodiscard]] std::int64_t lasting_limit() const noexcept { return lasting_limit_; }
 
   [[nodiscard]] std::int64_t held_bytes() const noexcept { return held_; }
   [[nodiscard]] std::int64_t peak_bytes() const noexcept { return peak_; }

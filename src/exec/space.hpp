@@ -8,8 +8,9 @@
 //   for_each_long(ex, "label", n, f)           the same, for few indices that take long
 //   for_each_by_lanes(ex, "label", n, f)       f.finish(i, s) for every i in [0, n), s the sum of f.part(i, lane) over
 //                                              F::kLanes lanes in the order of lanes.hpp
-//   sweep(ex, "label", rounds, n, f)           f(round, i, f.prepare(i)) for every i in [0, n) with f.takes_part(i),
-//                                              rounds one after another; what prepare returns must not change meanwhile
+//   sweep(ex, "label", rounds, n, f)           f(round, i, f.prepare(i)) for every i in [0, n), or [0, f.indices(round))
+//                                              where f has that, with f.takes_part(i), rounds one after another; what
+//                                              prepare returns must not change meanwhile
 //   reduce_tail(ex, "label", values, out, combine)  the last step of reduce: few values to one; with kOwnKernels also
 //                                              reduce_any_order, for combinations that are exact (reduce_order.hpp)
 //   select(ex, "label", n, keep)               Buffer<int32> of the i in [0, n) with keep(i), ascending

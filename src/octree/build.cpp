@@ -92,6 +92,7 @@ bool sort_by_upper_bits(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<co
                         int low_bits, SortedPoints& sorted) {
   constexpr int kKeyBits = 3 * kPointBits;
   const std::int64_t n = positions.size;
+  sorted = {};  // of an attempt before
   auto keys = exec::make_buffer<std::uint64_t>(ex, n);
   auto order = exec::make_buffer<std::int32_t>(ex, n);
   for_each(ex, "octree.keys", n, KeyAndIndex{{positions, keys.view()}, order.view()});

@@ -45,8 +45,8 @@ struct SortedPoints {
 /// result does not depend on the caller's order unless two points are the same in every bit.
 /// @param positions  shape (n), in the unit cube
 /// @param tie_break  shape (n); equal only for points that may be exchanged
-/// O(n), 24 n bytes of scratch; one more sort where more than 32 points share the upper 48 bits of a key, two more
-/// again where that many share a key. Deterministic, the same order on every device. @throws Error over_limit if memory
+/// O(n), 24 n bytes of scratch; one more sort where more than 32 points share the upper 48 bits of a key (in clouds of up to
+/// 2^20 points also the upper 40), two more again where that many share a key. Deterministic, the same order on every device. @throws Error over_limit if memory
 /// runs out
 template <exec::Space Exec>
 SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break);

@@ -51,19 +51,20 @@ struct SumAtCorner {
     const std::int32_t last = in_cell.level.point_begin[cell + 1];
     const octree::Coordinates at = octree::decode(in_cell.level.node_key(static_cast<std::int32_t>(cell)));
     typename What::Value sum{};
-    for (std::int32_t i = first; i < last; i += kAtOnce) {
+    const std::int32_t count = last - first;
+    for (std::int32_t done = 0; done < count; done += kAtOnce) {
       Vec3f position[kAtOnce];
       typename What::Value value[kAtOnce];
       PSK_UNROLL
       for (int k = 0; k < kAtOnce; ++k) {
-        const std::int32_t j = i + k < last ? i + k : last - 1;
-        position[k] = in_cell.positions[j];
-        value[k] = in_cell.what(j);
+        const std::int32_t i = first + (done + k < count ? done + k : count - 1);
+        position[k] = in_cell.positions[i];
+        value[k] = in_cell.what(i);
       }
       PSK_UNROLL
       for (int k = 0; k < kAtOnce; ++k) {
         const Vec3f local = octree::local_in_cell(position[k], at, in_cell.level.depth);
-        if (i + k < last) sum += octree::corner_weight(static_cast<int>(corner & 7), local) * value[k];
+        if (done + k < count) sum += octree::corner_weight(static_cast<int>(corner & 7), local) * value[k];
       }
     }
     in_cell.sums[corner] = sum;

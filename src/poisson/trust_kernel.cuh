@@ -27,21 +27,21 @@ struct TrustByLanes {
     const int own = lane % kLanes;
     Scatter scatter;
     bool any = false;
-    const std::int32_t last_pair = end - 2;
-    for (std::int32_t from = first + own; from < end; from += kAtOnce * kLanes) {
+    const std::int32_t count = end - first;
+    for (std::int32_t from = own; from < count; from += kAtOnce * kLanes) {
       // All that is read is asked for before any of it is waited for; what is beyond the end adds nothing.
       PSK_UNROLL
       for (int k = 0; k < kAtOnce; ++k) {
         const std::int32_t i = from + k * kLanes;
-        any = (cells.is_meant(i < end ? i : end - 1) && i < end) || any;
+        any = (cells.is_meant(first + (i < count ? i : count - 1)) && i < count) || any;
       }
-      if (last_pair < first) continue;
+      if (count < 2) continue;
       Scatter part[kAtOnce];
       PSK_UNROLL
       for (int k = 0; k < kAtOnce; ++k) {
         const std::int32_t i = from + k * kLanes;
-        const Scatter pair = cells.scatter_of(i < last_pair ? i : last_pair);
-        part[k] = i <= last_pair ? pair : Scatter{};
+        const Scatter pair = cells.scatter_of(first + (i < count - 2 ? i : count - 2));
+        part[k] = i < count - 1 ? pair : Scatter{};
       }
       PSK_UNROLL
       for (int k = 0; k < kAtOnce; ++k) scatter.add(part[k]);

@@ -103,6 +103,8 @@ DeviceMesh FieldImpl::extract_and_release(RunReport& report) {
 
 void Engine::limit_memory(std::int64_t bytes) const { workspace_.data().space.pool()->set_limit(bytes); }
 
+bool Engine::has_lasting_limit() const { return workspace_.data().space.pool()->lasting_limit() > 0; }
+
 std::shared_ptr<FieldImpl> Engine::solve(const Input& input, const Options& options, bool keep_all, RunReport& report,
                                          const std::optional<Bounds>& core) const {
   return exec::visit(workspace_.data().space, [&](auto& ex) {

@@ -69,6 +69,8 @@ class Engine {
   [[nodiscard]] const Workspace& workspace() const { return workspace_; }
   /// What all arrays may take together from now on, in bytes; 0: no limit. Fields of the engine are held to it, too.
   void limit_memory(std::int64_t bytes) const;
+  /// Whether Workspace::limit_memory has set one.
+  [[nodiscard]] bool has_lasting_limit() const;
   /// Gives memory that is kept for the next run back to the system.
   void release_memory() const { workspace_.release_memory(); }
   /// @param keep_all  FitSetup::keep_all

@@ -125,44 +125,86 @@ void Crew::put_back(std::unique_ptr<Reconstructor> reconstructor) {
   idle_.push_back(std::move(reconstructor));
 }
 
-void Crew::release_memory() {
+bool Crew::release_memory() {
   const std::lock_guard lock(mutex_);
+  const bool had_some = !idle_.empty();
   idle_.clear();
+  return had_some;
+}
+
+bool Crew::ran_out_of_gpu_memory(const Reconstruction& result) const {
+  return member_.kind != DeviceKind::cpu && result.error && result.error->code() == ErrorCode::over_limit;
+}
+
+Reconstruction Crew::reconstruct_alone(const Cloud& cloud, const Options& options, Reconstructor& whole) {
+  Reconstruction result = reconstruct_one(whole, cloud, options);
+  if (ran_out_of_gpu_memory(result) && release_memory()) result = reconstruct_one(whole, cloud, options);
+  return result;
+}
+
+Reconstruction Crew::reconstruct_beside(const Cloud& cloud, const Options& options) {
+  Reconstruction result;
+  try {
+    std::unique_ptr<Reconstructor> reconstructor = take();
+    result = reconstruct_one(*reconstructor, cloud, options);
+    if (!ran_out_of_gpu_memory(result)) put_back(std::move(reconstructor));
+  } catch (const Error& error) {  // also of take()
+    if (error.code() == ErrorCode::interrupted) throw;
+    result.error = error;
+  }
+  return result;
 }
 
 std::vector<Reconstruction> Crew::reconstruct(std::span<const Cloud> clouds, const Options& options,
                                               Reconstructor& whole) {
+  constexpr std::int64_t kKeptBytes = std::int64_t{1} << 30;  // of a GPU, from one call to the next
   std::vector<Reconstruction> results(clouds.size());
   Tally tally(options, clouds.size());
   const Options one = options_of_one(options, tally);
   const std::vector<std::size_t> order = by_size(clouds);
-  const auto reconstruct_alone = [&](std::size_t i) {
-    results[i] = reconstruct_one(whole, clouds[i], one);
-    tally.add();
-  };
-  const std::size_t alone = count_alone(clouds, order, whole.device(), cpu_.threads());
-  for (std::size_t i = 0; i < alone; ++i) reconstruct_alone(order[i]);
   const bool on_gpu = member_.kind != DeviceKind::cpu;
+  const std::size_t alone = count_alone(clouds, order, whole.device(), cpu_.threads());
+  for (std::size_t i = 0; i < alone; ++i) {
+    results[order[i]] = reconstruct_alone(clouds[order[i]], one, whole);
+    tally.add();
+  }
+  if (on_gpu && alone > 0) whole.workspace().release_memory();
   const std::atomic<bool>* const cancelled = exec::cancel_flag();
   std::mutex mutex;                // guards what follows
   std::vector<std::size_t> again;  // those for which the others left no memory
+  std::int64_t peak_bytes = 0;     // of one run
   std::atomic<std::size_t> next{alone};
   cpu_.run_blocks(static_cast<std::int64_t>(order.size() - alone), [&](std::int64_t /*any*/) {
     std::optional<CancelScope> scope;
     if (cancelled != nullptr) scope.emplace(*cancelled);
     const std::size_t i = order[next++];
-    std::unique_ptr<Reconstructor> reconstructor = take();
-    results[i] = reconstruct_one(*reconstructor, clouds[i], one);
-    put_back(std::move(reconstructor));
-    if (on_gpu && results[i].error && results[i].error->code() == ErrorCode::over_limit) {
+    results[i] = reconstruct_beside(clouds[i], one);
+    const bool is_done = !ran_out_of_gpu_memory(results[i]);
+    {
       const std::lock_guard lock(mutex);
-      again.push_back(i);
-    } else {
-      tally.add();
+      peak_bytes = std::max(peak_bytes, results[i].report.device_peak_bytes);
+      if (!is_done) again.push_back(i);
     }
+    if (is_done) tally.add();
   });
-  if (!again.empty()) release_memory();
-  for (const std::size_t i : again) reconstruct_alone(i);
+  if (on_gpu && (!again.empty() || peak_bytes * cpu_.threads() > kKeptBytes)) release_memory();
+  for (const std::size_t i : again) {
+    results[i] = reconstruct_alone(clouds[i], one, whole);
+    tally.add();
+  }
+  return results;
+}
+
+std::vector<Reconstruction> reconstruct_in_turn(std::span<const Cloud> clouds, const Options& options,
+                                                Reconstructor& reconstructor) {
+  std::vector<Reconstruction> results;
+  results.reserve(clouds.size());
+  Tally tally(options, clouds.size());
+  const Options one = options_of_one(options, tally);
+  for (const Cloud& cloud : clouds) {
+    results.push_back(reconstruct_one(reconstructor, cloud, one));
+    tally.add();
+  }
   return results;
 }
 

@@ -25,12 +25,23 @@ class Crew {
   /// One that no thread uses now.
   std::unique_ptr<Reconstructor> take();
   void put_back(std::unique_ptr<Reconstructor> reconstructor);
-  void release_memory();
+  /// Of those that no thread uses. @returns false if there were none
+  bool release_memory();
+
+  /// By the whole device.
+  Reconstruction reconstruct_alone(const Cloud& cloud, const Options& options, Reconstructor& whole);
+  /// By one that no other thread uses; one that runs out of memory is gone.
+  Reconstruction reconstruct_beside(const Cloud& cloud, const Options& options);
+  [[nodiscard]] bool ran_out_of_gpu_memory(const Reconstruction& result) const;
 
   Device member_;     // of each reconstructor
   exec::Cpu cpu_;     // as many threads as work at once
   std::mutex mutex_;  // guards idle_
   std::vector<std::unique_ptr<Reconstructor>> idle_;
 };
+
+/// Reconstructor::reconstruct_many, one cloud after the other.
+std::vector<Reconstruction> reconstruct_in_turn(std::span<const Cloud> clouds, const Options& options,
+                                                Reconstructor& reconstructor);
 
 }  // namespace pointskin::detail

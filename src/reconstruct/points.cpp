@@ -78,19 +78,19 @@ struct AddFlaws {
 };
 
 /// What one look at all points tells.
-struct Seen {
+struct FirstLook {
   octree::Extent extent;
   Flaws flaws;
 };
-struct JoinSeen {
+struct JoinLooks {
   static constexpr bool kAnyOrder = true;
-  PSK_HD Seen operator()(const Seen& a, const Seen& b) const {
+  PSK_HD FirstLook operator()(const FirstLook& a, const FirstLook& b) const {
     return {octree::JoinExtents{}(a.extent, b.extent), AddFlaws{}(a.flaws, b.flaws)};
   }
 };
 
 /// The points of a lane of exec/reduce_order.hpp.
-struct SeeLane {
+struct LookAtLane {
   struct Part {
     Bounds box;
     Flaws flaws;
@@ -108,7 +108,7 @@ struct SeeLane {
 
   ArrayView<const Vec3f> positions, normals;
   std::int64_t lanes;
-  ArrayView<Seen> out;
+  ArrayView<FirstLook> out;
   PSK_HD void operator()(std::int64_t lane) const {
     const Point point{{positions}, {positions, normals}};
     const Part part = exec::combine_lane(point, Join{}, positions.size, lanes, lane);
@@ -118,12 +118,12 @@ struct SeeLane {
 
 /// Extent and flaws of all points. Waits.
 template <exec::Space Exec>
-Seen look_at_points(Exec& ex, const PointBuffers& points) {
+FirstLook look_at_points(Exec& ex, const PointBuffers& points) {
   const std::int64_t lanes = exec::reduce_lanes(points.positions.size());
-  auto seen = exec::make_buffer<Seen>(ex, lanes);
+  auto seen = exec::make_buffer<FirstLook>(ex, lanes);
   for_each_long(ex, "upload.check", lanes,
-                SeeLane{points.positions.cview(), points.normals.cview(), lanes, seen.view()});
-  return exec::read_element(ex, exec::reduce_lane_values(ex, "upload.check", std::move(seen), JoinSeen{}).cview(), 0);
+                LookAtLane{points.positions.cview(), points.normals.cview(), lanes, seen.view()});
+  return exec::read_element(ex, exec::reduce_lane_values(ex, "upload.check", std::move(seen), JoinLooks{}).cview(), 0);
 }
 
 /// Flaws of the points to use. Waits.
@@ -222,7 +222,7 @@ PointBuffers upload(Exec& ex, const Input& input, octree::Extent* extent) {
   if (!input.has_normals())
     throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
   PointBuffers points = taken(ex, input);
-  const Seen seen = look_at_points(ex, points);
+  const FirstLook seen = look_at_points(ex, points);
   require_finite(seen.flaws);
   require_normals(seen.flaws);
   if (extent != nullptr) *extent = seen.extent;

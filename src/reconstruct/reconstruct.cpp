@@ -69,6 +69,8 @@ class PSK_HIDDEN Reconstructor::Impl {
                                                Reconstructor& self) {
     validate(options);
     const Device& device = workspace().device();
+    if (device.kind != DeviceKind::cpu && engine_.has_lasting_limit())
+      return detail::reconstruct_in_turn(clouds, options, self);
     if (!crew_) crew_ = std::make_unique<detail::Crew>(device);
     return crew_->reconstruct(clouds, options, self);
   }

@@ -55,9 +55,14 @@ int guarded_main(const std::vector<std::string>& args) {
   }
 }
 
-/// Also where telling of another error takes memory that is not there.
+/// Also where telling of another error takes memory that is not there. Of several threads at once, the first tells and ends the
+/// process; the others give it time for that.
 int without_memory() noexcept {
-  print_out_of_memory();
+  static std::atomic_flag is_told;
+  if (!is_told.test_and_set())
+    print_out_of_memory();
+  else
+    sleep(1);
   return static_cast<int>(ErrorCode::over_limit);
 }
 

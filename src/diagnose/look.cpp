@@ -93,7 +93,8 @@ struct LookAtSample {
     const double along_n = dot(n, d);
     const double along_m = dot(m, d);
     const double limit = kSteep * kSteep * dot(d, d);
-    if (!(along_n * along_n < limit && along_m * along_m < limit)) return;
+    const bool are_neighbours = may_share_surface(i, j, dot(d, d));
+    if (!are_neighbours || !(along_n * along_n < limit && along_m * along_m < limit)) return;
     const double cosine = dot(n, m);
     const bool opposed = cosine < -kAlikeCosine;
     const double behind = along_m - along_n;  // > 0: each lies behind the other
@@ -101,6 +102,19 @@ struct LookAtSample {
     tally.count(kApart, opposed && behind > 0);
     tally.count(kFacing, opposed && behind < 0);
     tally.count(kAbreast, opposed && behind == 0);
+  }
+
+  /// Whether two samples are neighbours, as far as areas tell. Those without one are outliers, whose normals are random, or
+  /// flipped ones of the surface, which lie as near to the next sample there as any: nearer than the width of kNear samples.
+  /// Both areas are read before one is looked at: reads that wait for others take longer.
+  [[nodiscard]] PSK_HD bool may_share_surface(std::int64_t i, std::int64_t j, double distance2) const {
+    constexpr double kNear = 4;
+    if (samples.areas.empty()) return true;
+    const float area = samples.areas[i];
+    const float other = samples.areas[j];
+    if (area > 0 && other > 0) return true;
+    const double cell = 1.0 / static_cast<double>(std::int64_t{1} << tree.depth);
+    return distance2 < kNear * kNear * static_cast<double>(area > other ? area : other) * (cell * cell);
   }
 
   /// Half the squared distance across the surface, to which even curvature does not add (poisson/trust.hpp).

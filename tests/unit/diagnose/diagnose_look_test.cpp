@@ -46,6 +46,18 @@ Cloud with_flipped_part(Cloud cloud, float from) {
   return cloud;
 }
 
+/// So many more points in the box around the cloud, with random normals.
+Cloud with_outliers(Cloud cloud, std::int64_t count, std::uint64_t seed) {
+  test::Random random(seed);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const Vec3d n = random.direction();
+    cloud.positions.push_back({static_cast<float>(random.in(-1.35, 1.35)), static_cast<float>(random.in(-1.35, 1.35)),
+                               static_cast<float>(random.in(-0.35, 0.35))});
+    cloud.normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
+  }
+  return cloud;
+}
+
 TEST(Look, FindsNothingWrongWithClosedShapes) {
   for (const Cloud& cloud :
        {test::sphere_cloud(20'000, 1), test::linked_tori_cloud(30'000, 2), test::box_cloud(20'000, 3),
@@ -75,6 +87,16 @@ TEST(Look, CountsFlippedNormals) {
     const NormalsVerdict verdict = diagnose::judge_normals(seen, true);
     EXPECT_EQ(verdict, share < 0.05 ? NormalsVerdict::suspicious : NormalsVerdict::wrong);
   }
+}
+
+TEST(Look, AsksNoOutliersForTheirNormals) {
+  const Cloud torus = test::torus_cloud(50'000, 22);
+  const Findings seen = findings(with_outliers(torus, 2'500, 23));
+  EXPECT_LT(seen.opposed, 0.0015);
+  EXPECT_EQ(diagnose::judge_normals(seen, true), NormalsVerdict::consistent);
+  const Findings flips = findings(with_outliers(with_flips(torus, 0.1, 24), 2'500, 23));
+  EXPECT_NEAR(flips.flipped, 0.1, 0.01);  // those of the surface are still seen
+  EXPECT_EQ(diagnose::judge_normals(flips, true), NormalsVerdict::wrong);
 }
 
 TEST(Look, TellsTheSidesOfThinWallsFromFlips) {

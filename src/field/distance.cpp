@@ -1,7 +1,9 @@
 #include "field/distance.hpp"
 
 #include <cmath>
+#include <cstdint>
 
+#include "exec/algorithms.hpp"
 #include "exec/this_space.hpp"
 #include "field/corner_values.hpp"
 #include "octree/walk.hpp"
@@ -30,6 +32,53 @@ struct DropPlane {
     if (areas[i] == 0) normals[i] = {};
   }
 };
+
+/// Whether a sample has a plane.
+struct FlagPlane {
+  ArrayView<const Vec3f> normals;
+  ArrayView<std::int32_t> flags;
+  PSK_HD void operator()(std::int64_t i) const { flags[i] = normals[i] == Vec3f{} ? 0 : 1; }
+};
+
+struct ListPlane {
+  ArrayView<const std::int32_t> before;
+  ArrayView<std::int32_t> samples;
+  PSK_HD void operator()(std::int64_t i) const {
+    if (before[i] < before[i + 1]) samples[before[i]] = static_cast<std::int32_t>(i);
+  }
+};
+
+/// The samples that have a plane, in their order. A corner far from the surface and amid outliers would else look at all of
+/// those nearer than the surface, one by one, and at none that counts.
+struct WithPlanes {
+  ArrayView<const std::int32_t> samples;  ///< empty, as the other: nearly all have one, and all are listed
+  ArrayView<const std::int32_t> before;   ///< (all samples + 1) how many of them come before each sample
+
+  [[nodiscard]] PSK_HD std::int32_t first_of(std::int32_t sample) const {
+    return before.empty() ? sample : before[sample];
+  }
+  [[nodiscard]] PSK_HD std::int32_t sample(std::int32_t i) const { return samples.empty() ? i : samples[i]; }
+};
+
+struct PlaneList {
+  exec::Buffer<std::int32_t> samples, before;
+  [[nodiscard]] WithPlanes view() const { return {samples.cview(), before.cview()}; }
+};
+
+/// An empty list where it would spare less than it costs. Waits.
+template <exec::Space Exec>
+PlaneList list_planes(Exec& ex, ArrayView<const Vec3f> normals) {
+  constexpr const char* kLabel = "distance.list";
+  constexpr std::int64_t kFew = 50;  // one in so many without a plane
+  const std::int64_t n = normals.size;
+  PlaneList list{exec::make_buffer<std::int32_t>(ex, n), exec::make_buffer<std::int32_t>(ex, n + 1)};
+  for_each(ex, kLabel, n, FlagPlane{normals, list.samples.view()});
+  exclusive_scan(ex, kLabel, list.samples.cview(), list.before.view());
+  const std::int64_t count = exec::read_element(ex, list.before.cview(), n);
+  if ((n - count) * kFew <= n) return {};
+  for_each(ex, kLabel, n, ListPlane{list.before.cview(), list.samples.view()});
+  return list;
+}
 
 /// The samples found so far, nearest first.
 struct Nearest {
@@ -60,6 +109,7 @@ struct DistanceAtCorner {
   static constexpr float kLeast = 1e-6F;  ///< a value of 0 is inside
 
   TangentPlanes planes;
+  WithPlanes with_planes;
   Sides sides;
 
   PSK_HD float operator()(const octree::OctreeView& tree, int depth, std::int32_t node) const {
@@ -79,10 +129,12 @@ struct DistanceAtCorner {
     return inwards;
   }
 
+  /// @param first  among those that are listed, as `last`
   PSK_HD void scan(const Vec3f& x, std::int32_t first, std::int32_t last, Nearest& nearest) const {
     for (std::int32_t i = first; i < last; ++i) {
-      if (planes.normals[i] == Vec3f{}) continue;
-      nearest.add(i, octree::squared_distance(x, planes.positions[i]));
+      const std::int32_t sample = with_planes.sample(i);
+      if (with_planes.samples.empty() && planes.normals[sample] == Vec3f{}) continue;
+      nearest.add(sample, octree::squared_distance(x, planes.positions[sample]));
     }
   }
 
@@ -96,7 +148,9 @@ struct DistanceAtCorner {
             const bool is_inner = dx >= -1 && dx < 1 && dy >= -1 && dy < 1 && dz >= -1 && dz < 1;
             if (ring == 2 && is_inner) continue;
             const std::int32_t cell = level.neighbour(node, dx, dy, dz);
-            if (level.is_cell(cell)) scan(x, level.point_begin[cell], level.point_begin[cell + 1], nearest);
+            if (level.is_cell(cell))
+              scan(x, with_planes.first_of(level.point_begin[cell]), with_planes.first_of(level.point_begin[cell + 1]),
+                   nearest);
           }
       const float reach = static_cast<float>(ring) * width;
       if (nearest.is_full() && nearest.farthest() <= reach * reach) return true;
@@ -110,7 +164,7 @@ struct DistanceAtCorner {
     const float bound = bounded ? nearest.farthest() : 0;
     nearest.count = 0;
     const auto prune = [&](float d) { return (bounded && d > bound) || (nearest.is_full() && d > nearest.farthest()); };
-    octree::walk({tree, planes.positions, {}}, x, prune,
+    octree::walk({tree, planes.positions, {}, with_planes.before}, x, prune,
                  [&](std::int32_t first, std::int32_t last) { scan(x, first, last, nearest); });
   }
 
@@ -151,7 +205,8 @@ template <exec::Space Exec>
 exec::Buffer<float> distance_to_planes(Exec& ex, const octree::OctreeData& tree, const TangentPlanes& planes,
                                        const Sides& sides) {
   const octree::OctreeView view = tree.view();
-  return fill_corners(ex, "distance.planes", view, DistanceAtCorner{planes, sides});
+  const PlaneList list = list_planes(ex, planes.normals);
+  return fill_corners(ex, "distance.planes", view, DistanceAtCorner{planes, list.view(), sides});
 }
 
 PSK_INSTANTIATE(normalise);

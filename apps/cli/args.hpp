@@ -32,7 +32,7 @@ std::optional<Vec3d> parse_shift(const std::string& text);
 /// @param words  what may be there, for the error
 /// @throws Error usage, naming `option`; device_unavailable
 Device parse_device(const std::string& text, int threads, const char* option = "--device",
-                    const char* words = "auto, cpu, cuda or cuda:N");
+                    const char* words = "auto, cpu, cuda, cuda:N, cuda:N,M or cuda:all");
 
 /// @throws Error usage unless `threads` is in [0, 4096]
 void check_threads(int threads);

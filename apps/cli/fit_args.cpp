@@ -112,9 +112,10 @@ Binding memory_limit(std::int64_t& bytes, const std::string& unit) {
 }
 
 OptionGroup device_options(DeviceArgs& args) {
-  return {
-      kDeviceGroup,
-      {option("--device DEV", "auto, cpu, cuda or cuda:N", &args.device, {"device", 30}), threads_row(args.threads)}};
+  return {kDeviceGroup,
+          {option("--device DEV", "auto, cpu, cuda, cuda:N, cuda:N,M, cuda:all (several GPUs as one)", &args.device,
+                  {"device", 30}),
+           threads_row(args.threads)}};
 }
 
 OptionGroup memory_options(std::int64_t& bytes) {

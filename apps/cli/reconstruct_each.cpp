@@ -89,7 +89,7 @@ ReconstructArgs args_of(const ReconstructArgs& all, const OneOfMany& cloud, cons
   args.output = cloud.output;
   args.report = cloud.report;
   args.asked = all;
-  args.device = device.kind == DeviceKind::cpu ? "cpu" : fmt::format("cuda:{}", device.index);
+  args.device = device.text();
   if (device.kind == DeviceKind::cpu) args.threads = device.threads;
   args.quiet = true;
   return args;

@@ -120,7 +120,8 @@ PSK_C_API psk_code psk_init(int32_t kind, void* target, size_t bytes, psk_error*
 /* A device with a stream and a pool of memory that is used again. See workspace.hpp. */
 typedef struct psk_workspace psk_workspace;
 
-/* device: "auto" (the first GPU if one answers, else the CPU), "cpu", "cuda" or "cuda:N"; NULL is "auto".
+/* device: "auto" (the first GPU if one answers, else the CPU), "cpu", "cuda", "cuda:N", or several
+   GPUs as one: "cuda:N,M", "cuda:all"; NULL is "auto".
    threads: of the CPU; 0: all that the process may use.
    Fails with PSK_USAGE or PSK_DEVICE_UNAVAILABLE. */
 PSK_C_API psk_code psk_workspace_create(const char* device, int32_t threads, psk_workspace** workspace,

@@ -32,7 +32,7 @@ class Workspace {
 
   [[nodiscard]] const Device& device() const;
 
-  /// The cudaStream_t that work is enqueued on; null on the CPU, where work is done when its call returns.
+  /// The cudaStream_t that work is enqueued on; of several GPUs the first one's, where all has its end; null on the CPU, where work is done when its call returns.
   [[nodiscard]] void* stream() const;
 
   /// Waits until the stream's work is done. @throws Error device_unavailable if some of it failed

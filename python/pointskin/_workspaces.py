@@ -17,7 +17,8 @@ class Workspace(Handle):
     Functions make one for themselves, for every thread and device; pass one as `device=` where several objects are to
     share it, or to work on a stream of your own. Calls in one workspace wait for each other.
 
-    device: "auto" (the first GPU if one answers, else the CPU), "cpu", "cuda" or "cuda:N". threads: of the CPU, 0: all.
+    device: "auto" (the first GPU if one answers, else the CPU), "cpu", "cuda", "cuda:N", or several GPUs as one:
+    "cuda:N,M", "cuda:all". threads: of the CPU, 0: all.
     stream: a cudaStream_t as an int, or an object with `cuda_stream` (torch) or `ptr` (cupy); None: one of its own.
     Raises DeviceUnavailableError, UsageError.
     """

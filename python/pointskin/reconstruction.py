@@ -132,7 +132,8 @@ def reconstruct(points: Any, normals: Any = None, *, attributes: Union[None, boo
     attributes: name to shape (n,) or (n, k), carried to the vertices; True: those of the Cloud.
     depth: 1 to 20, or "auto"; cells are cube / 2^depth wide; 8 where nothing is said.
     trim: in [0, 1), or "auto": cut where samples end; 0, closed, where nothing is said.
-    device: "auto", "cpu", "cuda", "cuda:N" or a Workspace; arrays on a GPU decide themselves. threads: of the CPU, 0: all.
+    device: "auto", "cpu", "cuda", "cuda:N", "cuda:N,M" and "cuda:all" (several GPUs as one) or a Workspace; arrays on a GPU decide
+    themselves. threads: of the CPU, 0: all.
     stream: a CUDA stream to work on; None: that of the array's library.
     max_memory: bytes on the device, 0: no limit.
     progress: a function of phase and share, which may return False to cancel, or True for a bar.

@@ -43,12 +43,31 @@ class AnySpace {
       space_;
 };
 
+/// Lets the stream of several GPUs, at the end of a call, wait for all that they were given: programs enqueue work of their own there.
+template <class Exec>
+class JoinedAtTheEnd {
+ public:
+  explicit JoinedAtTheEnd(const Exec& ex) : ex_(ex) {}
+  ~JoinedAtTheEnd() {
+    if constexpr (requires { ex_.join(); }) try {
+        ex_.join();
+      } catch (...) {  // NOLINT(bugprone-empty-catch): whoever waits for the stream is told
+      }
+  }
+  JoinedAtTheEnd(const JoinedAtTheEnd&) = delete;
+  JoinedAtTheEnd& operator=(const JoinedAtTheEnd&) = delete;
+
+ private:
+  const Exec& ex_;
+};
+
 /// f(space), with the space as what it is, made the calling thread's own: how an object calls a step.
 template <class F>
 decltype(auto) visit(const AnySpace& space, F&& f) {
   return std::visit(
       [&f](const auto& ex) -> decltype(auto) {
         ex->activate();
+        const JoinedAtTheEnd joined(*ex);
         return std::forward<F>(f)(*ex);
       },
       space.space_);

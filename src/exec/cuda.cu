@@ -4,104 +4,19 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
 #include <string>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "exec/cpu.hpp"
 #include "exec/cuda_check.cuh"
+#include "exec/cuda_pool.hpp"
 
 namespace pointskin::exec {
-namespace {
-
-/// Allocates in stream order from a driver's pool of its own whose release threshold is unlimited. Blocks up to
-/// kLargestKept bytes do not even go back there when they are freed: asking the driver takes longer than a small
-/// kernel. Work on the one stream is ordered, so a block may be handed out while its last user is still running.
-class CudaPool final : public MemoryPool {
- public:
-  CudaPool(int index, cudaStream_t stream, bool owns_stream) : stream_(stream), owns_stream_(owns_stream) {
-    cudaMemPoolProps properties{};
-    properties.allocType = cudaMemAllocationTypePinned;
-    properties.location.type = cudaMemLocationTypeDevice;
-    properties.location.id = index;
-    cuda_check(cudaMemPoolCreate(&pool_, &properties), "creating the memory pool");
-    std::uint64_t keep_all = ~std::uint64_t{0};
-    cuda_check(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep_all),
-               "setting up the memory pool");
-  }
-  ~CudaPool() override {
-    CudaPool::trim();
-    cudaMemPoolDestroy(pool_);
-    if (owns_stream_) cudaStreamDestroy(stream_);
-  }
-  CudaPool(const CudaPool&) = delete;
-  CudaPool& operator=(const CudaPool&) = delete;
-
-  void trim() noexcept override {
-    for (auto& [bytes, blocks] : kept_) {
-      for (void* block : blocks) cudaFreeAsync(block, stream_);
-      blocks.clear();
-    }
-    cudaStreamSynchronize(stream_);
-    cudaMemPoolTrimTo(pool_, 0);
-  }
-
- private:
-  void* take(std::size_t bytes) override {
-    const std::size_t rounded = size_class(bytes);
-    if (const auto kept = kept_.find(rounded); kept != kept_.end() && !kept->second.empty()) {
-      void* block = kept->second.back();
-      kept->second.pop_back();
-      return block;
-    }
-    void* block = nullptr;
-    cudaError_t status = cudaMallocFromPoolAsync(&block, rounded, pool_, stream_);
-    if (status == cudaErrorMemoryAllocation) {
-      cudaGetLastError();
-      trim();
-      status = cudaMallocFromPoolAsync(&block, rounded, pool_, stream_);
-    }
-    if (status == cudaErrorMemoryAllocation) {
-      cudaGetLastError();
-      throw Error(ErrorCode::over_limit, "out of memory on the GPU; while allocating " + std::to_string(bytes) +
-                                             " bytes with " + std::to_string(held_bytes()) +
-                                             " held; choose a smaller depth or a larger GPU");
-    }
-    cuda_check(status, "allocating device memory");
-    return block;
-  }
-  void give_back(void* block, std::size_t bytes) noexcept override {
-    const std::size_t rounded = size_class(bytes);
-    try {
-      if (rounded <= kLargestKept) return kept_[rounded].push_back(block);
-    } catch (...) {  // NOLINT(bugprone-empty-catch): no room to remember the block, so it is freed
-    }
-    cudaFreeAsync(block, stream_);
-  }
-
-  static constexpr std::size_t kLargestKept = std::size_t{32} << 20;
-
-  /// Four classes per octave, so that a block fits later requests of about its size; large blocks as they are.
-  static std::size_t size_class(std::size_t bytes) {
-    if (bytes <= 4096) return 4096;
-    if (bytes > kLargestKept) return bytes;
-    const std::size_t step = std::bit_floor(bytes - 1) / 4;
-    return (bytes + step - 1) / step * step;
-  }
-
-  std::unordered_map<std::size_t, std::vector<void*>> kept_;
-  cudaStream_t stream_;
-  bool owns_stream_;
-  cudaMemPool_t pool_ = nullptr;
-};
-
-}  // namespace
-
 namespace {
 
 void choose(int index) {
@@ -170,16 +85,37 @@ class Cuda::Lanes {
   char* memory_ = nullptr;
 };
 
-Cuda::Cuda(int index) : Cuda(index, make_stream(index), true) {}
-Cuda::Cuda(int index, void* stream) : Cuda(index, stream, false) {}
+Cuda::Cuda(int index) : Cuda(std::span<const int>(&index, 1)) {}
 
-Cuda::Cuda(int index, void* stream, bool owns_stream)
-    : index_(index), stream_(stream), lanes_(std::make_unique<Lanes>()) {
+Cuda::Cuda(int index, void* stream) : Cuda(open(index, stream)) {}
+Cuda::Cuda(std::span<const int> gpus) : Cuda(open(gpus)) {}
+
+Cuda::Opened Cuda::open(int index, void* stream) {
   choose(index);
-  cuda_check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, index),
+  return {index, stream, nullptr, make_cuda_pool(index, stream, false)};
+}
+
+Cuda::Opened Cuda::open(std::span<const int> gpus) {
+  for (const int gpu : gpus) choose(gpu);
+  const int lead = gpus.front();
+  if (gpus.size() == 1) {
+    void* stream = make_stream(lead);
+    return {lead, stream, nullptr, make_cuda_pool(lead, stream, true)};  // owns it: buffers may outlive this object
+  }
+  auto group = std::make_unique<gpus::Group>(gpus);
+  void* stream = group->stream(0);
+  const std::shared_ptr<MemoryPool> pool = group->pool();
+  return {lead, stream, std::move(group), pool};
+}
+
+Cuda::Cuda(Opened opened)
+    : index_(opened.index),
+      stream_(opened.stream),
+      lanes_(std::make_unique<Lanes>()),
+      group_(std::move(opened.group)),
+      pool_(std::move(opened.pool)) {
+  cuda_check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, index_),
              "reading the GPU's properties");
-  pool_ = std::make_shared<CudaPool>(index, static_cast<cudaStream_t>(stream),
-                                     owns_stream);  // owns the stream: buffers may outlive this object
   cuda_check(cudaMallocHost(&staging_, kStagingBytes + sizeof(std::uint32_t)), "allocating page-locked memory");
   arrived_ = reinterpret_cast<std::uint32_t*>(static_cast<char*>(staging_) + kStagingBytes);
   *arrived_ = ticket_;
@@ -196,6 +132,7 @@ Cuda::~Cuda() {
 }
 
 Cuda::Mark Cuda::mark() {
+  join();
   const int mark = next_mark_;
   next_mark_ = (next_mark_ + 1) % kMarks;
   cuda_check(cudaEventRecord(static_cast<cudaEvent_t>(marks_[mark]), static_cast<cudaStream_t>(stream_)), "timing");
@@ -212,6 +149,7 @@ double Cuda::milliseconds_between(Mark from, Mark to) const {
 }
 
 void Cuda::synchronize() {
+  join();
   cuda_check(cudaStreamSynchronize(static_cast<cudaStream_t>(stream_)), "waiting for the GPU");
 }
 
@@ -232,19 +170,23 @@ void Cuda::copy_in_parts(std::size_t bytes, const Copy& copy) {
   const auto parts = static_cast<std::int64_t>((bytes + Lanes::kBytes - 1) / Lanes::kBytes);
   Cpu(Lanes::kCount).run_blocks(parts, [&](std::int64_t part) {
     const std::size_t at = static_cast<std::size_t>(part) * Lanes::kBytes;
+    if (group_ != nullptr)
+      group_->choose(static_cast<int>(part * group_->count() / parts));
+    else
+      activate();
     copy(at, std::min(Lanes::kBytes, bytes - at));
   });
+  activate();
 }
 
 void Cuda::fetch(const void* from, void* to, std::size_t bytes) {
   copy_in_parts(bytes, [&](std::size_t at, std::size_t part) {
-    read(static_cast<const char*>(from) + at, static_cast<char*>(to) + at, part);
+    copy_to_host(static_cast<const char*>(from) + at, static_cast<char*>(to) + at, part);
   });
 }
 
 void Cuda::send(const void* from, void* to, std::size_t bytes) {
   copy_in_parts(bytes, [&](std::size_t at, std::size_t part) {
-    cuda_check(cudaSetDevice(index_), "choosing the GPU");
     lanes_->with_block([&](char* block) {
       std::memcpy(block, static_cast<const char*>(from) + at, part);
       cuda_check(cudaMemcpyAsync(static_cast<char*>(to) + at, block, part, cudaMemcpyHostToDevice, cudaStreamPerThread),
@@ -256,6 +198,10 @@ void Cuda::send(const void* from, void* to, std::size_t bytes) {
 
 void Cuda::read(const void* from, void* to, std::size_t bytes) const {
   cuda_check(cudaSetDevice(index_), "choosing the GPU");
+  copy_to_host(from, to, bytes);
+}
+
+void Cuda::copy_to_host(const void* from, void* to, std::size_t bytes) const {
   for (std::size_t at = 0; at < bytes; at += Lanes::kBytes) {
     const std::size_t part = std::min(Lanes::kBytes, bytes - at);
     lanes_->with_block([&](char* block) {

@@ -1,21 +1,28 @@
-// The CUDA space: one stream of one GPU and a stream-ordered memory pool. This header needs no CUDA.
+// The CUDA space: one stream of one GPU and a stream-ordered memory pool, or several GPUs that work as one (exec/gpus). This header
+// needs no CUDA.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
+#include "exec/gpus/group.hpp"
 #include "exec/memory.hpp"
 
 namespace pointskin::exec {
 
 /// Runs work on one stream of one GPU. Everything is enqueued in order on that stream; nothing synchronises the whole
-/// device. Memory comes from a pool of this object that keeps what is freed.
+/// device. Memory comes from a pool of this object that keeps what is freed. Several GPUs are a group: its lead does what is
+/// small, and large launches are shared (in_shares() in exec/cuda_primitives.cuh). The same bytes for any number of them.
 class Cuda {
  public:
   /// @throws Error device_unavailable if there is no GPU of this index or it does not answer
   explicit Cuda(int index);
+  /// @param gpus  one or more, each once; the first leads
+  /// @throws Error device_unavailable if one of them does not answer, or two do not reach each other's memory
+  explicit Cuda(std::span<const int> gpus);
   /// The same on a stream of somebody else's, who keeps it: a cudaStream_t of this GPU.
   Cuda(int index, void* stream);
   ~Cuda();
@@ -29,8 +36,14 @@ class Cuda {
   static constexpr bool kOwnKernels = true;
 
   [[nodiscard]] int index() const noexcept { return index_; }
-  /// The stream as a cudaStream_t.
+  /// The stream as a cudaStream_t; of a group the lead's.
   [[nodiscard]] void* stream() const noexcept { return stream_; }
+  /// Null for one GPU.
+  [[nodiscard]] gpus::Group* group() const noexcept { return group_.get(); }
+  /// Makes what is enqueued on stream() from now on wait for all before, on all GPUs.
+  void join() const {
+    if (group_ != nullptr) group_->to_lead();
+  }
   [[nodiscard]] const std::shared_ptr<MemoryPool>& pool() const noexcept { return pool_; }
 
   /// Waits until the stream's work is done. @throws Error device_unavailable if some of it failed
@@ -73,11 +86,21 @@ class Cuda {
   void wait_for(std::uint32_t ticket);
 
  private:
-  Cuda(int index, void* stream, bool owns_stream);
+  struct Opened {
+    int index;
+    void* stream = nullptr;
+    std::unique_ptr<gpus::Group> group;
+    std::shared_ptr<MemoryPool> pool;
+  };
+  static Opened open(std::span<const int> gpus);
+  static Opened open(int index, void* stream);
+  explicit Cuda(Opened opened);
 
-  /// Calls copy(offset, bytes) for all parts, on several threads.
+  /// Calls copy(offset, bytes) for all parts, on several threads, whose current GPU is the one that a group's array has them on.
   template <class Copy>
   void copy_in_parts(std::size_t bytes, const Copy& copy);
+  /// read() by the thread's current GPU.
+  void copy_to_host(const void* from, void* to, std::size_t bytes) const;
 
   int index_;
   int multiprocessors_ = 0;
@@ -89,6 +112,7 @@ class Cuda {
   class Lanes;
   std::unique_ptr<Lanes> lanes_;
   int next_mark_ = 0;
+  std::unique_ptr<gpus::Group> group_;
   std::shared_ptr<MemoryPool> pool_;
 };
 

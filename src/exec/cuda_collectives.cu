@@ -1,12 +1,14 @@
 // What the primitives on the GPU leave to CUB: compiled here alone, because its headers are large.
+#include <concepts>
 #include <cstdint>
-#include <iterator>
 
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cub/device/device_select.cuh>
 
+#include "exec/counting_iterator.cuh"
 #include "exec/cuda_primitives.cuh"
+#include "exec/gpus/collectives.cuh"
 
 namespace pointskin::exec {
 namespace {
@@ -20,27 +22,10 @@ void run_cub(Cuda& ex, const char* label, const Algorithm& algorithm) {
   cuda_check(algorithm(scratch.data(), bytes), label);
 }
 
-/// 0, 1, 2, ... as an iterator.
-struct CountingIterator {
-  using value_type = std::int32_t;
-  using reference = std::int32_t;
-  using pointer = const std::int32_t*;
-  using difference_type = std::int64_t;
-  using iterator_category = std::random_access_iterator_tag;
-
-  std::int64_t at = 0;
-  PSK_HD std::int32_t operator*() const { return static_cast<std::int32_t>(at); }
-  PSK_HD std::int32_t operator[](std::int64_t i) const { return static_cast<std::int32_t>(at + i); }
-  PSK_HD CountingIterator operator+(std::int64_t i) const { return {at + i}; }
-  PSK_HD CountingIterator& operator+=(std::int64_t i) {
-    at += i;
-    return *this;
-  }
-};
-
 }  // namespace
 
 Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const std::uint8_t> flags) {
+  if (gpus::shares_collective(ex, flags.size)) return gpus::select_flagged(ex, label, flags);
   const std::int64_t n = flags.size;
   Buffer<std::int32_t> found(ex.pool(), n);
   Buffer<std::int32_t> count(ex.pool(), 1);
@@ -57,6 +42,8 @@ Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const
 
 template <class T>
 void exclusive_scan(Cuda& ex, const char* label, ArrayView<const T> in, ArrayView<T> out) {
+  if constexpr (std::integral<T>)  // sums of others would depend on the number of GPUs
+    if (gpus::shares_collective(ex, in.size)) return gpus::exclusive_scan(ex, label, in, out);
   if (out.size > in.size) {
     // The scan of n + 1 elements never adds the last one, but it reads it: scan inclusively, one place further.
     cuda_check(cudaMemsetAsync(out.data, 0, sizeof(T), stream_of(ex)), label);
@@ -76,6 +63,7 @@ template <class Value>
 void sort_pairs(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, Buffer<Value>& values, int bits,
                 int first_bit) {
   if (keys.empty()) return;
+  if (gpus::shares_collective(ex, keys.size())) return gpus::sort(ex, label, keys, &values, first_bit, bits);
   Buffer<std::uint64_t> other_keys(ex.pool(), keys.size());
   Buffer<Value> other_values(ex.pool(), values.size());
   cub::DoubleBuffer<std::uint64_t> key_buffers(keys.data(), other_keys.data());
@@ -90,6 +78,7 @@ void sort_pairs(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, Buffer
 
 void sort_keys(Cuda& ex, const char* label, Buffer<std::uint64_t>& keys, int bits) {
   if (keys.empty()) return;
+  if (gpus::shares_collective(ex, keys.size())) return gpus::sort(ex, label, keys, nullptr, 0, bits);
   Buffer<std::uint64_t> other(ex.pool(), keys.size());
   cub::DoubleBuffer<std::uint64_t> buffers(keys.data(), other.data());
   run_cub(ex, label, [&](void* scratch, std::size_t& bytes) {

@@ -21,15 +21,37 @@ namespace pointskin::exec {
 inline constexpr int kThreadsPerBlock = 128;
 inline constexpr int kWarp = 32;
 
-/// Where the next launch or copy goes. All of them ask for it, so it asks the flag of the thread's CancelScope.
+/// Where the next launch or copy goes that one GPU does. All of them ask for it, so it asks the flag of the thread's CancelScope.
 inline cudaStream_t stream_of(const Cuda& ex) {
   throw_if_cancelled();
+  ex.join();
   return static_cast<cudaStream_t>(ex.stream());
 }
 
+/// Calls launch(stream, first, blocks) for blocks of `threads` threads, for every GPU that takes a share of them: together [0, blocks).
+/// A kernel that is launched so counts its blocks from `first`, and no block waits for another.
+template <class Launch>
+void in_shares(Cuda& ex, const char* label, std::int64_t blocks, int threads, const Launch& launch) {
+  gpus::Group* const group = ex.group();
+  if (group == nullptr || blocks * threads < group->worth().threads) {
+    launch(stream_of(ex), std::int64_t{0}, static_cast<unsigned>(blocks));
+    return cuda_check(cudaGetLastError(), label);
+  }
+  throw_if_cancelled();
+  group->spread([&](int g, void* stream) {
+    for (const gpus::Layout::Interval& own : group->layout().of_gpu(g, group->count(), blocks)) {
+      launch(static_cast<cudaStream_t>(stream), own.begin, static_cast<unsigned>(own.size()));
+      cuda_check(cudaGetLastError(), label);
+    }
+  });
+}
+
+/// Number of this block among those of all GPUs.
+__device__ inline std::int64_t block_from(std::int64_t first) { return first + blockIdx.x; }
+
 template <class F>
-__global__ void __launch_bounds__(kThreadsPerBlock) for_each_kernel(std::int64_t n, const F f) {
-  const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * kThreadsPerBlock + threadIdx.x;
+__global__ void __launch_bounds__(kThreadsPerBlock) for_each_kernel(std::int64_t first, std::int64_t n, const F f) {
+  const std::int64_t i = block_from(first) * kThreadsPerBlock + threadIdx.x;
   if (i < n) f(i);
 }
 
@@ -38,8 +60,9 @@ template <class F>
 void for_each(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   if (n <= 0) return;
   const std::int64_t blocks = (n + kThreadsPerBlock - 1) / kThreadsPerBlock;
-  for_each_kernel<<<static_cast<unsigned>(blocks), kThreadsPerBlock, 0, stream_of(ex)>>>(n, f);
-  cuda_check(cudaGetLastError(), label);
+  in_shares(ex, label, blocks, kThreadsPerBlock, [&](cudaStream_t stream, std::int64_t first, unsigned share) {
+    for_each_kernel<<<share, kThreadsPerBlock, 0, stream>>>(first, n, f);
+  });
 }
 
 /// Only every `lanes`-th thread has an index.
@@ -68,8 +91,8 @@ void for_each_apart(Cuda& ex, const char* label, std::int64_t n, const F& f) {
 }
 
 template <class F>
-__global__ void __launch_bounds__(kWarp) for_each_long_kernel(std::int64_t n, const F f) {
-  const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * kWarp + threadIdx.x;
+__global__ void __launch_bounds__(kWarp) for_each_long_kernel(std::int64_t first, std::int64_t n, const F f) {
+  const std::int64_t i = block_from(first) * kWarp + threadIdx.x;
   if (i < n) f(i);
 }
 
@@ -82,8 +105,9 @@ void for_each_long(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   unsigned lanes = kWarp;
   while (lanes > 1 && n * lanes > kRoom * ex.multiprocessors()) lanes /= 2;
   const std::int64_t blocks = (n * lanes + kWarp - 1) / kWarp;
-  for_each_long_kernel<<<static_cast<unsigned>(blocks), kWarp, 0, stream_of(ex)>>>(n * lanes, OneOfLanes<F>{f, lanes});
-  cuda_check(cudaGetLastError(), label);
+  in_shares(ex, label, blocks, kWarp, [&](cudaStream_t stream, std::int64_t first, unsigned share) {
+    for_each_long_kernel<<<share, kWarp, 0, stream>>>(first, n * lanes, OneOfLanes<F>{f, lanes});
+  });
 }
 
 /// `value` of the lane whose number differs in the bits of `mask`.
@@ -99,8 +123,9 @@ __device__ T shuffled(const T& value, int mask) {
 }
 
 template <class F>
-__global__ void __launch_bounds__(kThreadsPerBlock) for_each_by_lanes_kernel(std::int64_t n, const F f) {
-  const std::int64_t thread = static_cast<std::int64_t>(blockIdx.x) * kThreadsPerBlock + threadIdx.x;
+__global__ void __launch_bounds__(kThreadsPerBlock)
+    for_each_by_lanes_kernel(std::int64_t first, std::int64_t n, const F f) {
+  const std::int64_t thread = block_from(first) * kThreadsPerBlock + threadIdx.x;
   const std::int64_t i = thread / F::kLanes;
   const int lane = static_cast<int>(thread % F::kLanes);
   typename F::Sum sum{};
@@ -116,18 +141,20 @@ void for_each_by_lanes(Cuda& ex, const char* label, std::int64_t n, const F& f) 
   static_assert((F::kLanes & (F::kLanes - 1)) == 0 && F::kLanes <= kWarp);
   if (n <= 0) return;
   const std::int64_t blocks = (n * F::kLanes + kThreadsPerBlock - 1) / kThreadsPerBlock;
-  for_each_by_lanes_kernel<<<static_cast<unsigned>(blocks), kThreadsPerBlock, 0, stream_of(ex)>>>(n, f);
-  cuda_check(cudaGetLastError(), label);
+  in_shares(ex, label, blocks, kThreadsPerBlock, [&](cudaStream_t stream, std::int64_t first, unsigned share) {
+    for_each_by_lanes_kernel<<<share, kThreadsPerBlock, 0, stream>>>(first, n, f);
+  });
 }
 
 inline constexpr int kWarpsPerBlock = kThreadsPerBlock / kWarp;
 
 template <class F>
-__global__ void __launch_bounds__(kThreadsPerBlock) for_each_warp_kernel(std::int64_t n, const F f) {
+__global__ void __launch_bounds__(kThreadsPerBlock)
+    for_each_warp_kernel(std::int64_t first, std::int64_t n, const F f) {
   using Shared = typename F::Shared;
   __shared__ alignas(16) unsigned char memory[sizeof(Shared) * kWarpsPerBlock];
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
-  const std::int64_t i = std::int64_t{blockIdx.x} * kWarpsPerBlock + warp;
+  const std::int64_t i = block_from(first) * kWarpsPerBlock + warp;
   if (i < n) f(i, static_cast<int>(threadIdx.x) % kWarp, reinterpret_cast<Shared*>(memory)[warp]);
 }
 
@@ -137,8 +164,9 @@ template <class F>
 void for_each_warp(Cuda& ex, const char* label, std::int64_t n, const F& f) {
   if (n <= 0) return;
   const std::int64_t blocks = (n + kWarpsPerBlock - 1) / kWarpsPerBlock;
-  for_each_warp_kernel<<<static_cast<unsigned>(blocks), kThreadsPerBlock, 0, stream_of(ex)>>>(n, f);
-  cuda_check(cudaGetLastError(), label);
+  in_shares(ex, label, blocks, kThreadsPerBlock, [&](cudaStream_t stream, std::int64_t first, unsigned share) {
+    for_each_warp_kernel<<<share, kThreadsPerBlock, 0, stream>>>(first, n, f);
+  });
 }
 
 inline constexpr int kSweepThreads = 512;  // enough for the nodes of a complete level of 32^3 cells
@@ -268,11 +296,11 @@ inline constexpr int kReducePerThread = 8;
 /// A block combines kThreadsPerBlock * kReducePerThread values.
 template <class T, class F, class Combine>
 __global__ void __launch_bounds__(kThreadsPerBlock)
-    reduce_blocks_kernel(std::int64_t n, const F f, const Combine combine, ArrayView<T> out) {
+    reduce_blocks_kernel(std::int64_t first_block, std::int64_t n, const F f, const Combine combine, ArrayView<T> out) {
   __shared__ alignas(16) unsigned char memory[sizeof(T) * kThreadsPerBlock];
   T* const sums = reinterpret_cast<T*>(memory);
   const int thread = static_cast<int>(threadIdx.x);
-  const std::int64_t first = std::int64_t{blockIdx.x} * (kThreadsPerBlock * kReducePerThread) + thread;
+  const std::int64_t first = block_from(first_block) * (kThreadsPerBlock * kReducePerThread) + thread;
   if (first < n) {
     T values[kReducePerThread];  // all are fetched before any is used
     PSK_UNROLL
@@ -290,7 +318,7 @@ __global__ void __launch_bounds__(kThreadsPerBlock)
     __syncthreads();
     if (thread < step && thread + step < left) sums[thread] = combine(sums[thread], sums[thread + step]);
   }
-  if (thread == 0) out[blockIdx.x] = sums[0];
+  if (thread == 0) out[block_from(first_block)] = sums[0];
 }
 
 /// The combination of f(0), ..., f(n-1), n > 0, in any order. Asynchronous; one or two launches up to a million values.
@@ -299,19 +327,34 @@ Buffer<T> reduce_any_order(Cuda& ex, const char* label, std::int64_t n, const F&
   constexpr std::int64_t kPerBlock = std::int64_t{kThreadsPerBlock} * kReducePerThread;
   const std::int64_t blocks = (n + kPerBlock - 1) / kPerBlock;
   Buffer<T> sums = make_buffer<T>(ex, blocks);
-  reduce_blocks_kernel<T>
-      <<<static_cast<unsigned>(blocks), kThreadsPerBlock, 0, stream_of(ex)>>>(n, f, combine, sums.view());
-  cuda_check(cudaGetLastError(), label);
+  in_shares(ex, label, blocks, kThreadsPerBlock, [&](cudaStream_t stream, std::int64_t first, unsigned share) {
+    reduce_blocks_kernel<T><<<share, kThreadsPerBlock, 0, stream>>>(first, n, f, combine, sums.view());
+  });
   if (blocks == 1) return sums;
   return reduce_any_order<T>(ex, label, blocks, LoadValue<T>{sums.cview()}, combine);
 }
 
+/// By all GPUs of a group, each its share: one alone reads and writes the memory of others slower than they do.
+inline void copy_bytes(Cuda& ex, const void* from, void* to, std::size_t bytes) {
+  const auto copy_part = [&](cudaStream_t stream, std::size_t begin, std::size_t end) {
+    cuda_check(cudaMemcpyAsync(static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin, end - begin,
+                               cudaMemcpyDeviceToDevice, stream),
+               "copying on the GPU");
+  };
+  gpus::Group* const group = ex.group();
+  if (group == nullptr || bytes < group->worth().bytes) return copy_part(stream_of(ex), 0, bytes);
+  throw_if_cancelled();
+  group->spread([&](int g, void* stream) {
+    for (const gpus::Layout::Interval& own :
+         group->layout().of_gpu(g, group->count(), static_cast<std::int64_t>(bytes)))
+      copy_part(static_cast<cudaStream_t>(stream), static_cast<std::size_t>(own.begin),
+                static_cast<std::size_t>(own.end));
+  });
+}
+
 template <class T>
 void copy(Cuda& ex, ArrayView<const T> from, ArrayView<T> to) {
-  if (from.size == 0) return;
-  cuda_check(cudaMemcpyAsync(to.data, from.data, static_cast<std::size_t>(from.size) * sizeof(T),
-                             cudaMemcpyDeviceToDevice, stream_of(ex)),
-             "copying on the GPU");
+  if (from.size > 0) copy_bytes(ex, from.data, to.data, static_cast<std::size_t>(from.size) * sizeof(T));
 }
 
 /// One warp. The ticket is written last.

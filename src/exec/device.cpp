@@ -3,11 +3,16 @@
 #include <pointskin/workspace.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <limits>
 #include <memory>
+#include <numeric>
+#include <sstream>
 
 #include "exec/any_space.hpp"
 
@@ -37,6 +42,27 @@ std::int64_t available_host_bytes() {
   return static_cast<std::int64_t>(sysconf(_SC_AVPHYS_PAGES)) * sysconf(_SC_PAGESIZE);
 }
 
+/// As Device::cuda(std::vector) needs them: without any, GPU 0, which tells why there is none.
+std::vector<int> all_gpus() {
+  std::vector<int> gpus(static_cast<std::size_t>(std::max(1, gpu_count())));
+  std::iota(gpus.begin(), gpus.end(), 0);
+  return gpus;
+}
+
+/// The numbers of "0,2"; none if it is something else.
+std::vector<int> parse_gpus(const std::string& text) {
+  std::vector<int> gpus;
+  std::istringstream in(text + ",");
+  for (std::string part; std::getline(in, part, ',');) {
+    int gpu = -1;
+    const char* end = part.data() + part.size();
+    const auto [stop, error] = std::from_chars(part.data(), end, gpu);
+    if (error != std::errc() || stop != end || gpu < 0) return {};
+    gpus.push_back(gpu);
+  }
+  return gpus;
+}
+
 }  // namespace
 
 bool built_with_cuda() noexcept {
@@ -49,7 +75,7 @@ bool built_with_cuda() noexcept {
 
 Device Device::cpu(int threads) {
   if (threads < 0) throw Error(ErrorCode::usage, "the number of threads must not be negative");
-  return {DeviceKind::cpu, 0, threads};
+  return {DeviceKind::cpu, 0, threads, {}};
 }
 
 Device Device::cuda(int index) {
@@ -58,35 +84,68 @@ Device Device::cuda(int index) {
                 "this build has no GPU support; configure with -DPOINTSKIN_CUDA=ON or choose the CPU");
   if (index < 0 || index >= gpu_count())
     throw Error(ErrorCode::device_unavailable, fmt::format("no GPU number {} answers; choose the CPU instead", index));
-  return {DeviceKind::cuda, index, 0};
+  return {DeviceKind::cuda, index, 0, {}};
+}
+
+Device Device::cuda(const std::vector<int>& gpus) {
+  if (gpus.empty()) throw Error(ErrorCode::usage, "a device needs at least one GPU");
+  for (std::size_t i = 0; i < gpus.size(); ++i)
+    if (std::find(gpus.begin(), gpus.begin() + static_cast<std::ptrdiff_t>(i), gpus[i]) !=
+        gpus.begin() + static_cast<std::ptrdiff_t>(i))
+      throw Error(ErrorCode::usage, fmt::format("GPU {} is named twice", gpus[i]));
+  for (const int gpu : gpus) (void)cuda(gpu);  // throws: says why there is none
+  Device device = cuda(gpus.front());
+  device.further.assign(gpus.begin() + 1, gpus.end());
+  return device;
 }
 
 Device Device::automatic(int threads) {
-  if (built_with_cuda() && gpu_count() > 0) return {DeviceKind::cuda, 0, threads};
-  return {DeviceKind::cpu, 0, threads > 0 ? threads : 0};
+  if (built_with_cuda() && gpu_count() > 0) return {DeviceKind::cuda, 0, threads, {}};
+  return {DeviceKind::cpu, 0, threads > 0 ? threads : 0, {}};
 }
 
 Device Device::parse(const std::string& text, int threads) {
   if (text == "auto") return automatic(threads);
   if (text == "cpu") return cpu(threads);
   if (text == "cuda") return cuda(0);
-  if (text.starts_with("cuda:")) {
-    int index = -1;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data() + 5, end, index);
-    if (error == std::errc() && stop == end && index >= 0) return cuda(index);
-  }
-  throw Error(ErrorCode::usage, fmt::format("unknown device \"{}\"; choose auto, cpu, cuda or cuda:N", text));
+  if (text == "cuda:all") return cuda(all_gpus());
+  if (text.starts_with("cuda:"))
+    if (const std::vector<int> gpus = parse_gpus(text.substr(5)); !gpus.empty()) return cuda(gpus);
+  throw Error(ErrorCode::usage,
+              fmt::format("unknown device \"{}\"; choose auto, cpu, cuda, cuda:N, cuda:N,M or cuda:all", text));
+}
+
+std::vector<int> Device::gpus() const {
+  std::vector<int> all;
+  if (kind == DeviceKind::cpu) return all;
+  all.push_back(index);
+  all.insert(all.end(), further.begin(), further.end());
+  return all;
+}
+
+std::string Device::text() const {
+  return kind == DeviceKind::cpu ? "cpu" : fmt::format("cuda:{}", fmt::join(gpus(), ","));
 }
 
 std::string Device::name() const {
-  if (kind == DeviceKind::cuda) return gpu_name(index);
+  if (kind == DeviceKind::cuda) {
+    std::vector<std::string> names;
+    for (const int gpu : gpus()) names.push_back(gpu_name(gpu));
+    if (names.size() == 1) return names.front();
+    const bool alike =
+        std::all_of(names.begin(), names.end(), [&](const std::string& n) { return n == names.front(); });
+    return alike ? fmt::format("{} x {}", names.size(), names.front()) : fmt::format("{}", fmt::join(names, " + "));
+  }
   const int count = threads > 0 ? threads : exec::Cpu().threads();
   return fmt::format("CPU, {} thread{}", count, count == 1 ? "" : "s");
 }
 
 std::int64_t Device::available_bytes() const {
-  if (kind == DeviceKind::cuda) return gpu_free_bytes(index);
+  if (kind == DeviceKind::cuda) {
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    for (const int gpu : gpus()) least = std::min(least, gpu_free_bytes(gpu));
+    return least * static_cast<std::int64_t>(1 + further.size());
+  }
   return available_host_bytes();
 }
 
@@ -98,7 +157,7 @@ AnySpace::AnySpace(const Device& device) {
     return;
   }
 #ifdef POINTSKIN_HAS_CUDA
-  space_ = std::make_shared<Cuda>(device.index);
+  space_ = std::make_shared<Cuda>(device.gpus());
 #else
   (void)Device::cuda(device.index);  // throws: says why there is none
 #endif
@@ -106,6 +165,7 @@ AnySpace::AnySpace(const Device& device) {
 
 AnySpace::AnySpace(const Device& device, [[maybe_unused]] void* stream) {
   if (device.kind == DeviceKind::cpu) throw Error(ErrorCode::usage, "the CPU has no streams; choose a GPU");
+  if (!device.further.empty()) throw Error(ErrorCode::usage, "a stream belongs to one GPU; choose one");
 #ifdef POINTSKIN_HAS_CUDA
   space_ = std::make_shared<Cuda>(device.index, stream);
 #else

@@ -16,6 +16,7 @@
 #include "core/bits.hpp"
 #include "exec/algorithms.hpp"
 #include "exec/atomic.hpp"
+#include "exec/placed.hpp"
 #include "octree/octree_data.hpp"
 
 namespace pointskin::octree {
@@ -330,6 +331,7 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
   const int levels = last - kFirst + 1;
   const std::int64_t words = pick.at[levels];
 
+  exec::Placed placed(ex, {pick.at + 1, pick.at + levels + 1}, words);
   auto bits = exec::make_buffer<std::uint32_t>(ex, words);
   exec::fill(ex, bits.view(), 0U);
   const auto words_of = [&](int d) { return bits.data() + pick.at[d - kFirst]; };
@@ -347,6 +349,7 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
 
   auto before = exec::make_buffer<std::int32_t>(ex, words + 1);
   for_each(ex, "octree.count", words + 1, CountWord{bits.cview(), before.view()});
+  placed.end();
   exclusive_scan(ex, "octree.count", before.cview(), before.view());
   const std::vector<std::int32_t> first = read_borders(ex, before, pick, levels + 1);
   AllLevelBricks all{levels, {}};

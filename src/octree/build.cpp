@@ -17,6 +17,7 @@
 #include "octree/brick_sets.hpp"
 #include "octree/complete_levels.hpp"
 #include "octree/octree_data.hpp"
+#include "octree/placed.hpp"
 #include "octree/tables.hpp"
 
 namespace pointskin::octree {
@@ -112,6 +113,7 @@ struct LevelRange {
   std::int64_t begin[kMaxDepth + 2];  // of level first + i
 
   [[nodiscard]] std::int64_t size() const { return begin[last - first + 1]; }
+  [[nodiscard]] std::vector<std::int64_t> borders() const { return {begin + 1, begin + (last - first + 1)}; }
 
   /// Level of an index, which is made to count from there. Most are on the last one.
   [[nodiscard]] PSK_HD int locate(std::int64_t& i) const {
@@ -317,8 +319,12 @@ void link_cells(Exec& ex, OctreeData& tree, int first, int last, BrickSets& sets
     check_limit(bricks, d);
     level.cell_bricks = static_cast<std::int32_t>(keys.size());
     level.bricks = static_cast<std::int32_t>(bricks);
-    level.brick_key = exec::make_buffer<std::uint64_t>(ex, bricks);
-    level.parent = exec::make_buffer<std::int32_t>(ex, bricks);
+    {
+      const auto placed = placed_on_level(ex, level);
+      level.brick_key = exec::make_buffer<std::uint64_t>(ex, bricks);
+      level.parent = exec::make_buffer<std::int32_t>(ex, bricks);
+    }
+    const auto placed = placed_on_level(ex, above);
     above.child_brick = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * above.bricks);
     parents.keys[d] = keys.cview();
     parents.brick_key[d] = level.brick_key.data();
@@ -328,7 +334,10 @@ void link_cells(Exec& ex, OctreeData& tree, int first, int last, BrickSets& sets
   clear.nodes = make_range(first - 1, last - 1, [&](int d) { return data(d).child_brick.size(); });
   parents.bricks = make_range(first, last, [&](int d) { return data(d).cell_bricks; });
   for_each(ex, "octree.parents", clear.nodes.size(), clear);
-  for_each(ex, "octree.parents", parents.bricks.size(), parents);
+  {
+    const exec::Placed placed(ex, parents.bricks.borders(), parents.bricks.size());
+    for_each(ex, "octree.parents", parents.bricks.size(), parents);
+  }
   for (int d = first; d <= last; ++d) sets.keys[static_cast<std::size_t>(d)].reset();
 }
 
@@ -341,6 +350,35 @@ void extend(Exec& ex, exec::Buffer<T>& array, std::int64_t size) {
   array = std::move(longer);
 }
 
+/// Ascending numbers, as many as there are below `end`.
+struct CountBelow {
+  ArrayView<const std::int32_t> numbers;
+  std::int64_t end;
+  ArrayView<std::int32_t> count;
+  PSK_HD void operator()(std::int64_t) const {
+    std::int64_t low = 0;
+    std::int64_t high = numbers.size;
+    while (low < high) {
+      const std::int64_t middle = low + (high - low) / 2;
+      if (numbers[middle] < end)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    count[0] = static_cast<std::int32_t>(low);
+  }
+};
+
+/// Ghosts in the order of the cells: all that are known beforehand; else those whose parents are cells, which come first. Only where
+/// arrays are placed does it matter.
+template <exec::Space Exec>
+std::int32_t near_ghosts(Exec& ex, const LevelView& above, ArrayView<const std::int32_t> ghosts, bool is_known) {
+  if (is_known || !exec::is_shared(ex)) return static_cast<std::int32_t>(ghosts.size);
+  auto count = exec::make_buffer<std::int32_t>(ex, 1);
+  for_each(ex, "octree.ghosts", 1, CountBelow{ghosts, above.cells(), count.view()});
+  return exec::read_element(ex, count.cview(), 0);
+}
+
 /// Ghost bricks of a level whose cell bricks are linked and whose level above is complete.
 template <exec::Space Exec>
 void add_ghosts(Exec& ex, OctreeData& tree, int d, const BrickSets& sets) {
@@ -349,12 +387,19 @@ void add_ghosts(Exec& ex, OctreeData& tree, int d, const BrickSets& sets) {
   const LevelView above_view = tree.view().levels[d - 1];
   const bool is_known = sets.has_ghosts(d);
   exec::Buffer<std::int32_t> parents;
-  if (!is_known) parents = select(ex, "octree.ghosts", above_view.nodes(), NeedsGhost{above_view});
+  if (!is_known) {
+    const auto placed = placed_on_level(ex, above_view);
+    parents = select(ex, "octree.ghosts", above_view.nodes(), NeedsGhost{above_view});
+  }
   const ArrayView<const std::int32_t> ghosts = is_known ? sets.ghosts_of(d) : parents.cview();
   check_limit(level.cell_bricks + ghosts.size, d);
   level.bricks = static_cast<std::int32_t>(level.cell_bricks + ghosts.size);
-  extend(ex, level.brick_key, level.bricks);
-  extend(ex, level.parent, level.bricks);
+  level.near_ghosts = near_ghosts(ex, above_view, ghosts, is_known);
+  {
+    const auto placed = placed_on_level(ex, level);
+    extend(ex, level.brick_key, level.bricks);
+    extend(ex, level.parent, level.bricks);
+  }
   for_each(ex, "octree.ghosts", ghosts.size,
            AddGhost{above_view, ghosts, is_known, level.cell_bricks, level.brick_key.view(), level.parent.view(),
                     above.child_brick.view()});
@@ -363,6 +408,7 @@ void add_ghosts(Exec& ex, OctreeData& tree, int d, const BrickSets& sets) {
 template <exec::Space Exec>
 void find_neighbours(Exec& ex, OctreeData& tree, int d) {
   LevelData& level = tree.levels[static_cast<std::size_t>(d)];
+  const auto placed = placed_on_level(ex, level);
   level.neighbours = exec::make_buffer<std::int32_t>(ex, std::int64_t{kNeighbours} * level.bricks);
   const FindNeighbours find{tree.view().levels[d - 1], level.parent.cview(), level.neighbours.view()};
   if constexpr (Exec::kManyThreads)
@@ -382,12 +428,21 @@ void link_levels(Exec& ex, OctreeData& tree, int first, int last, BrickSets& set
     add_ghosts(ex, tree, d, sets);
     find_neighbours(ex, tree, d);
     LevelData& level = tree.levels[static_cast<std::size_t>(d)];
+    const auto placed = placed_on_level(ex, level);
     level.unknowns = exec::make_buffer<std::uint8_t>(ex, level.bricks);
     find.unknowns[d] = level.unknowns.data();
   }
   const OctreeView view = tree.view();
   std::copy_n(view.levels, last + 1, find.levels);
   find.bricks = make_range(first, last, [&](int d) { return view.levels[d].bricks; });
+  std::vector<std::int64_t> borders;
+  for (int d = first; d <= last; ++d) {
+    const LevelView& level = view.levels[d];
+    borders.push_back(find.bricks.begin[d - first] + level.cell_bricks);
+    borders.push_back(find.bricks.begin[d - first] + level.cell_bricks + level.near_ghosts);
+    borders.push_back(find.bricks.begin[d - first + 1]);
+  }
+  const exec::Placed placed(ex, borders, find.bricks.size());
   for_each(ex, "octree.unknowns", find.bricks.size(), find);
 }
 
@@ -403,6 +458,7 @@ void assign_points(Exec& ex, OctreeData& tree, ArrayView<const std::uint64_t> po
   if constexpr (Exec::kManyThreads) {
     find.entries =
         make_range(0, tree.depth, [&](int d) { return tree.levels[static_cast<std::size_t>(d)].point_begin.size(); });
+    const exec::Placed placed(ex, find.entries.borders(), find.entries.size());
     for_each(ex, "octree.points", find.entries.size(), find);
   } else {
     const LevelData& root = tree.levels.front();

@@ -10,6 +10,7 @@ OctreeView OctreeData::view() const {
     tree.levels[d] = {d,
                       data.cell_bricks,
                       data.bricks,
+                      data.near_ghosts,
                       tree.nodes,
                       data.brick_key.data(),
                       data.parent.data(),

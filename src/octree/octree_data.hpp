@@ -17,6 +17,7 @@ namespace pointskin::octree {
 struct LevelData {
   std::int32_t cell_bricks = 0;
   std::int32_t bricks = 0;
+  std::int32_t near_ghosts = 0;
   exec::Buffer<std::uint64_t> brick_key;
   exec::Buffer<std::int32_t> parent;
   exec::Buffer<std::int32_t> neighbours;

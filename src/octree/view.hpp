@@ -17,9 +17,10 @@ namespace pointskin::octree {
 /// One level. All ids are local to the level; -1 stands for "does not exist".
 struct LevelView {
   int depth = 0;
-  std::int32_t cell_bricks = 0;               ///< bricks whose nodes are cells
-  std::int32_t bricks = 0;                    ///< all bricks, ghosts last
-  std::int64_t first_node = 0;                ///< of this level in arrays over the nodes of all levels
+  std::int32_t cell_bricks = 0;  ///< bricks whose nodes are cells
+  std::int32_t bricks = 0;       ///< all bricks, ghosts last
+  std::int32_t near_ghosts = 0;  ///< of the ghosts, the first: in the order of the cells; others follow anew
+  std::int64_t first_node = 0;   ///< of this level in arrays over the nodes of all levels
   const std::uint64_t* brick_key = nullptr;   ///< (bricks) key of the parent node, i.e. of the brick's own coordinates
   const std::int32_t* parent = nullptr;       ///< (bricks) parent node on level depth - 1
   const std::int32_t* neighbours = nullptr;   ///< (bricks, 27) bricks around, by neighbour_index

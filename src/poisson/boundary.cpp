@@ -2,6 +2,7 @@
 
 #include "exec/this_space.hpp"
 #include "octree/keys.hpp"
+#include "octree/placed.hpp"
 
 namespace pointskin::poisson {
 namespace {
@@ -39,6 +40,7 @@ struct FreeUnknowns {
 
 template <exec::Space Exec>
 exec::Buffer<std::uint8_t> free_unknowns(Exec& ex, const octree::OctreeView& tree, bool hold_faces) {
+  const auto placed = octree::placed_on_levels(ex, tree, tree.depth);
   auto out = exec::make_buffer<std::uint8_t>(ex, tree.nodes / 8);
   for_each(ex, "solve.free", out.size(), FreeUnknowns{tree, hold_faces, out.view()});
   return out;

@@ -142,6 +142,7 @@ exec::Buffer<Facing> splat_facing(Exec& ex, const octree::OctreeView& tree, Samp
   density.depth = counted_depth(tree.depth);
   exec::Buffer<Facing> facing =
       sum_hats(ex, tree, density.depth, samples.positions.cview(), FacingOf{samples.normals.cview()});
+  const auto placed = octree::placed_on_levels(ex, tree, density.depth);
   density.counts = exec::make_buffer<float>(ex, facing.size());
   for_each(ex, "density.splat", facing.size(), TakeCount{facing.cview(), density.counts.view()});
   return facing;

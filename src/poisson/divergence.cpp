@@ -7,6 +7,7 @@
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
 #include "octree/neighbourhood.hpp"
+#include "octree/placed.hpp"
 #include "poisson/divergence_of_bricks.hpp"
 #include "poisson/splat_kernel.hpp"
 #include "poisson/splat_to_bricks.hpp"
@@ -126,16 +127,28 @@ struct FieldLevel {
   }
 };
 
+/// Memory for V of one level, axis after axis; 0 everywhere if asked for.
+template <exec::Space Exec>
+exec::Buffer<float> make_field(Exec& ex, const octree::LevelView& level, bool is_zero) {
+  std::vector<std::int64_t> borders;
+  for (std::int64_t axis = 0; axis < 3; ++axis)
+    for (const std::int32_t border : {0, level.cell_bricks, level.cell_bricks + level.near_ghosts})
+      borders.push_back(axis * level.bricks + border);
+  const exec::Placed placed(ex, borders, 3 * std::int64_t{level.bricks});
+  auto values = exec::make_buffer<float>(ex, 3 * level.nodes());
+  if (is_zero) exec::fill(ex, values.view(), 0.0F);
+  return values;
+}
+
 /// V of one level: what is splatted there and, since hats are nested, all that was splatted at coarser ones.
 /// @param above  of the level above; empty at the coarsest level that has a field
 template <exec::Space Exec>
 FieldLevel splat_level(Exec& ex, const octree::OctreeView& tree, const SamplesView& samples, int depth,
                        const FieldLevel& above) {
   const octree::LevelView& level = tree.levels[depth];
-  FieldLevel own{exec::make_buffer<float>(ex, 3 * level.nodes())};
-  if (above.values.empty())
-    exec::fill(ex, own.values.view(), 0.0F);
-  else
+  FieldLevel own{make_field(ex, level, above.values.empty())};
+  const auto placed = octree::placed_on_level(ex, level);
+  if (!above.values.empty())
     for_each(ex, "splat.prolong", level.nodes(), ProlongField{level, tree.levels[depth - 1], above.view(), own.view()});
   splat_samples(ex, tree, level, samples, own.view());
   return own;
@@ -152,19 +165,27 @@ exec::Buffer<float> divergence_of_field(Exec& ex, const octree::OctreeView& tree
   const auto find = [&](int depth, const FieldLevel& field, const exec::Buffer<float>& b) {
     const octree::LevelView& level = tree.levels[depth];
     const octree::LevelView* below = depth < tree.depth ? &tree.levels[depth + 1] : nullptr;
+    const auto placed = octree::placed_on_level(ex, level);
     find_divergence(ex, Divergence{level, below != nullptr ? below->cell_bricks : 0, field.view(), make_coefficients(),
                                    b.view().part(level.first_node, level.nodes()), resolution.counts(level),
                                    below != nullptr ? resolution.counts(*below) : nullptr});
   };
   exec::Buffer<float> coarse;  // of all levels but the finest
-  if (coarsest < tree.depth) coarse = exec::make_buffer<float>(ex, finest.first_node);
+  if (coarsest < tree.depth) {
+    const auto placed = octree::placed_on_levels(ex, tree, tree.depth - 1);
+    coarse = exec::make_buffer<float>(ex, finest.first_node);
+  }
   FieldLevel field;
   for (int d = coarsest; d < tree.depth; ++d) {
     field = splat_level(ex, tree, samples, d, field);
     find(d, field, coarse);
   }
   field = splat_level(ex, tree, samples, tree.depth, field);
-  auto b = exec::make_buffer<float>(ex, tree.nodes);
+  exec::Buffer<float> b;
+  {
+    const auto placed = octree::placed_on_levels(ex, tree, tree.depth);
+    b = exec::make_buffer<float>(ex, tree.nodes);
+  }
   if (!coarse.empty()) {
     const std::int64_t first = tree.levels[coarsest].first_node;
     const std::int64_t count = finest.first_node - first;
@@ -187,6 +208,7 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
   for (int d = view.depth - 1; d > complete; --d) {
     const octree::LevelView& level = view.levels[d];
     const octree::LevelView& below = view.levels[d + 1];
+    const auto placed = octree::placed_on_level(ex, level);
     for_each(ex, "splat.restrict", level.nodes(),
              AddRestriction{level, below, b.data() + below.first_node, d >= coarsest,
                             b.view().part(level.first_node, level.nodes())});

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "exec/algorithms.hpp"
+#include "exec/atomic.hpp"
 #include "exec/cuda_primitives.cuh"
 #include "poisson/examine_sample.hpp"
 
@@ -87,7 +88,7 @@ struct ExamineByWarps {
         i, {{shared.positions - begin, n}, {shared.normals - begin, n}, around.splat_depths}, cloud);
     examine.count_if_lonely(evidence, cloud);
     if (!evidence.is_usual || examine.asks_for_such(i, evidence, cloud))
-      left.indices[atomicAdd(left.count, 1U)] = static_cast<std::int32_t>(i);
+      left.indices[exec::fetch_add(left.count, 1)] = static_cast<std::int32_t>(i);
     else
       examine.finish(i, evidence, cloud, true, true);
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "exec/this_space.hpp"
+#include "octree/placed.hpp"
 
 namespace pointskin::poisson {
 namespace {
@@ -158,6 +159,7 @@ Resolution find_resolution(Exec& ex, const octree::OctreeData& tree, Samples& sa
   if ((found & EvenOut::kSparse) == 0) return result;
 
   const std::int64_t bricks = view.nodes / 8;
+  const auto placed = octree::placed_on_levels(ex, view, view.depth);
   auto own = exec::make_buffer<std::uint8_t>(ex, bricks);
   for_each(ex, kLabel, bricks, FlagOwn{view, samples.splat_depths.cview(), own.view()});
   result.bricks = exec::make_buffer<std::uint8_t>(ex, bricks);

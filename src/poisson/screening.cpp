@@ -1,9 +1,12 @@
 #include "poisson/screening.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
+#include "octree/placed.hpp"
 #include "poisson/trust.hpp"
 
 namespace pointskin::poisson {
@@ -187,22 +190,35 @@ struct MarkCorners {
   }
 };
 
-}  // namespace
-
+/// Memory for the samples of occupied bricks, level after level.
+/// @param before  shape (bricks + 1), occupied bricks before each
 template <exec::Space Exec>
-Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples) {
-  const octree::OctreeView view = tree.view();
+exec::Buffer<CollapsedSample> make_collapsed(Exec& ex, const octree::OctreeView& view,
+                                             ArrayView<const std::int32_t> before) {
+  const std::int64_t occupied = exec::read_element(ex, before, before.size - 1);
+  std::vector<std::int64_t> borders;
+  if (exec::is_shared(ex)) borders.push_back(exec::read_element(ex, before, view.finest().first_node / 8));
+  const exec::Placed placed(ex, borders, occupied);
+  return exec::make_buffer<CollapsedSample>(ex, 8 * occupied);
+}
+
+/// Where each brick's samples are, and memory for them.
+template <exec::Space Exec>
+void place_samples(Exec& ex, const octree::OctreeView& view, Screening& result) {
   const std::int64_t bricks = view.nodes / 8;
-  Screening result;
-  for (int d = 0; d <= view.depth; ++d) result.first_brick.push_back(view.levels[d].first_node / 8);
+  const auto placed = octree::placed_on_levels(ex, view, view.depth);
   auto flags = exec::make_buffer<std::int32_t>(ex, bricks);
   for_each(ex, "screening.occupied", bricks, FlagOccupied{view, flags.view()});
   auto before = exec::make_buffer<std::int32_t>(ex, bricks + 1);
   exclusive_scan(ex, "screening.occupied", flags.cview(), before.view());
   result.brick_index = std::move(flags);
   for_each(ex, "screening.occupied", bricks, PlaceBricks{before.cview(), result.brick_index.view()});
-  result.samples =
-      exec::make_buffer<CollapsedSample>(ex, std::int64_t{8} * exec::read_element(ex, before.cview(), bricks));
+  result.samples = make_collapsed(ex, view, before.cview());
+}
+
+/// The finest two levels in one launch where points make both.
+template <exec::Space Exec>
+void collapse_levels(Exec& ex, const octree::OctreeView& view, const SamplesView& samples, Screening& result) {
   const int complete = std::min({view.depth - 1, samples.coarsest_splat_depth - 1, octree::kCompleteDepth});
   const auto collapse_points = [&](int d) {
     return CollapsePoints{view.levels[d], samples, result.view(d).brick_index, result.samples.data()};
@@ -210,8 +226,9 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
   const auto cells_of = [&](int d) { return std::int64_t{8} * view.levels[d].cell_bricks; };
   int d = view.depth;
   if (d > samples.coarsest_splat_depth) {
-    for_each(ex, "screening.collapse", cells_of(d - 1) + cells_of(d),
-             CollapseTwoLevels{collapse_points(d - 1), collapse_points(d)});
+    const std::int64_t both = cells_of(d - 1) + cells_of(d);
+    const exec::Placed placed(ex, {cells_of(d - 1)}, both);
+    for_each(ex, "screening.collapse", both, CollapseTwoLevels{collapse_points(d - 1), collapse_points(d)});
     d -= 2;
   } else {
     for_each(ex, "screening.collapse", cells_of(d), collapse_points(d));
@@ -226,8 +243,20 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
   if (complete >= 0)
     sweep(ex, "screening.collapse", complete + 1, std::int64_t{8} * view.levels[complete].cell_bricks,
           CollapseLevels{{}, view, complete, result.brick_index.data(), result.samples.data()});
-  result.corners = exec::make_buffer<std::uint8_t>(ex, bricks);
-  for_each(ex, "screening.corners", bricks,
+}
+
+}  // namespace
+
+template <exec::Space Exec>
+Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples) {
+  const octree::OctreeView view = tree.view();
+  Screening result;
+  for (int d = 0; d <= view.depth; ++d) result.first_brick.push_back(view.levels[d].first_node / 8);
+  place_samples(ex, view, result);
+  collapse_levels(ex, view, samples, result);
+  const auto placed = octree::placed_on_levels(ex, view, view.depth);
+  result.corners = exec::make_buffer<std::uint8_t>(ex, view.nodes / 8);
+  for_each(ex, "screening.corners", view.nodes / 8,
            MarkCorners{view, result.brick_index.data(), result.samples.data(), result.corners.view()});
   return result;
 }

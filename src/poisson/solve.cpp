@@ -7,6 +7,7 @@
 
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
+#include "octree/placed.hpp"
 #include "poisson/complete_solve.hpp"
 #include "poisson/operator.hpp"
 #include "poisson/previous_detail.hpp"
@@ -207,6 +208,7 @@ class Levels {
 
   void solve(int d, std::vector<LevelSolve>& done) {
     const LevelSystem level = system(d);
+    const auto placed = octree::placed_on_level(ex_, level.level);
     auto other = exec::make_buffer<float>(ex_, level.level.nodes());
     start(level, values(d), other.view());
     iterate(ex_, level, options_.iterations, values(d).data, other.data());
@@ -230,6 +232,7 @@ class Levels {
     const octree::LevelView& level = system.level;
     LevelSolve solved{level.depth, 0, iterations};
     if (options_.residuals) {
+      const auto placed = octree::placed_on_level(ex_, level);
       auto begin = exec::make_buffer<float>(ex_, level.nodes());
       if (level.depth == 0)
         exec::fill(ex_, begin.view(), 0.0F);
@@ -256,7 +259,11 @@ class Levels {
 template <exec::Space Exec>
 Solution solve_poisson(Exec& ex, const octree::OctreeView& tree, ArrayView<const float> b, const Screening& screening,
                        const SolveOptions& options) {
-  Solution solution{exec::make_buffer<float>(ex, tree.nodes), {}};
+  Solution solution;
+  {
+    const auto placed = octree::placed_on_levels(ex, tree, tree.depth);
+    solution.u = exec::make_buffer<float>(ex, tree.nodes);
+  }
   Levels<Exec> levels(ex, tree, b, screening, options, solution.u.view());
   const auto announce = [&](int d) {
     if (options.before_level) options.before_level(d);

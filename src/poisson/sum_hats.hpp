@@ -8,6 +8,7 @@
 #include "exec/space.hpp"
 #include "octree/access.hpp"
 #include "octree/octree_data.hpp"
+#include "octree/placed.hpp"
 
 namespace pointskin::poisson {
 
@@ -127,7 +128,11 @@ exec::Buffer<typename What::Value> sum_hats(Exec& ex, const octree::OctreeView& 
                                             ArrayView<const Vec3f> positions, const What& what) {
   using T = typename What::Value;
   const octree::LevelView& counted = tree.levels[depth];
-  auto sums = exec::make_buffer<T>(ex, counted.first_node + counted.nodes());
+  exec::Buffer<T> sums;
+  {
+    const auto placed = octree::placed_on_levels(ex, tree, depth);
+    sums = exec::make_buffer<T>(ex, counted.first_node + counted.nodes());
+  }
   {
     auto in_cells = exec::make_buffer<T>(ex, 8 * counted.cells());
     const hats::SumInCell<What> sum{counted, positions, what, in_cells.view()};
@@ -135,6 +140,7 @@ exec::Buffer<typename What::Value> sum_hats(Exec& ex, const octree::OctreeView& 
       for_each(ex, "density.splat", in_cells.size(), hats::SumAtCorner<What>{sum});
     else
       for_each(ex, "density.splat", counted.cells(), sum);
+    const auto placed = octree::placed_on_level(ex, counted);
     for_each(ex, "density.splat", counted.nodes(),
              hats::Gather<T>{counted, in_cells.cview(), sums.view().part(counted.first_node, counted.nodes())});
   }
@@ -142,6 +148,7 @@ exec::Buffer<typename What::Value> sum_hats(Exec& ex, const octree::OctreeView& 
   for (int d = depth - 1; d > small; --d) {
     const octree::LevelView& level = tree.levels[d];
     const octree::LevelView& below = tree.levels[d + 1];
+    const auto placed = octree::placed_on_level(ex, level);
     for_each(ex, "density.restrict", level.nodes(),
              hats::Restrict<T>{level, below, sums.data() + below.first_node,
                                sums.view().part(level.first_node, level.nodes())});

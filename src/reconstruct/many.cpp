@@ -76,12 +76,17 @@ constexpr int kStreams = 12;
 /// Clouds of more points fill a GPU.
 constexpr std::int64_t kFillsGpu = 200'000;
 
-Device member_of(const Device& device) { return device.kind == DeviceKind::cpu ? Device::cpu(1) : device; }
+std::vector<Device> devices_of(const Device& device) {
+  if (device.kind == DeviceKind::cpu) return {Device::cpu(1)};
+  std::vector<Device> devices;
+  for (const int gpu : device.gpus()) devices.push_back(Device::cuda(gpu));
+  return devices;
+}
 
 int at_once_on(const Device& device) {
   if (device.kind == DeviceKind::cpu) return device.threads;
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  return std::clamp(cores, 2, kStreams);
+  return std::clamp(cores, 2, kStreams * static_cast<int>(device.gpus().size()));
 }
 
 /// How many clouds of `order` are to have the whole device: on the CPU those that would still be worked on when all others are
@@ -106,9 +111,10 @@ std::size_t count_alone(std::span<const Cloud> clouds, const std::vector<std::si
 
 }  // namespace
 
-Crew::Crew(const Device& device) : member_(member_of(device)), cpu_(at_once_on(device)) {}
+Crew::Crew(const Device& device) : devices_(devices_of(device)), cpu_(at_once_on(device)) {}
 
 std::unique_ptr<Reconstructor> Crew::take() {
+  std::size_t device = 0;
   {
     const std::lock_guard lock(mutex_);
     if (!idle_.empty()) {
@@ -116,8 +122,9 @@ std::unique_ptr<Reconstructor> Crew::take() {
       idle_.pop_back();
       return reconstructor;
     }
+    device = made_++ % devices_.size();
   }
-  return std::make_unique<Reconstructor>(member_);
+  return std::make_unique<Reconstructor>(devices_[device]);
 }
 
 void Crew::put_back(std::unique_ptr<Reconstructor> reconstructor) {
@@ -133,7 +140,7 @@ bool Crew::release_memory() {
 }
 
 bool Crew::ran_out_of_gpu_memory(const Reconstruction& result) const {
-  return member_.kind != DeviceKind::cpu && result.error && result.error->code() == ErrorCode::over_limit;
+  return devices_.front().kind != DeviceKind::cpu && result.error && result.error->code() == ErrorCode::over_limit;
 }
 
 Reconstruction Crew::reconstruct_alone(const Cloud& cloud, const Options& options, Reconstructor& whole) {
@@ -162,7 +169,7 @@ std::vector<Reconstruction> Crew::reconstruct(std::span<const Cloud> clouds, con
   Tally tally(options, clouds.size());
   const Options one = options_of_one(options, tally);
   const std::vector<std::size_t> order = by_size(clouds);
-  const bool on_gpu = member_.kind != DeviceKind::cpu;
+  const bool on_gpu = devices_.front().kind != DeviceKind::cpu;
   const std::size_t alone = count_alone(clouds, order, whole.device(), cpu_.threads());
   for (std::size_t i = 0; i < alone; ++i) {
     results[order[i]] = reconstruct_alone(clouds[order[i]], one, whole);

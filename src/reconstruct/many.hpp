@@ -34,9 +34,10 @@ class Crew {
   Reconstruction reconstruct_beside(const Cloud& cloud, const Options& options);
   [[nodiscard]] bool ran_out_of_gpu_memory(const Reconstruction& result) const;
 
-  Device member_;     // of each reconstructor
-  exec::Cpu cpu_;     // as many threads as work at once
-  std::mutex mutex_;  // guards idle_
+  std::vector<Device> devices_;  // of the reconstructors: of several GPUs each has its own clouds
+  exec::Cpu cpu_;                // as many threads as work at once
+  std::mutex mutex_;             // guards idle_ and made_
+  std::size_t made_ = 0;
   std::vector<std::unique_ptr<Reconstructor>> idle_;
 };
 

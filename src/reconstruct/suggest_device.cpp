@@ -8,6 +8,20 @@
 #include "reconstruct/run_seconds.hpp"
 
 namespace pointskin {
+namespace {
+
+/// Peaks of runs are 61 to 66 bytes a node.
+constexpr double kBytesPerNode = 80;
+
+/// One GPU, or all as one where it has not enough memory.
+Device gpu_for(const detail::RunWork& work, int threads) {
+  const Device one = Device::automatic(threads);
+  const bool fits =
+      one.kind == DeviceKind::cpu || kBytesPerNode * work.nodes <= static_cast<double>(one.available_bytes());
+  return fits ? one : Device::parse("cuda:all", threads);
+}
+
+}  // namespace
 
 Device suggest_device(const Cloud& cloud, const Options& options, int threads) {
   validate(options);
@@ -18,7 +32,7 @@ Device suggest_device(const Cloud& cloud, const Options& options, int threads) {
   try {
     const detail::RunWork work = detail::guess_work(ex, cloud, options);
     const double on_cpu = detail::seconds_on_cpu(work, std::min(ex.threads(), cores));
-    return on_cpu <= detail::seconds_on_gpu(work) ? cpu : Device::automatic(threads);
+    return on_cpu <= detail::seconds_on_gpu(work) ? cpu : gpu_for(work, threads);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::interrupted) throw;
     return cpu;  // the run will tell what is wrong with the points

@@ -11,6 +11,7 @@
 
 #include "core/bits.hpp"
 #include "exec/this_space.hpp"
+#include "octree/placed.hpp"
 #include "surface/case_table.hpp"
 #include "surface/check_size.hpp"
 #include "surface/edge_vertex.hpp"
@@ -395,9 +396,10 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   check_size("nodes", f.tree.nodes);
   auto cases = exec::make_buffer<Case>(ex, 256);
   copy_constant_to_device(ex, kCases.data(), cases.view());
+  const std::int64_t bricks = f.tree.nodes / 8;
+  auto placed = octree::placed_on_levels(ex, f.tree, f.tree.depth);
   auto marks = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
   auto signs = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
-  const std::int64_t bricks = f.tree.nodes / 8;
   auto lone_corners = exec::make_buffer<std::uint64_t>(ex, 1);
   exec::fill(ex, lone_corners.view(), std::uint64_t{0});
   const Marker marker{f, count_triangles(kCases), marks.view(), signs.view(), lone_corners.data()};
@@ -414,6 +416,7 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   exec::Buffer<std::int32_t> traced;
   if (f.tree.finest().first_node > 0)  // there are coarser leaves
     traced = select(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()});
+  placed.end();
   auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
   for_each_apart(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});
   auto first_traced = exec::make_buffer<std::uint64_t>(ex, traced.empty() ? 0 : traced.size() + 1);
@@ -432,7 +435,10 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   auto keys = exec::make_buffer<std::uint64_t>(ex, vertices);
   const MeshView mesh{surface.positions.view(), surface.normals.view(), keys.view(), surface.triangles.view()};
   const Numbering numbering{marks.cview(), first.cview()};
-  for_each(ex, "extract.list", f.tree.nodes, ListItems{numbering, signs.cview(), mesh});
+  {
+    const auto placed_on_levels = octree::placed_on_levels(ex, f.tree, f.tree.depth);
+    for_each(ex, "extract.list", f.tree.nodes, ListItems{numbering, signs.cview(), mesh});
+  }
   signs.reset();
   const std::int32_t on_edges = low_count(totals.table);
   exec::Buffer<Vec3f> inside_ends;

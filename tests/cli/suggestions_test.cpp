@@ -145,7 +145,10 @@ TEST(WrongValues, NameTheWordsThatAreAllowed) {
        "--normals: 'x' is not given, auto, repair or estimate"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--field", "x"}, "--field: 'x' is not poisson or distance"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--bType", "9"}, "--bType: '9' is not 1, 2 or 3"},
-      {{"reconstruct", "a.ply", "-o", "b.ply", "--device", "x"}, "--device: 'x' is not auto, cpu, cuda or cuda:N"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--device", "x"},
+       "--device: 'x' is not auto, cpu, cuda, cuda:N, cuda:N,M or cuda:all"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--device", "cuda:0,x"},
+       "--device: 'cuda:0,x' is not auto, cpu, cuda, cuda:N, cuda:N,M or cuda:all"},
       {{"reconstruct", "a.ply", "-o", "b.ply", "--estimate-normals=x"},
        "--estimate-normals: 'x' is not auto, sensor, propagate, iterate or repair"},
       {{"orient", "a.ply", "-o", "b.ply", "--method", "x"},
@@ -158,7 +161,7 @@ TEST(WrongValues, NameTheWordsThatAreAllowed) {
       {{"fluid", "--simulate", "x", "-o", "m_{}.ply"},
        "--simulate: 'x' is not dam-break, double-dam-break, drop, obstacle or stir"},
       {{"render", "a.ply", "-o", "b.png", "--up", "w"}, "--up: 'w' is not x, y, z, -x, -y or -z"},
-      {{"bench", "--devices", "cpu,x"}, "--devices: 'x' is not all, cpu, cuda or cuda:N"}};
+      {{"bench", "--devices", "cpu,x"}, "--devices: 'x' is not all, cpu, cuda, cuda:N, cuda:N,M or cuda:all"}};
   for (const auto& [args, part] : cases) expect_usage(args, part);
 }
 

@@ -6,19 +6,23 @@
 #include <pointskin/device.hpp>
 #include <pointskin/error.hpp>
 
-#include "support/spaces.hpp"
+#include "exec/gpus/group.hpp"
+#include "support/gpus.hpp"
 
 namespace pointskin::test {
 
-/// Tests with a GPU: skipped where none answers, failed where POINTSKIN_REQUIRE_GPU=1 says that one must.
+/// Tests with the GPUs of tests/support/gpus.hpp: skipped where they do not answer, failed where POINTSKIN_REQUIRE_GPU says that they must.
 class GpuTest : public testing::Test {
  protected:
   void SetUp() override {
+#ifdef POINTSKIN_HAS_CUDA
+    exec::gpus::worth_sharing() = {.threads = 1, .elements = 1, .bytes = 1};  // small clouds, too
+#endif
     try {
-      gpu_ = Device::cuda(0);
+      gpu_ = Device::cuda(gpus_under_test());
     } catch (const Error& error) {
       ASSERT_EQ(error.code(), ErrorCode::device_unavailable) << error.what();
-      if (gpu_required()) FAIL() << "POINTSKIN_REQUIRE_GPU=1, but " << error.what();
+      if (gpu_required()) FAIL() << "POINTSKIN_REQUIRE_GPU says that there are enough GPUs, but " << error.what();
       GTEST_SKIP() << error.what();
     }
   }

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +16,7 @@
 #include "exec/cuda_primitives.cuh"
 #endif
 #include "exec/algorithms.hpp"
+#include "support/gpus.hpp"
 
 namespace pointskin::test {
 
@@ -40,19 +41,22 @@ struct SpaceUnderTest<exec::Cpu> {
 using CpuSpaces = ::testing::Types<exec::Cpu>;
 
 #ifdef __CUDACC__
+/// Several GPUs share arrays and work that would not be worth it, so that small tests try what large clouds do.
+inline void share_whatever_is_small() { exec::gpus::worth_sharing() = {.threads = 1, .elements = 1, .bytes = 1}; }
+
 template <>
 struct SpaceUnderTest<exec::Cuda> {
-  static bool available() { return exec::cuda_device_count() > 0; }
-  static std::unique_ptr<exec::Cuda> open() { return std::make_unique<exec::Cuda>(0); }
+  static bool available() {
+    const std::vector<int> gpus = gpus_under_test();
+    return exec::cuda_device_count() > *std::max_element(gpus.begin(), gpus.end());
+  }
+  static std::unique_ptr<exec::Cuda> open() {
+    share_whatever_is_small();
+    return std::make_unique<exec::Cuda>(gpus_under_test());
+  }
 };
 using CudaSpaces = ::testing::Types<exec::Cuda>;
 #endif
-
-/// True if a missing GPU is a failure: POINTSKIN_REQUIRE_GPU=1.
-inline bool gpu_required() {
-  const char* value = std::getenv("POINTSKIN_REQUIRE_GPU");
-  return value != nullptr && std::string(value) == "1";
-}
 
 /// Fixture with a fresh space. Its tests are skipped, or fail, where the space is not available.
 template <exec::Space S>
@@ -66,8 +70,8 @@ class OnSpace : public ::testing::Test {
       space_ = SpaceUnderTest<S>::open();
       return;
     }
-    if (gpu_required()) FAIL() << "there is no GPU, and POINTSKIN_REQUIRE_GPU=1";
-    GTEST_SKIP() << "there is no GPU";
+    if (gpu_required()) FAIL() << "there are not as many GPUs as POINTSKIN_REQUIRE_GPU says";
+    GTEST_SKIP() << "there is no GPU, or too few";
   }
 
  private:

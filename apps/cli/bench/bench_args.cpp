@@ -23,6 +23,19 @@ std::vector<std::string> parts(const std::string& text) {
   return parts;
 }
 
+/// The same for devices: a number alone is one more GPU of the device before, as in "cuda:0,2".
+std::vector<std::string> device_names(const std::string& text) {
+  std::vector<std::string> names;
+  for (const std::string& part : parts(text)) {
+    const bool is_number = !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
+    if (is_number && !names.empty() && names.back().starts_with("cuda:"))
+      names.back() += "," + part;
+    else
+      names.push_back(part);
+  }
+  return names;
+}
+
 void append_gpus(std::vector<Device>& devices) {
   try {
     for (int i = 0;; ++i) devices.push_back(Device::cuda(i));
@@ -39,7 +52,7 @@ void append_devices(std::vector<Device>& devices, const std::string& name, int t
     devices.push_back(Device::cuda(0));  // tells why there is none
     append_gpus(devices);
   } else {
-    devices.push_back(parse_device(name, threads, "--devices", "all, cpu, cuda or cuda:N"));
+    devices.push_back(parse_device(name, threads, "--devices", "all, cpu, cuda, cuda:N, cuda:N,M or cuda:all"));
   }
 }
 
@@ -65,8 +78,9 @@ OptionTable bench_options(BenchArgs& args) {
         option("--repeat N", "runs on data in memory, 1 to 100000", &args.repeat, {"repeat", 1, kFromOne},
                {.check = in_range(1, 100000)})}},
       {kDeviceGroup,
-       {option("--devices DEV,...", "cpu, cuda (every GPU), cuda:N, separated by commas, or all", &args.devices, {},
-               text),
+       {option("--devices DEV,...",
+               "cpu, cuda (every GPU), cuda:N, cuda:N,M or cuda:all (as one), separated by commas, or all",
+               &args.devices, {}, text),
         threads_row(args.threads)}},
       {"Another program",
        {option("--peer CMD", "its command, with {in}, {out}, {depth}; run in turn with ours, file to file", &args.peer,
@@ -96,7 +110,7 @@ std::vector<int> parse_depths(const std::string& text) {
 std::vector<Device> parse_devices(const std::string& text, int threads) {
   check_threads(threads);
   std::vector<Device> found;
-  for (const std::string& name : parts(text)) append_devices(found, name, threads);
+  for (const std::string& name : device_names(text)) append_devices(found, name, threads);
   std::vector<Device> devices;
   for (const Device& device : found) {
     const auto same = [&](const Device& other) { return short_name(other) == short_name(device); };
@@ -105,9 +119,7 @@ std::vector<Device> parse_devices(const std::string& text, int threads) {
   return devices;
 }
 
-std::string short_name(const Device& device) {
-  return device.kind == DeviceKind::cpu ? "cpu" : fmt::format("cuda:{}", device.index);
-}
+std::string short_name(const Device& device) { return device.text(); }
 
 std::vector<std::string> parse_peer(const std::string& command) {
   std::vector<std::string> words = split_words(command);

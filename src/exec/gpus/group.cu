@@ -1,0 +1,102 @@
+#include "exec/gpus/group.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "exec/cuda.hpp"
+#include "exec/cuda_pool.hpp"
+#include "exec/gpus/members.cuh"
+
+namespace pointskin::exec::gpus {
+namespace {
+
+/// Lets `gpu`, the current one, read and write what was allocated on `other`.
+void reach(int gpu, int other) {
+  int can = 0;
+  cuda_check(cudaDeviceCanAccessPeer(&can, gpu, other), "asking which GPUs reach each other");
+  if (can == 0)
+    throw Error(ErrorCode::device_unavailable, "GPU " + std::to_string(gpu) + " does not reach the memory of GPU " +
+                                                   std::to_string(other) +
+                                                   "; choose GPUs that are linked (nvidia-smi topo -p2p r), or one");
+  const cudaError_t status = cudaDeviceEnablePeerAccess(other, 0);
+  if (status == cudaErrorPeerAccessAlreadyEnabled)
+    cudaGetLastError();
+  else
+    cuda_check(status, "giving a GPU access to another one's memory");
+}
+
+/// Makes the GPUs' contexts side by side: each takes a quarter of a second. What fails here fails again where it is told.
+void start(std::span<const int> gpus) {
+  std::vector<std::jthread> threads;
+  threads.reserve(gpus.size());
+  for (const int gpu : gpus)
+    threads.emplace_back([gpu] {
+      if (cudaSetDevice(gpu) == cudaSuccess) cudaFree(nullptr);
+    });
+}
+
+}  // namespace
+
+WorthSharing& worth_sharing() {
+  static WorthSharing worth;
+  return worth;
+}
+
+Members::Members(std::span<const int> gpus) {
+  all_.reserve(gpus.size());
+  start(gpus);
+  for (const int gpu : gpus) {
+    cuda_check(cudaSetDevice(gpu), "choosing the GPU");
+    for (const int other : gpus)
+      if (other != gpu) reach(gpu, other);
+  }
+  for (const int gpu : gpus) {
+    cuda_check(cudaSetDevice(gpu), "choosing the GPU");
+    Member member;
+    member.gpu = gpu;
+    cuda_check(cudaStreamCreateWithFlags(&member.stream, cudaStreamNonBlocking), "creating a stream");
+    std::vector<int> others;
+    for (const int other : gpus)
+      if (other != gpu) others.push_back(other);
+    member.pool = make_cuda_pool(gpu, member.stream, true, others);
+    cuda_check(cudaEventCreateWithFlags(&member.mark, cudaEventDisableTiming), "creating an event");
+    all_.push_back(std::move(member));
+  }
+}
+
+Members::~Members() {
+  synchronize();
+  for (const Member& member : all_) cudaEventDestroy(member.mark);
+}
+
+Group::Group(std::span<const int> gpus)
+    : count_(static_cast<int>(gpus.size())),
+      worth_(worth_sharing()),
+      members_(std::make_shared<Members>(gpus)),
+      layout_(std::make_shared<Layout>()),
+      pool_(make_spread_pool(members_, layout_, worth_.bytes)),
+      order_(count_) {
+  choose(0);
+}
+
+Group::~Group() = default;
+
+int Group::gpu(int g) const { return (*members_)[g].gpu; }
+void* Group::stream(int g) const { return (*members_)[g].stream; }
+const std::shared_ptr<MemoryPool>& Group::own_pool(int g) const { return (*members_)[g].pool; }
+
+void Group::choose(int g) const { cuda_check(cudaSetDevice(gpu(g)), "choosing the GPU"); }
+void Group::to_lead() { order_.to_lead(*members_); }
+void Group::to_all() { order_.to_all(*members_); }
+void Group::mark(int g) { members_->record(g); }
+
+void Group::settle() noexcept {
+  members_->synchronize();
+  cudaSetDevice(gpu(0));
+}
+
+}  // namespace pointskin::exec::gpus

@@ -77,7 +77,9 @@ Device parse_device(const std::string& text, int threads, const char* option, co
     return Device::parse(text, threads);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::usage) throw;
-    throw_usage(fmt::format("{}: '{}' is not {}", option, text, words));
+    const bool is_unknown = std::string(error.what()).starts_with("unknown device");
+    throw_usage(is_unknown ? fmt::format("{}: '{}' is not {}", option, text, words)
+                           : fmt::format("{}: {}", option, error.what()));
   }
 }
 

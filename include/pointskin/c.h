@@ -133,13 +133,13 @@ PSK_C_API psk_code psk_workspace_create_on_stream(int32_t gpu, void* cuda_stream
                                                   psk_error* error);
 PSK_C_API void psk_workspace_free(psk_workspace* workspace);
 
-/* The GPU's number, or -1 for the CPU. */
+/* The GPU's number, of several as one the first's, or -1 for the CPU. */
 PSK_C_API int32_t psk_workspace_gpu(const psk_workspace* workspace);
 /* A name for people, such as "NVIDIA H200" or "CPU, 2 threads"; valid as long as the workspace. */
 PSK_C_API const char* psk_workspace_device_name(const psk_workspace* workspace);
 /* The cudaStream_t; NULL on the CPU. */
 PSK_C_API void* psk_workspace_stream(const psk_workspace* workspace);
-/* Memory of the device that is free now, bytes. */
+/* Memory of the device that is free now, bytes; of several GPUs as one as many times that of the one with the least. */
 PSK_C_API int64_t psk_workspace_available_bytes(const psk_workspace* workspace);
 /* What all arrays of the workspace hold now, bytes. */
 PSK_C_API int64_t psk_workspace_held_bytes(const psk_workspace* workspace);
@@ -166,7 +166,7 @@ enum {
 
 enum {
   PSK_HOST = 0,  /* the memory of the process */
-  PSK_DEVICE = 1 /* the memory of the workspace's GPU */
+  PSK_DEVICE = 1 /* the memory of the workspace's GPU, or such as all of its GPUs reach */
 };
 
 /* Numbers in somebody's memory: shape (rows, components). Element (i, j) lies at data + i row_stride + j

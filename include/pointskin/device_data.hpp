@@ -38,7 +38,8 @@ struct DeviceAttribute {
 ///
 /// The arrays are read and never written. They must stay as they are until the call that they are given to returns, and
 /// for a workspace on a stream of the caller's until the stream has done what the call enqueued. What fills them must
-/// be ordered before the call: enqueued on the workspace's stream, or waited for.
+/// be ordered before the call: enqueued on the workspace's stream, or waited for. In a workspace of several GPUs as one they
+/// must be of memory that all of these reach: cudaMalloc's is; that of a pool needs cudaMemPoolSetAccess.
 struct DevicePoints {
   Vec3d origin{0, 0, 0};                    ///< world position of point i = origin + positions[i]
   DeviceSpan<const Vec3f> positions;        ///< shape (n), packed floats x, y, z

@@ -5,6 +5,7 @@ import threading
 from typing import Any, Dict, List, Optional, Tuple
 
 from ._library import Handle, call, encoded, library, make
+from .errors import UsageError
 
 
 class _Reconstructor(Handle):
@@ -29,7 +30,10 @@ class Workspace(Handle):
         if stream is None:
             super().__init__(make("psk_workspace_create", encoded(device), threads))
         else:
-            gpu = int(device.split(":")[1]) if ":" in device else 0
+            number = device.partition(":")[2] or "0"
+            if not number.isdigit():
+                raise UsageError(f"a stream belongs to one GPU; '{device}' is not cuda or cuda:N")
+            gpu = int(number)
             super().__init__(make("psk_workspace_create_on_stream", gpu, stream_pointer(stream)))
         self.lock = threading.RLock()
         self._reconstructor: Optional[_Reconstructor] = None
@@ -37,7 +41,7 @@ class Workspace(Handle):
 
     @property
     def gpu(self) -> int:
-        """The GPU's number, -1 for the CPU."""
+        """The GPU's number, of several as one the first's; -1 for the CPU."""
         return int(library().psk_workspace_gpu(self.pointer))
 
     @property

@@ -43,6 +43,9 @@ class AnySpace {
       space_;
 };
 
+/// Whether the GPUs of a device can be one space: each reaches the others' memory. True for one, and for the CPU.
+[[nodiscard]] bool can_work_together(const Device& device);
+
 /// Lets the stream of several GPUs, at the end of a call, wait for all that they were given: programs enqueue work of their own there.
 template <class Exec>
 class JoinedAtTheEnd {

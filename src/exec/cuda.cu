@@ -19,10 +19,14 @@
 namespace pointskin::exec {
 namespace {
 
-void choose(int index) {
+void check_answers(int index) {
   if (index < 0 || index >= cuda_device_count())
     throw Error(ErrorCode::device_unavailable,
                 "no GPU number " + std::to_string(index) + " answers; check nvidia-smi or choose --device cpu");
+}
+
+void choose(int index) {
+  check_answers(index);
   cuda_check(cudaSetDevice(index), "choosing the GPU");
 }
 
@@ -96,7 +100,7 @@ Cuda::Opened Cuda::open(int index, void* stream) {
 }
 
 Cuda::Opened Cuda::open(std::span<const int> gpus) {
-  for (const int gpu : gpus) choose(gpu);
+  for (const int gpu : gpus) check_answers(gpu);
   const int lead = gpus.front();
   if (gpus.size() == 1) {
     void* stream = make_stream(lead);
@@ -149,7 +153,7 @@ double Cuda::milliseconds_between(Mark from, Mark to) const {
 }
 
 void Cuda::synchronize() {
-  join();
+  if (group_ != nullptr) return group_->synchronize();
   cuda_check(cudaStreamSynchronize(static_cast<cudaStream_t>(stream_)), "waiting for the GPU");
 }
 

@@ -96,7 +96,7 @@ class Cuda {
   static Opened open(int index, void* stream);
   explicit Cuda(Opened opened);
 
-  /// Calls copy(offset, bytes) for all parts, on several threads, whose current GPU is the one that a group's array has them on.
+  /// Calls copy(offset, bytes) for all parts, on several threads; those of a group share its links to the host.
   template <class Copy>
   void copy_in_parts(std::size_t bytes, const Copy& copy);
   /// read() by the thread's current GPU.

@@ -19,7 +19,7 @@ namespace {
 class CudaPool final : public MemoryPool {
  public:
   CudaPool(int index, cudaStream_t stream, bool owns_stream, std::span<const int> readers)
-      : stream_(stream), owns_stream_(owns_stream) {
+      : stream_(stream), owns_stream_(owns_stream), index_(index), readers_(readers.begin(), readers.end()) {
     cudaMemPoolProps properties{};
     properties.allocType = cudaMemAllocationTypePinned;
     properties.location.type = cudaMemLocationTypeDevice;
@@ -45,6 +45,7 @@ class CudaPool final : public MemoryPool {
   CudaPool& operator=(const CudaPool&) = delete;
 
   void trim() noexcept override {
+    wait_for_readers();
     for (auto& [bytes, blocks] : kept_) {
       for (void* block : blocks) cudaFreeAsync(block, stream_);
       blocks.clear();
@@ -54,6 +55,18 @@ class CudaPool final : public MemoryPool {
   }
 
  private:
+  /// Work of theirs may still use blocks that are free.
+  void wait_for_readers() const noexcept {
+    if (readers_.empty()) return;
+    int current = index_;
+    cudaGetDevice(&current);
+    for (const int reader : readers_) {
+      cudaSetDevice(reader);
+      cudaDeviceSynchronize();
+    }
+    cudaSetDevice(current);
+  }
+
   void* take(std::size_t bytes) override {
     const std::size_t rounded = size_class(bytes);
     if (const auto kept = kept_.find(rounded); kept != kept_.end() && !kept->second.empty()) {
@@ -99,6 +112,8 @@ class CudaPool final : public MemoryPool {
   std::unordered_map<std::size_t, std::vector<void*>> kept_;
   cudaStream_t stream_;
   bool owns_stream_;
+  int index_;
+  std::vector<int> readers_;
   cudaMemPool_t pool_ = nullptr;
 };
 

@@ -151,6 +151,14 @@ std::int64_t Device::available_bytes() const {
 
 namespace exec {
 
+bool can_work_together([[maybe_unused]] const Device& device) {
+#ifdef POINTSKIN_HAS_CUDA
+  return gpus::work_together(device.gpus());
+#else
+  return true;
+#endif
+}
+
 AnySpace::AnySpace(const Device& device) {
   if (device.kind == DeviceKind::cpu) {
     space_ = std::make_shared<Cpu>(device.threads);

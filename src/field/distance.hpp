@@ -54,7 +54,7 @@ void normalise(Exec& ex, ArrayView<Vec3f> normals);
 /// two at one distance the first in the octree's order is nearer.
 /// @throws Error over_limit if memory runs out
 /// Near samples O(64 cells) a corner, else a walk from the root; one or two launches a level. Waits once, and takes 8 bytes a
-/// sample besides the result if many have no plane. Deterministic: the same bits on every device.
+/// sample besides the result, which are given back at once where few have no plane. Deterministic: the same bits on every device.
 template <exec::Space Exec>
 exec::Buffer<float> distance_to_planes(Exec& ex, const octree::OctreeData& tree, const TangentPlanes& planes,
                                        const Sides& sides = {});

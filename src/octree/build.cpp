@@ -436,12 +436,7 @@ void link_levels(Exec& ex, OctreeData& tree, int first, int last, BrickSets& set
   std::copy_n(view.levels, last + 1, find.levels);
   find.bricks = make_range(first, last, [&](int d) { return view.levels[d].bricks; });
   std::vector<std::int64_t> borders;
-  for (int d = first; d <= last; ++d) {
-    const LevelView& level = view.levels[d];
-    borders.push_back(find.bricks.begin[d - first] + level.cell_bricks);
-    borders.push_back(find.bricks.begin[d - first] + level.cell_bricks + level.near_ghosts);
-    borders.push_back(find.bricks.begin[d - first + 1]);
-  }
+  for (int d = first; d <= last; ++d) append_borders(borders, find.bricks.begin[d - first], view.levels[d]);
   const exec::Placed placed(ex, borders, find.bricks.size());
   for_each(ex, "octree.unknowns", find.bricks.size(), find);
 }

@@ -11,22 +11,29 @@
 
 namespace pointskin::octree {
 
+/// Where the parts of a level end, in bricks times `scale`, if it begins at `begin`.
+template <class Level>
+void append_borders(std::vector<std::int64_t>& borders, std::int64_t begin, const Level& level,
+                    std::int64_t scale = 1) {
+  borders.push_back(begin);
+  borders.push_back(begin + scale * level.cell_bricks);
+  borders.push_back(begin + scale * (level.cell_bricks + level.near_ghosts));
+}
+
 /// For what has one entry, or several, a brick of the level, a LevelView or LevelData.
 template <exec::Space Exec, class Level>
 exec::Placed<Exec> placed_on_level(Exec& ex, const Level& level) {
-  return {ex, {level.cell_bricks, level.cell_bricks + level.near_ghosts}, level.bricks};
+  std::vector<std::int64_t> borders;
+  append_borders(borders, 0, level);
+  return {ex, borders, level.bricks};
 }
 
 /// For what has one entry, or several, a brick of all levels 0..last. Levels that are complete are small.
 template <exec::Space Exec>
 exec::Placed<Exec> placed_on_levels(Exec& ex, const OctreeView& tree, int last) {
   std::vector<std::int64_t> borders;
-  for (int d = kCompleteDepth + 1; d <= last; ++d) {
-    const LevelView& level = tree.levels[d];
-    borders.push_back(level.first_node);
-    borders.push_back(level.first_node + std::int64_t{8} * level.cell_bricks);
-    borders.push_back(level.first_node + std::int64_t{8} * (level.cell_bricks + level.near_ghosts));
-  }
+  for (int d = kCompleteDepth + 1; d <= last; ++d)
+    append_borders(borders, tree.levels[d].first_node, tree.levels[d], 8);
   return {ex, borders, tree.levels[last].first_node + tree.levels[last].nodes()};
 }
 

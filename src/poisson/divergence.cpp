@@ -131,9 +131,7 @@ struct FieldLevel {
 template <exec::Space Exec>
 exec::Buffer<float> make_field(Exec& ex, const octree::LevelView& level, bool is_zero) {
   std::vector<std::int64_t> borders;
-  for (std::int64_t axis = 0; axis < 3; ++axis)
-    for (const std::int32_t border : {0, level.cell_bricks, level.cell_bricks + level.near_ghosts})
-      borders.push_back(axis * level.bricks + border);
+  for (std::int64_t axis = 0; axis < 3; ++axis) octree::append_borders(borders, axis * level.bricks, level);
   const exec::Placed placed(ex, borders, 3 * std::int64_t{level.bricks});
   auto values = exec::make_buffer<float>(ex, 3 * level.nodes());
   if (is_zero) exec::fill(ex, values.view(), 0.0F);

@@ -73,13 +73,19 @@ std::vector<std::size_t> by_size(std::span<const Cloud> clouds) {
 /// idle (bench/many.cpp).
 constexpr int kStreams = 12;
 
-/// Clouds of more points fill a GPU.
+/// Clouds of more points fill a GPU, or several as one.
 constexpr std::int64_t kFillsGpu = 200'000;
+constexpr std::int64_t kFillsGpus = 20'000'000;
 
 std::vector<Device> devices_of(const Device& device) {
   if (device.kind == DeviceKind::cpu) return {Device::cpu(1)};
   std::vector<Device> devices;
-  for (const int gpu : device.gpus()) devices.push_back(Device::cuda(gpu));
+  for (const int gpu : device.gpus()) {
+    Device one = device;
+    one.index = gpu;
+    one.further.clear();
+    devices.push_back(one);
+  }
   return devices;
 }
 
@@ -102,7 +108,7 @@ std::size_t count_alone(std::span<const Cloud> clouds, const std::vector<std::si
     const std::int64_t points = clouds[order[alone]].size();
     const bool is_alone = device.kind == DeviceKind::cpu
                               ? points > kLarge || (points >= kGainsByThreads && points * at_once > left)
-                              : points > kFillsGpu;
+                              : points > (device.further.empty() ? kFillsGpu : kFillsGpus);
     if (!is_alone) break;
     left -= points;
   }

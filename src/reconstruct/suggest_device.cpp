@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "exec/any_space.hpp"
 #include "exec/cpu.hpp"
 #include "reconstruct/run_seconds.hpp"
 
@@ -13,12 +14,16 @@ namespace {
 /// Peaks of runs are 61 to 66 bytes a node.
 constexpr double kBytesPerNode = 80;
 
-/// One GPU, or all as one where it has not enough memory.
+/// One GPU; or all as one where it has not enough memory, and they have.
 Device gpu_for(const detail::RunWork& work, int threads) {
   const Device one = Device::automatic(threads);
-  const bool fits =
-      one.kind == DeviceKind::cpu || kBytesPerNode * work.nodes <= static_cast<double>(one.available_bytes());
-  return fits ? one : Device::parse("cuda:all", threads);
+  if (one.kind == DeviceKind::cpu) return one;
+  const double needed = kBytesPerNode * work.nodes;
+  const auto holds = [&](const Device& device) { return needed <= static_cast<double>(device.available_bytes()); };
+  if (holds(one)) return one;
+  Device all = Device::parse("cuda:all");
+  all.threads = threads;
+  return exec::can_work_together(all) && holds(all) ? all : one;
 }
 
 }  // namespace

@@ -161,6 +161,7 @@ TEST(WrongValues, NameTheWordsThatAreAllowed) {
       {{"fluid", "--simulate", "x", "-o", "m_{}.ply"},
        "--simulate: 'x' is not dam-break, double-dam-break, drop, obstacle or stir"},
       {{"render", "a.ply", "-o", "b.png", "--up", "w"}, "--up: 'w' is not x, y, z, -x, -y or -z"},
+      {{"reconstruct", "a.ply", "-o", "b.ply", "--device", "cuda:0,0"}, "--device: GPU 0 is named twice"},
       {{"bench", "--devices", "cpu,x"}, "--devices: 'x' is not all, cpu, cuda, cuda:N, cuda:N,M or cuda:all"}};
   for (const auto& [args, part] : cases) expect_usage(args, part);
 }

@@ -6,7 +6,6 @@
 #include <pointskin/device.hpp>
 #include <pointskin/error.hpp>
 
-#include "exec/gpus/group.hpp"
 #include "support/gpus.hpp"
 
 namespace pointskin::test {
@@ -16,14 +15,14 @@ class GpuTest : public testing::Test {
  protected:
   void SetUp() override {
 #ifdef POINTSKIN_HAS_CUDA
-    exec::gpus::worth_sharing() = {.threads = 1, .elements = 1, .bytes = 1};  // small clouds, too
+    share_what_is_small();
 #endif
     try {
       gpu_ = Device::cuda(gpus_under_test());
     } catch (const Error& error) {
       ASSERT_EQ(error.code(), ErrorCode::device_unavailable) << error.what();
       if (gpu_required()) FAIL() << "POINTSKIN_REQUIRE_GPU says that there are enough GPUs, but " << error.what();
-      GTEST_SKIP() << error.what();
+      GTEST_SKIP() << kTooFewGpus << ": " << error.what();
     }
   }
 

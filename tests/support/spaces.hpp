@@ -41,9 +41,6 @@ struct SpaceUnderTest<exec::Cpu> {
 using CpuSpaces = ::testing::Types<exec::Cpu>;
 
 #ifdef __CUDACC__
-/// Several GPUs share arrays and work that would not be worth it, so that small tests try what large clouds do.
-inline void share_whatever_is_small() { exec::gpus::worth_sharing() = {.threads = 1, .elements = 1, .bytes = 1}; }
-
 template <>
 struct SpaceUnderTest<exec::Cuda> {
   static bool available() {
@@ -51,7 +48,7 @@ struct SpaceUnderTest<exec::Cuda> {
     return exec::cuda_device_count() > *std::max_element(gpus.begin(), gpus.end());
   }
   static std::unique_ptr<exec::Cuda> open() {
-    share_whatever_is_small();
+    share_what_is_small();
     return std::make_unique<exec::Cuda>(gpus_under_test());
   }
 };
@@ -71,7 +68,7 @@ class OnSpace : public ::testing::Test {
       return;
     }
     if (gpu_required()) FAIL() << "there are not as many GPUs as POINTSKIN_REQUIRE_GPU says";
-    GTEST_SKIP() << "there is no GPU, or too few";
+    GTEST_SKIP() << kTooFewGpus;
   }
 
  private:

@@ -32,11 +32,12 @@ OptionTable bench_options(BenchArgs& args);
 /// @throws Error usage for anything else, and for depths outside of [1, 20]
 std::vector<int> parse_depths(const std::string& text);
 
-/// "cpu,cuda": the CPU and every GPU; "all": every device present; "cuda:1". Without repetitions.
+/// "cpu,cuda": the CPU and every GPU; "all": every device present; "cuda:1"; "cuda:0,2" and "cuda:all": several GPUs as
+/// one. Without repetitions.
 /// @throws Error usage, device_unavailable
 std::vector<Device> parse_devices(const std::string& text, int threads);
 
-/// "cpu", "cuda:0": what --device of reconstruct takes.
+/// "cpu", "cuda:0", "cuda:0,2": what --device of reconstruct takes.
 std::string short_name(const Device& device);
 
 /// The words of --peer.

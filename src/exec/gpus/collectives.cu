@@ -24,13 +24,8 @@ template <class Algorithm>
 void run_cub(Group& group, int g, const char* label, const Algorithm& algorithm) {
   std::size_t bytes = 0;
   cuda_check(algorithm(nullptr, bytes), label);
-  Buffer<std::byte> scratch(group.own_pool(g), static_cast<std::int64_t>(bytes));
+  const Buffer<std::byte> scratch = group.own_scratch(g, bytes);
   cuda_check(algorithm(scratch.data(), bytes), label);
-}
-
-template <class T>
-Buffer<T> on_lead(Group& group, std::int64_t size) {
-  return Buffer<T>(group.own_pool(0), size);
 }
 
 // --- choosing
@@ -59,7 +54,7 @@ Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const
   Group& group = *ex.group();
   const Shares shares{flags.size, group.count()};
   Buffer<std::int32_t> found(ex.pool(), flags.size);
-  Buffer<std::int32_t> counted = on_lead<std::int32_t>(group, group.count());
+  Buffer<std::int32_t> counted = Buffer<std::int32_t>(ex.pool(), group.count());
   group.spread([&](int g, void* stream) {
     run_cub(group, g, label, [&](void* scratch, std::size_t& bytes) {
       return cub::DeviceSelect::Flagged(scratch, bytes, CountingIterator{shares.begin(g)}, flags.data + shares.begin(g),
@@ -100,7 +95,7 @@ void exclusive_scan(Cuda& ex, const char* label, ArrayView<const T> in, ArrayVie
   throw_if_cancelled();
   Group& group = *ex.group();
   const std::vector<Owned> owned = owners_of(group.layout(), group.count(), in.size);
-  Buffer<T> sums = on_lead<T>(group, static_cast<std::int64_t>(owned.size()));
+  Buffer<T> sums = Buffer<T>(ex.pool(), static_cast<std::int64_t>(owned.size()));
   for_owned(group, owned, [&](int g, std::size_t k, const Layout::Interval& own, cudaStream_t stream) {
     run_cub(group, g, label, [&](void* scratch, std::size_t& bytes) {
       return cub::DeviceReduce::Sum(scratch, bytes, in.data + own.begin, sums.data() + k, own.size(), stream);
@@ -195,7 +190,7 @@ bool sort_shares(Group& group, const char* label, const Shares& shares, const Pa
 
 std::vector<std::int64_t> find_cuts(Cuda& ex, const SortedRuns& runs) {
   const int count = runs.shares.count;
-  Buffer<std::int64_t> cuts = on_lead<std::int64_t>(*ex.group(), std::int64_t{count} * count);
+  Buffer<std::int64_t> cuts = Buffer<std::int64_t>(ex.pool(), std::int64_t{count} * count);
   find_cuts_kernel<<<static_cast<unsigned>(count * count), kWarp, 0, stream_of(ex)>>>(runs, cuts.view());
   cuda_check(cudaGetLastError(), "cutting sorted runs");
   std::vector<std::int64_t> found(static_cast<std::size_t>(cuts.size()));

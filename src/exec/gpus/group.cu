@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -14,14 +15,23 @@
 namespace pointskin::exec::gpus {
 namespace {
 
+/// Whether one reads and writes the other's memory, also by atomic operations: over PCIe these are a read and a write.
+bool does_reach(int gpu, int other) {
+  int can = 0;
+  int atomics = 0;
+  cuda_check(cudaDeviceCanAccessPeer(&can, gpu, other), "asking which GPUs reach each other");
+  if (can == 0) return false;
+  cuda_check(cudaDeviceGetP2PAttribute(&atomics, cudaDevP2PAttrNativeAtomicSupported, gpu, other),
+             "asking which GPUs reach each other");
+  return atomics != 0;
+}
+
 /// Lets `gpu`, the current one, read and write what was allocated on `other`.
 void reach(int gpu, int other) {
-  int can = 0;
-  cuda_check(cudaDeviceCanAccessPeer(&can, gpu, other), "asking which GPUs reach each other");
-  if (can == 0)
+  if (!does_reach(gpu, other))
     throw Error(ErrorCode::device_unavailable, "GPU " + std::to_string(gpu) + " does not reach the memory of GPU " +
                                                    std::to_string(other) +
-                                                   "; choose GPUs that are linked (nvidia-smi topo -p2p r), or one");
+                                                   "; choose GPUs that are linked (nvidia-smi topo -p2p a), or one");
   const cudaError_t status = cudaDeviceEnablePeerAccess(other, 0);
   if (status == cudaErrorPeerAccessAlreadyEnabled)
     cudaGetLastError();
@@ -33,13 +43,24 @@ void reach(int gpu, int other) {
 void start(std::span<const int> gpus) {
   std::vector<std::jthread> threads;
   threads.reserve(gpus.size());
-  for (const int gpu : gpus)
-    threads.emplace_back([gpu] {
-      if (cudaSetDevice(gpu) == cudaSuccess) cudaFree(nullptr);
-    });
+  try {
+    for (const int gpu : gpus)
+      threads.emplace_back([gpu] {
+        if (cudaSetDevice(gpu) == cudaSuccess) cudaFree(nullptr);
+      });
+  } catch (
+      const std::system_error&) {  // NOLINT(bugprone-empty-catch): no more threads; those contexts are made one by one
+  }
 }
 
 }  // namespace
+
+bool work_together(std::span<const int> gpus) {
+  for (const int gpu : gpus)
+    for (const int other : gpus)
+      if (gpu != other && !does_reach(gpu, other)) return false;
+  return true;
+}
 
 WorthSharing& worth_sharing() {
   static WorthSharing worth;
@@ -59,9 +80,8 @@ Members::Members(std::span<const int> gpus) {
     Member member;
     member.gpu = gpu;
     cuda_check(cudaStreamCreateWithFlags(&member.stream, cudaStreamNonBlocking), "creating a stream");
-    std::vector<int> others;
-    for (const int other : gpus)
-      if (other != gpu) others.push_back(other);
+    std::vector<int> others;  // that use the lead's memory; the others' is their own
+    if (gpu == gpus.front()) others.assign(gpus.begin() + 1, gpus.end());
     member.pool = make_cuda_pool(gpu, member.stream, true, others);
     cuda_check(cudaEventCreateWithFlags(&member.mark, cudaEventDisableTiming), "creating an event");
     all_.push_back(std::move(member));
@@ -87,7 +107,24 @@ Group::~Group() = default;
 
 int Group::gpu(int g) const { return (*members_)[g].gpu; }
 void* Group::stream(int g) const { return (*members_)[g].stream; }
-const std::shared_ptr<MemoryPool>& Group::own_pool(int g) const { return (*members_)[g].pool; }
+
+Buffer<std::byte> Group::own_scratch(int g, std::size_t bytes) const {
+  const auto size = static_cast<std::int64_t>(bytes);
+  try {
+    return {(*members_)[g].pool, size};
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::over_limit) throw;
+  }
+  pool_->trim();  // what is free in large ranges is the same memory
+  choose(g);
+  return {(*members_)[g].pool, size};
+}
+
+void Group::synchronize() {
+  to_lead();
+  for (int g = 0; g < count_; ++g)
+    cuda_check(cudaStreamSynchronize(static_cast<cudaStream_t>(stream(g))), "waiting for the GPUs");
+}
 
 void Group::choose(int g) const { cuda_check(cudaSetDevice(gpu(g)), "choosing the GPU"); }
 void Group::to_lead() { order_.to_lead(*members_); }

@@ -21,6 +21,9 @@ struct WorthSharing {
   std::size_t bytes = std::size_t{16} << 20;  ///< of an array: a GPU's share is whole pages of 2 MiB
 };
 
+/// Whether all of them read and write each other's memory, also by atomic operations. @throws Error device_unavailable
+bool work_together(std::span<const int> gpus);
+
 /// What counts for groups that are made from now on. Tests lower it, so that small clouds are shared.
 WorthSharing& worth_sharing();
 
@@ -44,8 +47,8 @@ class Group {
 
   /// Large blocks lie on all GPUs, as layout() has it, small ones on the lead; all reach both.
   [[nodiscard]] const std::shared_ptr<MemoryPool>& pool() const noexcept { return pool_; }
-  /// Memory of GPU `g` alone, for what only work on its stream uses.
-  [[nodiscard]] const std::shared_ptr<MemoryPool>& own_pool(int g) const;
+  /// Memory of GPU `g`, the current one, for what only work on its stream uses. @throws Error over_limit if it has none left
+  [[nodiscard]] Buffer<std::byte> own_scratch(int g, std::size_t bytes) const;
 
   /// How arrays that are made and work that is launched are cut from now on (exec/placed.hpp). @returns how it was before
   Layout exchange_layout(Layout layout) { return std::exchange(*layout_, std::move(layout)); }
@@ -53,6 +56,8 @@ class Group {
 
   /// Makes what is enqueued on the lead's stream from now on wait for all before.
   void to_lead();
+  /// Waits for all GPUs. @throws Error device_unavailable if some of the work failed
+  void synchronize();
 
   /// Calls launch(g, stream) for every GPU, which is then the thread's current one. All that is enqueued there waits for all before.
   /// In the end the lead is the current one.

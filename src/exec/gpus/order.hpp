@@ -21,8 +21,8 @@ class Order {
   /// One piece follows for every GPU at most, after which each makes its mark: record(g).
   template <class Marks>
   void to_all(Marks& marks) {
+    marks.record(0);  // also of memory that was allocated in the order of the lead's stream
     if (!spread_) {
-      marks.record(0);
       for (int g = 1; g < count_; ++g) marks.wait(g, 0);
       spread_ = true;
       return;

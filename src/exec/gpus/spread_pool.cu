@@ -159,7 +159,7 @@ class SpreadPool final : public MemoryPool {
 
  private:
   void* take(std::size_t bytes) override {
-    if (bytes < least_spread_bytes_) return small().allocate(bytes);
+    if (bytes < least_spread_bytes_) return take_small(bytes);
     const std::size_t rounded = whole_pages(bytes, page_);
     const auto kept = kept_.lower_bound({*layout_, rounded});
     if (kept != kept_.end() && kept->first.layout == *layout_ && may_stand_in(kept->first.bytes, rounded)) {
@@ -181,6 +181,15 @@ class SpreadPool final : public MemoryPool {
                                              " bytes with " + std::to_string(held_bytes()) +
                                              " held; choose a smaller depth or more GPUs");
     }
+  }
+  void* take_small(std::size_t bytes) {
+    try {
+      return small().allocate(bytes);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::over_limit) throw;
+    }
+    trim();  // what is free in large ranges is the same memory
+    return small().allocate(bytes);
   }
   void give_back(void* block, std::size_t bytes) noexcept override {
     if (bytes < least_spread_bytes_) return small().deallocate(block, bytes);

@@ -28,7 +28,8 @@ struct Device {
 
   /// Several GPUs as one: large arrays lie on all of them in equal shares, and each does its share of the work on them. The result
   /// has the same bytes as that of one. Arrays on a GPU that a program passes must be of memory that all of them reach, as
-  /// cudaMalloc's is; the stream and small work are the first one's. Worth it from some thirty million nodes of an octree on, and where one has not enough memory.
+  /// cudaMalloc's is; the stream and small work are the first one's. Worth it from some thirty million nodes of an octree on,
+  /// and where one has not enough memory.
   /// @param gpus  one or more, each once; the first leads
   /// @throws Error usage if there is none, or one twice; device_unavailable as cuda(int). What works there throws
   ///         device_unavailable if two of them do not reach each other's memory

@@ -263,8 +263,8 @@ class Reconstructor {
   /// are worked on at once as there are threads, the largest first; a cloud so large that the others would have to wait for
   /// it, and any of more than a million points, has all threads to itself. A GPU works on up to twelve clouds at once, each on a
   /// stream of its own and under a thread of the host; one of more than 200,000 points has it to itself, and so has, in the end, one
-  /// for which the others left no memory. Of several GPUs as one each has clouds of its own, up to twelve, and one of more than 20 million points
-  /// has all of them. Where Workspace::limit_memory has set a limit, a GPU takes one after the other.
+  /// for which the others left no memory. Of several GPUs as one each has clouds of its own, up to twelve, and a cloud of more
+  /// than 20 million points has all of them. Where Workspace::limit_memory has set a limit, a GPU takes one after the other.
   /// An Error that one cloud causes is kept with it and ends none of the others. Those that work at once have workspaces of
   /// their own, which on the CPU Workspace::limit_memory does not bind; they keep their memory for the next call (on a GPU up to
   /// a GiB together), and together they

@@ -105,8 +105,6 @@ void Engine::limit_memory(std::int64_t bytes) const { workspace_.data().space.po
 
 bool Engine::has_lasting_limit() const { return workspace_.data().space.pool()->lasting_limit() > 0; }
 
-std::int64_t Engine::peak_bytes() const { return workspace_.data().space.pool()->peak_bytes(); }
-
 std::shared_ptr<FieldImpl> Engine::solve(const Input& input, const Options& options, bool keep_all, RunReport& report,
                                          const std::optional<Bounds>& core) const {
   return exec::visit(workspace_.data().space, [&](auto& ex) {

@@ -71,8 +71,6 @@ class Engine {
   void limit_memory(std::int64_t bytes) const;
   /// Whether Workspace::limit_memory has set one.
   [[nodiscard]] bool has_lasting_limit() const;
-  /// The most that all arrays took together since a run's last solve began.
-  [[nodiscard]] std::int64_t peak_bytes() const;
   /// Gives memory that is kept for the next run back to the system.
   void release_memory() const { workspace_.release_memory(); }
   /// @param keep_all  FitSetup::keep_all

@@ -79,7 +79,7 @@ std::shared_ptr<FieldImpl> Run::solve(const Input& input, bool keep_all) {
       const bool repairs = options_.point_normals == PointNormals::repair;
       if (repairs && !input.has_normals())
         throw Error(ErrorCode::no_normals, "there are no normals to repair; --normals estimate makes them");
-      report_.normals = orient_all(own_, repairs ? NormalMethod::automatic : options_.normal_estimation.method);
+      report_.normals = orient(own_, repairs ? NormalMethod::automatic : options_.normal_estimation.method);
       report_.normals_done = repairs ? NormalsDone::repaired : NormalsDone::estimated;
       next_part(0.8);
       field = fit_outwards(own_);
@@ -160,15 +160,12 @@ void Run::warn_of_normals(const FieldImpl& field) {
 }
 
 /// The share of points whose normals are flipped: a few thousand of them tell, in a fraction of the time that all take.
-/// They fit into what the solve has left in the workspace; what is given back is to be taken anew for the extraction and
-/// the next run, which waits for it. A limit is one for the solve, so under a limit they get memory of their own.
 /// @returns nothing if a limit leaves no memory for it
 std::optional<double> Run::flipped_parts(const Input& input) try {
   constexpr std::int64_t kFew = 16384;
   Cloud few = engine_.thin(input, engine_options_, kFew);
-  if (has_memory_limit()) return flipped_share(orient_all(few, NormalMethod::automatic));
-  peak_bytes_ = std::max(peak_bytes_, engine_.peak_bytes());
-  return flipped_share(orient(engine_.workspace(), few, NormalMethod::automatic));
+  const NormalReport report = orient(few, NormalMethod::automatic);
+  return flipped_share(report);
 } catch (const Error& error) {
   if (options_.max_memory_bytes == 0 || error.code() != ErrorCode::over_limit) throw;
   return std::nullopt;
@@ -205,7 +202,7 @@ std::shared_ptr<FieldImpl> Run::fit_repaired(const Input& input, std::shared_ptr
   field.reset();
   next_part(0.7);
   own_ = engine_.copy(input);
-  report_.normals = orient_all(own_, NormalMethod::automatic);
+  report_.normals = orient(own_, NormalMethod::automatic);
   report_.normals_done = NormalsDone::repaired;
   next_part(0.75);
   field = fit_outwards(own_);
@@ -224,15 +221,7 @@ std::shared_ptr<FieldImpl> Run::fit_repaired(const Input& input, std::shared_ptr
   return field;
 }
 
-bool Run::has_memory_limit() const { return options_.max_memory_bytes > 0 || engine_.has_lasting_limit(); }
-
-/// All points may take more memory than the solve: what that has left is given back before, and theirs is gone after it.
-NormalReport Run::orient_all(Cloud& cloud, NormalMethod method) {
-  engine_.release_memory();
-  return orient(engine_.workspace().device(), cloud, method);
-}
-
-NormalReport Run::orient(const Workspace& workspace, Cloud& cloud, NormalMethod method) {
+NormalReport Run::orient(Cloud& cloud, NormalMethod method) {
   NormalOptions options = options_.normal_estimation;
   options.method = method;
   options.confidence = false;
@@ -241,7 +230,8 @@ NormalReport Run::orient(const Workspace& workspace, Cloud& cloud, NormalMethod 
     options.progress = [this](const Progress& progress) {
       return options_.progress({progress.phase, from_ + progress.fraction * (until_ - from_)});
     };
-  NormalEstimator estimator(workspace);
+  engine_.release_memory();
+  NormalEstimator estimator(engine_.workspace().device());  // its memory is gone before the solve
   estimator.orient(cloud, options);
   return estimator.report();
 }
@@ -253,7 +243,6 @@ void Run::begin_extraction() {
 
 /// @param is_solid_around  which has been said
 void Run::end_extraction(const FieldImpl& field, bool is_solid_around) {
-  report_.device_peak_bytes = std::max(report_.device_peak_bytes, peak_bytes_);
   if (report_.normals)
     report_.device_peak_bytes = std::max(report_.device_peak_bytes, report_.normals->device_peak_bytes);
   if (is_solid_around) return;

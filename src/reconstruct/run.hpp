@@ -42,9 +42,7 @@ class Run {
   void end_extraction(const FieldImpl& field, bool is_solid_around);
   void warn_of_normals(const FieldImpl& field);
   void warn_of_digits(const Input& input, const octree::Frame& frame, double spacing);
-  NormalReport orient_all(Cloud& cloud, NormalMethod method);
-  NormalReport orient(const Workspace& workspace, Cloud& cloud, NormalMethod method);
-  [[nodiscard]] bool has_memory_limit() const;
+  NormalReport orient(Cloud& cloud, NormalMethod method);
   [[nodiscard]] std::optional<double> flipped_parts(const Input& input);
   [[nodiscard]] bool may_take_normals(const Input& input) const;
   [[nodiscard]] static double contradictions(const FieldImpl& field);
@@ -60,7 +58,6 @@ class Run {
   Cloud own_;                   // with normals that are not the caller's; or empty
   bool keep_all_ = false;
   int fits_ = 0;
-  std::int64_t peak_bytes_ = 0;  // before the normals of a few points were looked at
 };
 
 }  // namespace pointskin::detail

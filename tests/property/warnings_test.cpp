@@ -141,20 +141,6 @@ TEST(PointNormalsAreJudged, NormalsAreMadeWhereTheyAreAskedFor) {
   EXPECT_NEAR(measure(run(inward, {{.depth = 6, .point_normals = PointNormals::estimate}}).mesh).volume, 4.18879, 0.05);
 }
 
-TEST(PointNormalsAreJudged, ALookAtAFewKeepsTheMeshAndThePeak) {
-  const Cloud cloud = with_flips(test::torus_cloud(20'000, 24), 0.03, 25);  // so few are told, not repaired
-  const Outcome given = run(cloud, {{.depth = 7, .point_normals = PointNormals::given}});
-  for (const bool limited : {false, true}) {  // under a limit the look has memory of its own
-    Options options{{.depth = 7}};
-    if (limited) options.max_memory_bytes = 1'000'000'000;
-    const Outcome judged = run(cloud, options);
-    expect_same_bytes(judged.mesh, given.mesh);
-    EXPECT_EQ(judged.report.normals_done, NormalsDone::kept);
-    EXPECT_NEAR(only(judged, WarningKind::normals_disagree).share, 0.03, 0.01);
-    EXPECT_GE(judged.report.device_peak_bytes, given.report.device_peak_bytes);
-  }
-}
-
 TEST(PointNormalsAreJudged, ARoomSeenFromItsSensorStaysOne) {
   Cloud bare = test::box_cloud(30'000, 17);
   bare.normals.clear();

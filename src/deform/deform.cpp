@@ -1,8 +1,7 @@
 #include <pointskin/deform.hpp>
 #include <pointskin/error.hpp>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "deform/moving_cloud.hpp"
 #include "exec/any_space.hpp"
 #include "reconstruct/engine.hpp"

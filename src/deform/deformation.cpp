@@ -6,8 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "deform/prepare_deformation.hpp"
 
 namespace pointskin {

@@ -2,8 +2,6 @@
 #include <pointskin/error.hpp>
 #include <pointskin/workspace.hpp>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "core/format.hpp"
 #include "exec/any_space.hpp"
 
 namespace pointskin {

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "exec/any_space.hpp"
 #include "fluid/frames.hpp"
 #include "reconstruct/engine.hpp"

@@ -1,11 +1,10 @@
+#include "core/format.hpp"
 #include "fluid/surface.hpp"
 
 #include <pointskin/error.hpp>
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "fluid/frames.hpp"
 #include "fluid/sorted_particles.hpp"

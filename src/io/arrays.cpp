@@ -2,14 +2,13 @@
 #include <pointskin/arrays.hpp>
 #include <pointskin/error.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
 
+#include "core/format.hpp"
 #include "io/blocks.hpp"
 #include "io/point_table.hpp"
 #include "io/readers.hpp"

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/inflate.hpp"
 #include "io/libraries.hpp"
 #include "io/readers.hpp"

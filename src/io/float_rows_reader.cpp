@@ -5,8 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/readers.hpp"
 
 namespace pointskin::io {

@@ -1,6 +1,5 @@
 // Particles as JSON: a list of lists of three numbers, [[x, y, z], ...], as splashsurf reads and writes them.
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/lines.hpp"
 #include "io/number.hpp"
 #include "io/readers.hpp"

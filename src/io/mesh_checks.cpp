@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
+#include "core/format.hpp"
 
 namespace pointskin::io {
 

@@ -7,8 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/number.hpp"
 #include "io/scalar.hpp"
 

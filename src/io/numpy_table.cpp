@@ -4,8 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/scalar.hpp"
 #include "io/text_columns.hpp"
 

@@ -1,12 +1,11 @@
 // Wavefront OBJ: vertices, vertex normals and polygons; everything else is passed over. Three numbers behind the
 // coordinates of every vertex are its colour, as many programs write it, though the format does not have it.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
 
+#include "core/format.hpp"
 #include "io/lines.hpp"
 #include "io/parsed_columns.hpp"
 #include "io/polygon.hpp"

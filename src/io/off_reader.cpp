@@ -1,8 +1,7 @@
 // OFF (Geomview object file format), text, with the prefixes N (normals) and C (colours) and ST (texture, passed over).
-#include <fmt/format.h>
-
 #include <array>
 
+#include "core/format.hpp"
 #include "io/lines.hpp"
 #include "io/parsed_columns.hpp"
 #include "io/polygon.hpp"

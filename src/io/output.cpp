@@ -10,8 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -21,6 +19,7 @@
 #include <optional>
 #include <system_error>
 
+#include "core/format.hpp"
 #include "exec/cancel.hpp"
 #include "io/block_writer.hpp"
 #include "io/file_descriptor.hpp"

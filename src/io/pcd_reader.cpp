@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/libraries.hpp"
 #include "io/lines.hpp"
 #include "io/lzf.hpp"

@@ -1,9 +1,8 @@
 // Text bodies: one row a line, blank lines and comments between them skipped.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 
+#include "core/format.hpp"
 #include "io/lines.hpp"
 #include "io/ply_body.hpp"
 #include "io/polygon.hpp"

@@ -1,11 +1,10 @@
 // Binary bodies. Rows without lists lie at equal distances and are read in parallel; rows with lists are walked one
 // by one, except for the common case that every face is a triangle, which is verified and then read in parallel.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <optional>
 
+#include "core/format.hpp"
 #include "exec/host_array.hpp"
 #include "io/blocks.hpp"
 #include "io/ply_body.hpp"

@@ -1,13 +1,12 @@
 #include "io/ply_header.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <limits>
 #include <optional>
 #include <unordered_set>
 
+#include "core/format.hpp"
 #include "io/number.hpp"
 
 namespace pointskin::io {

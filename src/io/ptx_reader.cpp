@@ -8,8 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/lines.hpp"
 #include "io/parsed_columns.hpp"
 #include "io/readers.hpp"

@@ -2,12 +2,11 @@
 
 #include <pointskin/error.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/format.hpp"
 #include "io/blocks.hpp"
 #include "io/ply_body.hpp"
 

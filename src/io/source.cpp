@@ -2,7 +2,7 @@
 
 #include <pointskin/error.hpp>
 
-#include <fmt/format.h>
+#include "core/format.hpp"
 
 namespace pointskin::io {
 

@@ -1,12 +1,11 @@
 // STL, binary and text. Corners with the same coordinates become one vertex, numbered by first appearance.
 #include <pointskin/error.hpp>
 
-#include <fmt/format.h>
-
 #include <array>
 #include <bit>
 #include <limits>
 
+#include "core/format.hpp"
 #include "io/lines.hpp"
 #include "io/readers.hpp"
 

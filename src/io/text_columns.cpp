@@ -1,7 +1,5 @@
 #include "io/text_columns.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/format.hpp"
 #include "io/lines.hpp"
 
 namespace pointskin::io {

@@ -1,11 +1,10 @@
 // XYZ, PTS, ASC, TXT and CSV: one point a line.
 #include <pointskin/formats.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <vector>
 
+#include "core/format.hpp"
 #include "io/lines.hpp"
 #include "io/readers.hpp"
 #include "io/text_columns.hpp"

@@ -1,7 +1,6 @@
 #include <pointskin/error.hpp>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/writers.hpp"
 
 namespace pointskin::io {

@@ -1,8 +1,6 @@
 // Legacy VTK files: the points of POLYDATA and UNSTRUCTURED_GRID with their scalars, vectors, normals and field arrays, and
 // the triangles of their cells; ascii and binary. Data of cells are passed over.
 // Source: "VTK file formats", The VTK User's Guide, section "Simple legacy formats", up to version 5.1.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -15,6 +13,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/format.hpp"
 #include "io/number.hpp"
 #include "io/pieces.hpp"
 #include "io/readers.hpp"

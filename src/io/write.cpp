@@ -1,8 +1,6 @@
 #include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <new>
@@ -10,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/format.hpp"
 #include "io/blocks.hpp"
 #include "io/formats.hpp"
 #include "io/mesh_checks.hpp"

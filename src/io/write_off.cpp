@@ -2,8 +2,7 @@
 #include <cstdint>
 #include <string>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/text_lines.hpp"
 #include "io/writers.hpp"
 

@@ -1,7 +1,5 @@
 #include <pointskin/error.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
 #include <iterator>
@@ -10,6 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "core/format.hpp"
 #include "exec/any_space.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/ply_header.hpp"

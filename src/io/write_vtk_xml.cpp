@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/text_lines.hpp"
 #include "io/writers.hpp"
 

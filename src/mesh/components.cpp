@@ -7,8 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "core/vec3.hpp"
 #include "exec/algorithms.hpp"
 #include "exec/any_space.hpp"

@@ -1,3 +1,4 @@
+#include "core/format.hpp"
 #include "octree/frame.hpp"
 
 #include <pointskin/error.hpp>
@@ -5,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <fmt/format.h>
 
 namespace pointskin::octree {
 

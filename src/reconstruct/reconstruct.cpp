@@ -7,8 +7,7 @@
 #include <span>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "reconstruct/engine.hpp"
 #include "reconstruct/many.hpp"
 #include "reconstruct/run.hpp"

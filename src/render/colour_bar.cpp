@@ -4,8 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "render/canvas.hpp"
 #include "render/glyphs.hpp"
 #include "render/picture_scale.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include "core/format.hpp"
 
 namespace pointskin::render_detail {
 namespace {

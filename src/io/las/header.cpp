@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/point_table.hpp"
 #include "io/scalar.hpp"
 

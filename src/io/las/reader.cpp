@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/blocks.hpp"
 #include "io/las/header.hpp"
 #include "io/laz/decoder.hpp"

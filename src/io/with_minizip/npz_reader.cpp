@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/numpy_table.hpp"
 #include "io/readers.hpp"
 #include "io/text_columns.hpp"

@@ -9,8 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/text_lines.hpp"
 #include "io/writers.hpp"
 #include "io/zip.hpp"

@@ -13,8 +13,7 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/base64.hpp"
 #include "io/gltf.hpp"
 #include "io/libraries.hpp"

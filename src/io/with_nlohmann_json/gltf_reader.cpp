@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "core/vec3.hpp"
 #include "io/gltf.hpp"
 #include "io/pieces.hpp"

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/format.hpp"
 #include "core/vec3.hpp"
 #include "io/gltf.hpp"
 #include "io/libraries.hpp"

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <string_view>
 
-#include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "core/format.hpp"
 #include "io/number.hpp"
 #include "io/point_table.hpp"
 

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/blocks.hpp"
 #include "io/crc32c.hpp"
 #include "io/readers.hpp"

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/scalar.hpp"
 
 namespace pointskin::io {

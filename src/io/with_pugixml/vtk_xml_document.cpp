@@ -6,8 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/base64.hpp"
 #include "io/inflate.hpp"
 #include "io/libraries.hpp"

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "core/format.hpp"
 #include "io/numpy_table.hpp"
 #include "io/pieces.hpp"
 #include "io/readers.hpp"

@@ -2,9 +2,11 @@
 
 #include <pointskin/error.hpp>
 
+#include <memory>
 #include <string>
 #include <system_error>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -77,20 +79,18 @@ Members::Members(std::span<const int> gpus) {
   }
   for (const int gpu : gpus) {
     cuda_check(cudaSetDevice(gpu), "choosing the GPU");
-    Member member;
-    member.gpu = gpu;
-    cuda_check(cudaStreamCreateWithFlags(&member.stream, cudaStreamNonBlocking), "creating a stream");
+    cudaStream_t stream = nullptr;
+    cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "creating a stream");
+    std::unique_ptr<std::remove_pointer_t<cudaStream_t>, Destroy> unowned(stream);
     std::vector<int> others;  // that use the lead's memory; the others' is their own
     if (gpu == gpus.front()) others.assign(gpus.begin() + 1, gpus.end());
-    member.pool = make_cuda_pool(gpu, member.stream, true, others);
-    cuda_check(cudaEventCreateWithFlags(&member.mark, cudaEventDisableTiming), "creating an event");
+    Member member{.gpu = gpu, .stream = stream, .mark = {}, .pool = make_cuda_pool(gpu, stream, true, others)};
+    unowned.release();  // the pool owns it
+    cudaEvent_t mark = nullptr;
+    cuda_check(cudaEventCreateWithFlags(&mark, cudaEventDisableTiming), "creating an event");
+    member.mark.reset(mark);
     all_.push_back(std::move(member));
   }
-}
-
-Members::~Members() {
-  synchronize();
-  for (const Member& member : all_) cudaEventDestroy(member.mark);
 }
 
 Group::Group(std::span<const int> gpus)

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "exec/cuda_check.cuh"
@@ -13,18 +14,24 @@
 
 namespace pointskin::exec::gpus {
 
+struct Destroy {
+  void operator()(cudaStream_t stream) const noexcept { cudaStreamDestroy(stream); }
+  void operator()(cudaEvent_t event) const noexcept { cudaEventDestroy(event); }
+};
+using Event = std::unique_ptr<std::remove_pointer_t<cudaEvent_t>, Destroy>;
+
 /// Lives as long as the group or memory of it.
 class Members {
  public:
   explicit Members(std::span<const int> gpus);
-  ~Members();
+  ~Members() { synchronize(); }
   Members(const Members&) = delete;
   Members& operator=(const Members&) = delete;
 
   struct Member {
     int gpu = 0;
     cudaStream_t stream = nullptr;
-    cudaEvent_t mark = nullptr;
+    Event mark;
     std::shared_ptr<MemoryPool> pool;  // owns the stream
   };
 
@@ -32,9 +39,12 @@ class Members {
   [[nodiscard]] const Member& operator[](int g) const { return all_[static_cast<std::size_t>(g)]; }
 
   // What an Order asks for.
-  void record(int g) { cuda_check(cudaEventRecord((*this)[g].mark, (*this)[g].stream), "marking the work of a GPU"); }
+  void record(int g) {
+    cuda_check(cudaEventRecord((*this)[g].mark.get(), (*this)[g].stream), "marking the work of a GPU");
+  }
   void wait(int g, int other) {
-    cuda_check(cudaStreamWaitEvent((*this)[g].stream, (*this)[other].mark, 0), "letting GPUs wait for each other");
+    cuda_check(cudaStreamWaitEvent((*this)[g].stream, (*this)[other].mark.get(), 0),
+               "letting GPUs wait for each other");
   }
 
   void synchronize() const noexcept {

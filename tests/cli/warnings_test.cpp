@@ -142,6 +142,18 @@ TEST_F(WarningsCommand, GivenNormalsStayAsTheyAreWithAWarning) {
   EXPECT_FALSE(report_of(half).contains("normals"));
 }
 
+TEST_F(WarningsCommand, PointsThatAreThereTwiceWithOpposedNormalsAreNamed) {
+  std::vector<Sample> twice = sphere(2000);
+  const std::vector<Sample> turned = with_flips(twice, 1, 4);
+  twice.insert(twice.end(), turned.begin(), turned.end());
+  const std::string cloud = save("twice.ply", twice);
+  for (const char* field : {"poisson", "distance"}) {
+    const Result result = reconstruct(cloud, {"--normals", "given", "--field", field});
+    const Json report = report_of(result);
+    EXPECT_NE(result.err.find("of the normals point against those around them"), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(WarningsCommand, ConsistentNormalsGiveTheSameBytesWithoutAWordHoweverTheyAreTaken) {
   const std::string input = save("right.ply", sphere(5000));
   ASSERT_EQ(report_of(reconstruct(input, {"--normals", "given"}))["warnings"], Json::array());

@@ -77,6 +77,22 @@ T read_element(Exec& ex, ArrayView<const T> from, std::int64_t i) {
   return value;
 }
 
+/// Few bytes on the host, and work(), which launches what does not depend on them. A space where the host waits for its work
+/// has a form of its own that calls work() first.
+template <class T, Space Exec, class Work>
+void copy_to_host_meanwhile(Exec& ex, ArrayView<const T> from, T* to, const Work& work) {
+  copy_to_host(ex, from, to);
+  work();
+}
+
+/// select, and work() as above.
+template <Space Exec, class Keep, class Work>
+Buffer<std::int32_t> select_meanwhile(Exec& ex, const char* label, std::int64_t n, const Keep& keep, const Work& work) {
+  Buffer<std::int32_t> kept = select(ex, label, n, keep);
+  work();
+  return kept;
+}
+
 /// The rest of reduce: combines the lanes' values, of which there is at least one, to one element.
 template <class T, Space Exec, class Combine>
 Buffer<T> reduce_lane_values(Exec& ex, const char* label, Buffer<T> sums, Combine combine) {

@@ -120,8 +120,8 @@ Cuda::Cuda(Opened opened)
       pool_(std::move(opened.pool)) {
   cuda_check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, index_),
              "reading the GPU's properties");
-  cuda_check(cudaMallocHost(&staging_, kStagingBytes + sizeof(std::uint32_t)), "allocating page-locked memory");
-  arrived_ = reinterpret_cast<std::uint32_t*>(static_cast<char*>(staging_) + kStagingBytes);
+  cuda_check(cudaMallocHost(&staging_, 2 * kStagingBytes + sizeof(std::uint32_t)), "allocating page-locked memory");
+  arrived_ = reinterpret_cast<std::uint32_t*>(static_cast<char*>(staging_) + 2 * kStagingBytes);
   *arrived_ = ticket_;
   for (void*& mark : marks_) {
     cudaEvent_t event = nullptr;
@@ -160,7 +160,7 @@ void Cuda::synchronize() {
 void Cuda::wait_for(std::uint32_t ticket) {
   constexpr auto kSoon = std::chrono::microseconds(200);  // a longer wait may cost a few microseconds more, and no core
   const auto begin = std::chrono::steady_clock::now();
-  while (*arrived_ != ticket) {
+  while (static_cast<std::int32_t>(*arrived_ - ticket) < 0) {
     if (std::chrono::steady_clock::now() - begin < kSoon) continue;
     synchronize();
     break;

@@ -74,15 +74,16 @@ class Cuda {
   [[nodiscard]] int multiprocessors() const noexcept { return multiprocessors_; }
   [[nodiscard]] int host_threads() const noexcept { return 0; }
 
-  /// Page-locked host memory for small read-backs, `kStagingBytes` long.
+  /// Page-locked host memory for small read-backs, `kStagingBytes` long; and as much for one that others may overtake.
   [[nodiscard]] void* staging() const noexcept { return staging_; }
+  [[nodiscard]] void* late_staging() const noexcept { return static_cast<char*>(staging_) + kStagingBytes; }
   static constexpr std::int64_t kStagingBytes = 4096;
 
-  /// What a kernel that fills staging() writes to `arrived()` when all is there, and the wait for it: it sees the ticket sooner than
+  /// What a kernel that fills one of them writes to `arrived()` when all is there, and the wait for it: it sees the ticket sooner than
   /// the driver would say that the stream's work is done.
   [[nodiscard]] std::uint32_t next_ticket() noexcept { return ++ticket_; }
   [[nodiscard]] volatile std::uint32_t* arrived() const noexcept { return arrived_; }
-  /// @throws Error device_unavailable if some of the work before failed
+  /// Returns when it or a later one has arrived. @throws Error device_unavailable if some of the work before failed
   void wait_for(std::uint32_t ticket);
 
  private:

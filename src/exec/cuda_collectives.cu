@@ -1,6 +1,7 @@
 // What the primitives on the GPU leave to CUB: compiled here alone, because its headers are large.
 #include <concepts>
 #include <cstdint>
+#include <functional>
 
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
@@ -24,8 +25,12 @@ void run_cub(Cuda& ex, const char* label, const Algorithm& algorithm) {
 
 }  // namespace
 
-Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const std::uint8_t> flags) {
-  if (gpus::shares_collective(ex, flags.size)) return gpus::select_flagged(ex, label, flags);
+Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const std::uint8_t> flags,
+                                    const std::function<void()>& work) {
+  if (flags.empty() || gpus::shares_collective(ex, flags.size)) {
+    work();
+    return flags.empty() ? Buffer<std::int32_t>{} : gpus::select_flagged(ex, label, flags);
+  }
   const std::int64_t n = flags.size;
   Buffer<std::int32_t> found(ex.pool(), n);
   Buffer<std::int32_t> count(ex.pool(), 1);
@@ -34,7 +39,7 @@ Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const
                                       stream_of(ex));
   });
   std::int32_t kept_count = 0;
-  copy_to_host(ex, count.cview(), &kept_count);
+  copy_to_host_meanwhile(ex, count.cview(), &kept_count, work);
   Buffer<std::int32_t> kept(ex.pool(), kept_count);
   copy(ex, found.cview().part(0, kept_count), kept.view());
   return kept;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <functional>
 
 #include "core/array_view.hpp"
 #include "exec/cancel.hpp"
@@ -366,24 +367,43 @@ __global__ void copy_kernel(const T* from, T* to, int n, volatile std::uint32_t*
   if (threadIdx.x == 0) *arrived = ticket;
 }
 
-/// Waits until the data is there. Little is written by a kernel into page-locked memory: the copy engine would take
-/// longer to start.
+/// Lets a kernel write a little into page-locked memory: the copy engine would take longer to start. Returns what to wait for.
+template <class T>
+std::uint32_t send_to_host(Cuda& ex, ArrayView<const T> from, void* staging) {
+  const std::uint32_t ticket = ex.next_ticket();
+  copy_kernel<<<1, kWarp, 0, stream_of(ex)>>>(from.data, static_cast<T*>(staging), static_cast<int>(from.size),
+                                              ex.arrived(), ticket);
+  cuda_check(cudaGetLastError(), "copying to the host");
+  return ticket;
+}
+
+/// Waits until the data is there.
 template <class T>
 void copy_to_host(Cuda& ex, ArrayView<const T> from, T* to) {
   if (from.size == 0) return;
   const std::size_t bytes = static_cast<std::size_t>(from.size) * sizeof(T);
   if (bytes >= Cuda::kManyBytes) return ex.fetch(from.data, to, bytes);
   if (bytes <= static_cast<std::size_t>(Cuda::kStagingBytes)) {
-    const std::uint32_t ticket = ex.next_ticket();
-    copy_kernel<<<1, kWarp, 0, stream_of(ex)>>>(from.data, static_cast<T*>(ex.staging()), static_cast<int>(from.size),
-                                                ex.arrived(), ticket);
-    cuda_check(cudaGetLastError(), "copying to the host");
-    ex.wait_for(ticket);
+    ex.wait_for(send_to_host(ex, from, ex.staging()));
     std::memcpy(to, ex.staging(), bytes);
     return;
   }
   cuda_check(cudaMemcpyAsync(to, from.data, bytes, cudaMemcpyDeviceToHost, stream_of(ex)), "copying to the host");
   ex.synchronize();
+}
+
+/// The same for few bytes while work() launches what need not wait for them. Work may read from the GPU as well, but not so.
+template <class T, class Work>
+void copy_to_host_meanwhile(Cuda& ex, ArrayView<const T> from, T* to, const Work& work) {
+  const std::size_t bytes = static_cast<std::size_t>(from.size) * sizeof(T);
+  if (bytes == 0 || bytes > static_cast<std::size_t>(Cuda::kStagingBytes)) {
+    copy_to_host(ex, from, to);
+    return work();
+  }
+  const std::uint32_t ticket = send_to_host(ex, from, ex.late_staging());
+  work();
+  ex.wait_for(ticket);
+  std::memcpy(to, ex.late_staging(), bytes);
 }
 
 /// Returns when `from` may be reused.
@@ -413,17 +433,22 @@ struct FlagKept {
 
 // What CUB does, compiled once (exec/cuda_collectives.cu).
 
-/// The indices i in [0, n) with flags[i] != 0, ascending. Waits for the count.
-Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const std::uint8_t> flags);
+/// The indices i in [0, n) with flags[i] != 0, ascending. Waits for the count, while work() launches what need not wait.
+Buffer<std::int32_t> select_flagged(Cuda& ex, const char* label, ArrayView<const std::uint8_t> flags,
+                                    const std::function<void()>& work);
 
 /// The indices i in [0, n) with keep(i), ascending. Waits for the count. keep runs in a kernel of its own: CUB calls it
 /// for many indices on few threads, one after another.
+template <class Keep, class Work>
+Buffer<std::int32_t> select_meanwhile(Cuda& ex, const char* label, std::int64_t n, const Keep& keep, const Work& work) {
+  Buffer<std::uint8_t> flags(ex.pool(), n);
+  for_each(ex, label, n, FlagKept<Keep>{keep, flags.data()});
+  return select_flagged(ex, label, flags.cview(), work);
+}
 template <class Keep>
 Buffer<std::int32_t> select(Cuda& ex, const char* label, std::int64_t n, const Keep& keep) {
   if (n == 0) return {};
-  Buffer<std::uint8_t> flags(ex.pool(), n);
-  for_each(ex, label, n, FlagKept<Keep>{keep, flags.data()});
-  return select_flagged(ex, label, flags.cview());
+  return select_meanwhile(ex, label, n, keep, [] {});
 }
 
 /// out[i] = in[0] + ... + in[i-1]; out.size is in.size (in place allowed) or in.size + 1 (the last is the total).

@@ -21,7 +21,8 @@
 //   copy_constant_to_device                    of what never changes: does not wait
 //
 // and, written once over for_each, in exec/algorithms.hpp: fill, gather, iota, reduce, reduce_in_space,
-// read_element, run_starts (run-length encoding: a run's length is the distance to the next start) and sort_unique.
+// read_element, copy_to_host_meanwhile, select_meanwhile, run_starts (run-length encoding: a run's length is the distance
+// to the next start) and sort_unique.
 #pragma once
 
 #include <concepts>

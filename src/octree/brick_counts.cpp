@@ -64,7 +64,7 @@ std::int64_t count_ghosts(exec::Cpu& ex, ArrayView<const std::uint64_t> keys, in
 }  // namespace
 
 std::vector<BrickCounts> count_bricks(exec::Cpu& ex, ArrayView<const std::uint64_t> point_keys, int depth) {
-  const build::BrickSets sets = find_brick_sets(ex, point_keys, depth);
+  const build::BrickSets sets = find_brick_sets(ex, point_keys, depth, [] {});
   std::vector<BrickCounts> counts(static_cast<std::size_t>(depth) + 1);
   for (int d = 0; d <= depth; ++d) {
     BrickCounts& level = counts[static_cast<std::size_t>(d)];

@@ -294,16 +294,16 @@ void sort_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
   }
 }
 
-/// Values of a scan at some positions, on the host. One round trip for all levels.
-template <exec::Space Exec>
-std::vector<std::int32_t> read_borders(Exec& ex, const exec::Buffer<std::int32_t>& before, PickBorders pick,
-                                       int count) {
+/// Values of a scan at some positions, on the host. One round trip for all levels, while work() launches what need not wait.
+template <exec::Space Exec, class Work>
+std::vector<std::int32_t> read_borders(Exec& ex, const exec::Buffer<std::int32_t>& before, PickBorders pick, int count,
+                                       const Work& work) {
   auto borders = exec::make_buffer<std::int32_t>(ex, count);
   pick.before = before.cview();
   pick.borders = borders.view();
   for_each(ex, "octree.count", count, pick);
   std::vector<std::int32_t> host(static_cast<std::size_t>(count));
-  copy_to_host(ex, borders.cview(), host.data());
+  copy_to_host_meanwhile(ex, borders.cview(), host.data(), work);
   return host;
 }
 
@@ -315,16 +315,17 @@ void find_ghosts(Exec& ex, const AllLevelBricks& bricks, PickBorders first_brick
   auto before = exec::make_buffer<std::int32_t>(ex, all + 1);
   for_each(ex, "octree.ghosts", all + 1, CountGhosts{bricks, masks.view(), before.view()});
   exclusive_scan(ex, "octree.ghosts", before.cview(), before.view());
-  sets.first_ghost = read_borders(ex, before, first_brick, bricks.levels + 1);
+  sets.first_ghost = read_borders(ex, before, first_brick, bricks.levels + 1, [] {});
   sets.ghosts = exec::make_buffer<std::int32_t>(ex, sets.first_ghost.back());
   for_each(ex, "octree.ghosts", all, ListGhosts{bricks, masks.cview(), before.cview(), sets.ghosts.view()});
 }
 
 /// Levels last..kCompleteDepth + 1, by bitmaps: all marked, counted and numbered with two round trips.
-template <exec::Space Exec>
-void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth, int last, BrickSets& sets) {
+template <exec::Space Exec, class Work>
+void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth, int last, BrickSets& sets,
+                 const Work& work) {
   constexpr int kFirst = kCompleteDepth + 1;
-  if (last < kFirst) return;
+  if (last < kFirst) return work();
   BrickKeys& keys = sets.keys;
   PickBorders pick{};
   for (int d = kFirst; d <= last; ++d) pick.at[d - kFirst + 1] = pick.at[d - kFirst] + bitmap_words(d);
@@ -351,7 +352,7 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
   for_each(ex, "octree.count", words + 1, CountWord{bits.cview(), before.view()});
   placed.end();
   exclusive_scan(ex, "octree.count", before.cview(), before.view());
-  const std::vector<std::int32_t> first = read_borders(ex, before, pick, levels + 1);
+  const std::vector<std::int32_t> first = read_borders(ex, before, pick, levels + 1, work);
   AllLevelBricks all{levels, {}};
   PickBorders first_brick{};
   for (int i = 0; i < levels; ++i) {
@@ -374,13 +375,14 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
 
 /// Sorted keys of the cell bricks of levels kCompleteDepth + 1..depth: those touched by the 27-neighbourhoods of
 /// occupied cells at the finest level, of cells that have children above it.
-template <exec::Space Exec>
-build::BrickSets find_brick_sets(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth) {
+/// @param work  is called once and launches what does not depend on them, where a GPU would have nothing to do
+template <exec::Space Exec, class Work>
+build::BrickSets find_brick_sets(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth, const Work& work) {
   build::BrickSets sets;
   sets.keys.resize(static_cast<std::size_t>(depth) + 2);
   const int last = build::deepest_bitmap(point_keys.size, depth);
   build::sort_levels(ex, point_keys, depth, last, sets.keys);
-  build::mark_levels(ex, point_keys, depth, last, sets);
+  build::mark_levels(ex, point_keys, depth, last, sets, work);
   return sets;
 }
 

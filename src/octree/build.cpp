@@ -87,10 +87,11 @@ struct SettleRuns {
 };
 
 /// Sorts points by bits [low_bits, all) of their keys and settles what shares them.
+/// @param use  is called with the points while the host waits for the answer
 /// @returns false if too many points do
 template <exec::Space Exec>
 bool sort_by_upper_bits(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break,
-                        int low_bits, SortedPoints& sorted) {
+                        int low_bits, SortedPoints& sorted, const UseOfSorted& use) {
   constexpr int kKeyBits = 3 * kPointBits;
   const std::int64_t n = positions.size;
   sorted = {};  // of an attempt before
@@ -104,7 +105,11 @@ bool sort_by_upper_bits(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<co
   for_each(ex, "octree.settle", n,
            SettleRuns{low_bits, keys.cview(), order.cview(), tie_break, sorted.keys.view(), sorted.order.view(),
                       too_long.data()});
-  return exec::read_element(ex, too_long.cview(), 0) == 0;
+  std::uint32_t failed = 0;
+  copy_to_host_meanwhile(ex, too_long.cview(), &failed, [&] {
+    if (failed == 0) use(sorted);  // known on the host; a GPU does it before it knows
+  });
+  return failed == 0;
 }
 
 /// Levels that one launch works on; indices count from the first to the last.
@@ -471,7 +476,8 @@ void assign_points(Exec& ex, OctreeData& tree, ArrayView<const std::uint64_t> po
 }  // namespace
 
 template <exec::Space Exec>
-SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break) {
+SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break,
+                         const UseOfSorted& use) {
   constexpr int kKeyBits = 3 * kPointBits;
   // Points within 2^-13 of the cube are few where there are not many points, and within 2^-16 nearly always: three or two passes of the
   // sort are saved.
@@ -482,7 +488,7 @@ SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<c
   SortedPoints sorted;
   for (const int low_bits : {kFewerPasses, kFewPasses, 0}) {
     if (low_bits == kFewerPasses && n > kNotMany) continue;
-    if (sort_by_upper_bits(ex, positions, tie_break, low_bits, sorted)) return sorted;
+    if (sort_by_upper_bits(ex, positions, tie_break, low_bits, sorted, use)) return sorted;
   }
 
   // Many points share a key: sort by the tie break first, then, stably, by key.
@@ -498,6 +504,7 @@ SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<c
   for_each(ex, "octree.keys", n, PointKey{tied_positions.cview(), sorted.keys.view()});
   tied_positions.reset();
   sort_pairs(ex, "octree.sort", sorted.keys, sorted.order, kKeyBits);
+  use(sorted);
   return sorted;
 }
 
@@ -507,11 +514,11 @@ OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int
   tree.depth = depth;
   tree.levels.resize(static_cast<std::size_t>(depth) + 1);
 
-  // Reverse level order (Listing 1): which bricks exist.
-  BrickSets sets = find_brick_sets(ex, point_keys, depth);
+  // Reverse level order (Listing 1): which bricks exist. Those of the complete levels are known.
+  BrickSets sets =
+      find_brick_sets(ex, point_keys, depth, [&] { build_complete_levels(ex, tree, std::min(depth, kCompleteDepth)); });
 
   // Level order (Listing 2): who is whose neighbour.
-  build_complete_levels(ex, tree, std::min(depth, kCompleteDepth));
   const int together = std::min(depth, sets.last_with_ghosts);
   link_levels(ex, tree, kCompleteDepth + 1, together, sets);
   for (int d = std::max(together, kCompleteDepth) + 1; d <= depth; ++d) link_levels(ex, tree, d, d, sets);

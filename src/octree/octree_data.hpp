@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/array_view.hpp"
@@ -42,15 +43,21 @@ struct SortedPoints {
   exec::Buffer<std::int32_t> order;  ///< (n) index in the caller's order
 };
 
+/// Work with points that are sorted, but for a GPU perhaps not yet: then it is done again.
+using UseOfSorted = std::function<void(SortedPoints&)>;
+
 /// Sorts points by key; points with equal keys by a hash of `tie_break` (any function of all their data), so that the
 /// result does not depend on the caller's order unless two points are the same in every bit.
 /// @param positions  shape (n), in the unit cube
 /// @param tie_break  shape (n); equal only for points that may be exchanged
+/// @param use        what needs the points in their order, launched as soon as it may be
 /// O(n), 24 n bytes of scratch; one more sort where more than 32 points share the upper 48 bits of a key (in clouds of up to
 /// 2^20 points also the upper 40), two more again where that many share a key. Deterministic, the same order on every device. @throws Error over_limit if memory
 /// runs out
 template <exec::Space Exec>
-SortedPoints sort_points(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break);
+SortedPoints sort_points(
+    Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break,
+    const UseOfSorted& use = [](SortedPoints&) {});
 
 /// Builds the padded, graded octree of `point_keys` (P1, P2, P3).
 ///

@@ -191,11 +191,11 @@ struct MarkCorners {
 };
 
 /// Memory for the samples of occupied bricks, level after level.
-/// @param before  shape (bricks + 1), occupied bricks before each
+/// @param before    shape (bricks + 1), occupied bricks before each
+/// @param occupied  its last
 template <exec::Space Exec>
 exec::Buffer<CollapsedSample> make_collapsed(Exec& ex, const octree::OctreeView& view,
-                                             ArrayView<const std::int32_t> before) {
-  const std::int64_t occupied = exec::read_element(ex, before, before.size - 1);
+                                             ArrayView<const std::int32_t> before, std::int64_t occupied) {
   std::vector<std::int64_t> borders;
   if (exec::is_shared(ex)) borders.push_back(exec::read_element(ex, before, view.finest().first_node / 8));
   const exec::Placed placed(ex, borders, occupied);
@@ -212,8 +212,11 @@ void place_samples(Exec& ex, const octree::OctreeView& view, Screening& result) 
   auto before = exec::make_buffer<std::int32_t>(ex, bricks + 1);
   exclusive_scan(ex, "screening.occupied", flags.cview(), before.view());
   result.brick_index = std::move(flags);
-  for_each(ex, "screening.occupied", bricks, PlaceBricks{before.cview(), result.brick_index.view()});
-  result.samples = make_collapsed(ex, view, before.cview());
+  std::int32_t occupied = 0;
+  copy_to_host_meanwhile(ex, before.cview().part(bricks, 1), &occupied, [&] {
+    for_each(ex, "screening.occupied", bricks, PlaceBricks{before.cview(), result.brick_index.view()});
+  });
+  result.samples = make_collapsed(ex, view, before.cview(), occupied);
 }
 
 /// The finest two levels in one launch where points make both.

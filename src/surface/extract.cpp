@@ -408,14 +408,18 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   else
     for_each(ex, "extract.mark", bricks, MarkBrick{marker});
 
-  auto counts = exec::make_buffer<std::uint64_t>(ex, bricks);
-  for_each(ex, "extract.count", counts.size(), CountBrick{marks.cview(), counts.view()});
-  auto first = exec::make_buffer<std::uint64_t>(ex, bricks + 1);
-  scan_counts(ex, counts, first.view(), kMostEdgesPerBrick);
-  counts.reset();
+  exec::Buffer<std::uint64_t> first;
+  const auto count_items = [&] {
+    auto counts = exec::make_buffer<std::uint64_t>(ex, bricks);
+    for_each(ex, "extract.count", counts.size(), CountBrick{marks.cview(), counts.view()});
+    first = exec::make_buffer<std::uint64_t>(ex, bricks + 1);
+    scan_counts(ex, counts, first.view(), kMostEdgesPerBrick);
+  };
   exec::Buffer<std::int32_t> traced;
   if (f.tree.finest().first_node > 0)  // there are coarser leaves
-    traced = select(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()});
+    traced = select_meanwhile(ex, "extract.traced", f.tree.nodes, IsTraced{marks.cview()}, count_items);
+  else
+    count_items();
   placed.end();
   auto traced_counts = exec::make_buffer<std::uint64_t>(ex, traced.size());
   for_each_apart(ex, "extract.traced", traced.size(), CountTraced{f, traced.cview(), traced_counts.view()});

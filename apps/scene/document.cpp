@@ -145,8 +145,8 @@ void write_document(const std::string& path, const Document& document) {
   try {
     text = json_text(to_json(document, fs::absolute(path).parent_path()), 2) + "\n";
   } catch (const fs::filesystem_error& error) {
-    throw Error(ErrorCode::output_not_written, fmt::format("{}: cannot be written, the way from it to {}: {}", path,
-                                                           error.path1().string(), error.code().message()));
+    throw Error(ErrorCode::output_not_written,
+                fmt::format("{}: cannot be written, its folder: {}", path, error.code().message()));
   }
   write_file_atomically(path, text);
 }

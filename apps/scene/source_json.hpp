@@ -20,7 +20,7 @@ SolidSource read_source(const JsonReader& json, const std::filesystem::path& fol
 /// Adds these keys.
 void write_source(const SolidSource& source, const std::filesystem::path& folder, nlohmann::ordered_json& json);
 
-/// How `folder` names the absolute path `file`; the path itself for an empty folder.
+/// How `folder` names the absolute path `file`; the path itself for an empty folder, or where no way leads to it.
 std::string file_seen_from(const std::string& file, const std::filesystem::path& folder);
 
 /// A source as Insert::source holds it: the file, or "shape:NAME:POINTS", which no absolute path is. And back.

@@ -1,6 +1,7 @@
 // Operations as JSON, written: read again, they are the same to the last bit.
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 
 #include "scene/camera_json.hpp"
 #include "scene/deform_script.hpp"
@@ -122,7 +123,10 @@ constexpr char kShapePrefix[] = "shape:";
 }  // namespace
 
 std::string file_seen_from(const std::string& file, const fs::path& folder) {
-  return folder.empty() ? file : fs::proximate(file, folder).string();
+  if (folder.empty()) return file;
+  std::error_code failed;  // the way to it cannot be followed, for example because a name is too long
+  const fs::path way = fs::proximate(file, folder, failed);
+  return failed ? file : way.string();
 }
 
 void write_source(const SolidSource& source, const fs::path& folder, Json& json) {

@@ -90,6 +90,13 @@ TEST(SceneDocument, FilesAreSeenFromItsFolder) {
   EXPECT_EQ(moved["operations"][1]["with"]["file"], "d.stl");
 }
 
+TEST(SceneDocument, FilesWithNamesTooLongToBeFoundStayAsTheyAre) {
+  const std::string name(5000, 'x');
+  const Document document = scene::parse_document(
+      R"({"version": 1, "operations": [{"op": "insert", "file": ")" + name + R"("}]})", "edits.json", "/tmp/scene");
+  EXPECT_EQ(to_json(document, "/tmp/scene")["operations"][0]["file"], "/tmp/scene/" + name);
+}
+
 TEST(SceneDocument, SaysWhatIsWrongAndWhere) {
   const std::vector<std::pair<std::string, std::string>> trials = {
       {"[", "doc: is not JSON"},

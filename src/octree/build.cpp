@@ -105,6 +105,8 @@ bool sort_by_upper_bits(Exec& ex, ArrayView<const Vec3f> positions, ArrayView<co
   for_each(ex, "octree.settle", n,
            SettleRuns{low_bits, keys.cview(), order.cview(), tie_break, sorted.keys.view(), sorted.order.view(),
                       too_long.data()});
+  keys.reset();
+  order.reset();
   std::uint32_t failed = 0;
   copy_to_host_meanwhile(ex, too_long.cview(), &failed, [&] {
     if (failed == 0) use(sorted);  // known on the host; a GPU does it before it knows

@@ -44,7 +44,7 @@ struct SortedPoints {
 };
 
 /// Work with points that are sorted, but for a GPU perhaps not yet: then it is done again.
-using UseOfSorted = std::function<void(SortedPoints&)>;
+using UseOfSorted = std::function<void(const SortedPoints&)>;
 
 /// Sorts points by key; points with equal keys by a hash of `tie_break` (any function of all their data), so that the
 /// result does not depend on the caller's order unless two points are the same in every bit.
@@ -57,7 +57,7 @@ using UseOfSorted = std::function<void(SortedPoints&)>;
 template <exec::Space Exec>
 SortedPoints sort_points(
     Exec& ex, ArrayView<const Vec3f> positions, ArrayView<const std::uint64_t> tie_break,
-    const UseOfSorted& use = [](SortedPoints&) {});
+    const UseOfSorted& use = [](const SortedPoints&) {});
 
 /// Builds the padded, graded octree of `point_keys` (P1, P2, P3).
 ///

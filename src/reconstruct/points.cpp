@@ -288,18 +288,18 @@ SortedSamples sort_into_cube(Exec& ex, const PointBuffers& points, const octree:
   SortedSamples out;
   poisson::Samples& samples = out.samples;
   octree::SortedPoints sorted =
-      octree::sort_points(ex, unit.cview(), hashes.cview(), [&](octree::SortedPoints& points_in_order) {
-        const exec::Buffer<std::int32_t>& order = points_in_order.order;
+      octree::sort_points(ex, unit.cview(), hashes.cview(), [&](const octree::SortedPoints& in_order) {
         samples.positions = exec::make_buffer<Vec3f>(ex, n);
-        exec::gather(ex, unit.cview(), order.cview(), samples.positions.view());
-        if (!points.used.empty())  // from here on, the order leads to the caller's points
-          exec::gather(ex, points.used.cview(), order.cview(), points_in_order.order.view());
-        if (points.normals.empty()) return;
-        samples.normals = exec::make_buffer<Vec3f>(ex, n);
-        exec::gather(ex, points.normals.cview(), order.cview(), samples.normals.view());
+        exec::gather(ex, unit.cview(), in_order.order.cview(), samples.positions.view());
       });
   hashes.reset();
   unit.reset();
+  if (!points.used.empty())  // from here on, the order leads to the caller's points
+    exec::gather(ex, points.used.cview(), sorted.order.cview(), sorted.order.view());
+  if (!points.normals.empty()) {
+    samples.normals = exec::make_buffer<Vec3f>(ex, n);
+    exec::gather(ex, points.normals.cview(), sorted.order.cview(), samples.normals.view());
+  }
   if (!points.added.empty()) {
     out.added = exec::make_buffer<std::uint8_t>(ex, n);
     exec::gather(ex, points.added.cview(), sorted.order.cview(), out.added.view());

@@ -3,9 +3,11 @@
 
     compute_sanitizer.py build-cuda                                  # everything
     compute_sanitizer.py build-cuda --tools racecheck --tests octree strays
+    compute_sanitizer.py build-cuda --total 3000 > lines.txt; compute_sanitizer.py build-cuda --after lines.txt
 
-A part is a few tests of one program under one tool; several run side by side. Every part has a line with its time and what
-it found. The exit code is 1 if a tool found something, a test failed, or a part did not end in its time.
+A part is a few tests of one program under one tool; several run side by side, on all GPUs that there are. Every part has a
+line with its time and what it found. The exit code is 1 if a tool found something, a test failed, or a part did not end in
+its time.
 
 The programs of tests/parity run but for endurance_gpu_test: it watches the memory of the whole device, forks, and resets the
 device, and the tools hold memory of their own and follow one process.
@@ -14,14 +16,15 @@ import argparse
 import concurrent.futures
 import os
 import pathlib
+import queue
 import re
 import signal
 import subprocess
 import sys
 import time
 
-# Tests in a part: under racecheck one alone may take minutes.
-TOOLS = {"racecheck": 1, "initcheck": 8, "synccheck": 8, "memcheck": 16}
+# Tests in a part: under the first two one alone may take minutes.
+TOOLS = {"racecheck": 1, "initcheck": 1, "synccheck": 8, "memcheck": 16}
 SUMMARY = re.compile(r"(?:ERROR|RACECHECK) SUMMARY: (\d+) (?:error|hazard)")
 EXCLUDED = {"endurance"}
 
@@ -38,12 +41,21 @@ def tests_of(program):
     return names
 
 
+def visible_gpus():
+    """What CUDA_VISIBLE_DEVICES says, or the numbers of all."""
+    said = os.environ.get("CUDA_VISIBLE_DEVICES")
+    if said is not None:
+        return [name for name in said.split(",") if name]
+    listed = subprocess.run(["nvidia-smi", "-L"], capture_output=True, text=True, check=True).stdout
+    return [str(i) for i in range(len(listed.splitlines()))]
+
+
 class Part:
     def __init__(self, tool, program, number, tests):
         self.tool, self.program, self.tests = tool, program, tests
         self.name = f"{tool} {program.stem.removesuffix('_gpu_test')} {number}"
 
-    def run(self, logs, limit):
+    def run(self, logs, limit, gpu):
         """The line of this part, and whether all is well."""
         # Some tests ask for more memory than there is: the refusal that they expect is no error of theirs.
         options = ["--report-api-errors", "no"] if self.tool == "memcheck" else []
@@ -53,7 +65,7 @@ class Part:
         began = time.monotonic()
         with log.open("w") as out:
             running = subprocess.Popen(command, stdout=out, stderr=subprocess.STDOUT, start_new_session=True,
-                                       env=os.environ | {"POINTSKIN_REQUIRE_GPU": "1"})
+                                       env=os.environ | {"POINTSKIN_REQUIRE_GPU": "1", "CUDA_VISIBLE_DEVICES": gpu})
             try:
                 code = running.wait(limit)
             except subprocess.TimeoutExpired:
@@ -78,10 +90,12 @@ def main():
     parser.add_argument("build", type=pathlib.Path, help="folder of a build with CUDA")
     parser.add_argument("--tools", nargs="+", choices=TOOLS, default=list(TOOLS))
     parser.add_argument("--tests", nargs="+", metavar="NAME", help="programs, as octree for octree_gpu_test")
-    parser.add_argument("--jobs", type=int, default=min(12, os.cpu_count() or 1), help="parts side by side")
+    parser.add_argument("--jobs", type=int, help="parts side by side (12 a GPU, at most one a core)")
     parser.add_argument("--limit", type=float, default=600, metavar="SECONDS", help="for one part")
     parser.add_argument("--total", type=float, default=float("inf"), metavar="SECONDS",
                         help="parts that have not ended by then are stopped, and those not begun are named")
+    parser.add_argument("--after", type=pathlib.Path, metavar="FILE",
+                        help="what an earlier run of the same tests has printed: parts that were well are left out")
     parser.add_argument("--logs", type=pathlib.Path, help="default: compute-sanitizer in the build folder")
     given = parser.parse_args()
 
@@ -99,16 +113,31 @@ def main():
             tests, few = tests_of(program), TOOLS[tool]
             parts += [Part(tool, program, 1 + i // few, tests[i:i + few]) for i in range(0, len(tests), few)]
 
+    if given.after:
+        well = set(re.findall(r"^(\w+ \w+ \d+): .* 0 found, exit 0$", given.after.read_text(), re.MULTILINE))
+        parts = [part for part in parts if part.name not in well]
+
     end = time.monotonic() + given.total
+    gpus = visible_gpus()
+    if not gpus:
+        sys.exit("no GPU")
+    jobs = given.jobs or min(12 * len(gpus), os.cpu_count() or 1)
+    places = queue.SimpleQueue()  # a GPU for every part that runs
+    for i in range(jobs):
+        places.put(gpus[i % len(gpus)])
 
     def judge(part):
         left = end - time.monotonic()
         if left < 1:
             return f"{part.name}: not begun", False
-        return part.run(logs, min(given.limit, left))
+        gpu = places.get()
+        try:
+            return part.run(logs, min(given.limit, left), gpu)
+        finally:
+            places.put(gpu)
 
     ill = 0
-    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         for done in concurrent.futures.as_completed([pool.submit(judge, part) for part in parts]):
             line, well = done.result()
             ill += not well

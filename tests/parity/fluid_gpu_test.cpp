@@ -5,7 +5,12 @@
 #include <pointskin/error.hpp>
 #include <pointskin/fluid.hpp>
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "parity/gpu_test.hpp"
 #include "property/reconstruction.hpp"
@@ -37,31 +42,39 @@ class FluidOnGpu : public test::GpuTest {
   }
 };
 
-TEST_F(FluidOnGpu, GivesTheBytesOfTheCpuForAllFramesAndOptions) {
-  for (test::NamedParticles& frame : test::particle_frames(7)) {
-    const std::vector<Vec3f>& at = frame.cloud.positions;
-    frame.cloud.attributes = {
-        test::attribute_of<float>("vx", at, [](const Vec3f& p) { return p.x * p.y; }),
-        test::attribute_of<std::uint8_t>("red", at, [](const Vec3f& p) { return p.z > 0 ? 200 : 20; }),
-        test::attribute_of<double>("time", at, [](const Vec3f& p) { return 4e8 + p.x; }),
-        test::attribute_of<std::int32_t>("id", at, [](const Vec3f& p) { return 1e6 * p.x + 1e3 * p.y; }),
-        test::attribute_of<std::uint8_t>("phase", at, [](const Vec3f& p) { return p.z > 0 ? 1 : 0; }),
-        test::attribute_of<std::int16_t>("part", at, [](const Vec3f& p) { return 100 * p.z; })};
-    for (std::size_t i = 0; i < at.size(); i += 3) frame.cloud.attributes.back().values.set_missing(i);
-    for (const FluidKernel kernel : {FluidKernel::isotropic, FluidKernel::anisotropic})
-      for (const double cube_size : {0.5, 1.0, 1.7})
-        for (const int smoothing : {0, 7}) {
-          SCOPED_TRACE(::testing::Message() << frame.name << ", cube size " << cube_size);
-          FluidOptions options;
-          options.particle_radius = 1;
-          options.kernel = kernel;
-          options.cube_size = cube_size;
-          options.smoothing_iterations = smoothing;
-          options.min_component = smoothing > 0 ? 3 : 0;
-          expect_parity(frame.cloud, options);
-        }
-  }
+constexpr std::uint64_t kSeed = 7;
+
+/// A test of its own for each frame and kernel, so that slow checkers can run many at once.
+class FluidFrameOnGpu : public FluidOnGpu, public testing::WithParamInterface<std::tuple<std::size_t, FluidKernel>> {};
+
+TEST_P(FluidFrameOnGpu, GivesTheBytesOfTheCpuForAllOptions) {
+  const auto& [number, kernel] = GetParam();
+  test::NamedParticles frame = std::move(test::particle_frames(kSeed)[number]);
+  const std::vector<Vec3f>& at = frame.cloud.positions;
+  frame.cloud.attributes = {
+      test::attribute_of<float>("vx", at, [](const Vec3f& p) { return p.x * p.y; }),
+      test::attribute_of<std::uint8_t>("red", at, [](const Vec3f& p) { return p.z > 0 ? 200 : 20; }),
+      test::attribute_of<double>("time", at, [](const Vec3f& p) { return 4e8 + p.x; }),
+      test::attribute_of<std::int32_t>("id", at, [](const Vec3f& p) { return 1e6 * p.x + 1e3 * p.y; }),
+      test::attribute_of<std::uint8_t>("phase", at, [](const Vec3f& p) { return p.z > 0 ? 1 : 0; }),
+      test::attribute_of<std::int16_t>("part", at, [](const Vec3f& p) { return 100 * p.z; })};
+  for (std::size_t i = 0; i < at.size(); i += 3) frame.cloud.attributes.back().values.set_missing(i);
+  for (const double cube_size : {0.5, 1.0, 1.7})
+    for (const int smoothing : {0, 7}) {
+      SCOPED_TRACE(::testing::Message() << frame.name << ", cube size " << cube_size);
+      FluidOptions options;
+      options.particle_radius = 1;
+      options.kernel = kernel;
+      options.cube_size = cube_size;
+      options.smoothing_iterations = smoothing;
+      options.min_component = smoothing > 0 ? 3 : 0;
+      expect_parity(frame.cloud, options);
+    }
 }
+
+INSTANTIATE_TEST_SUITE_P(EveryFrameAndKernel, FluidFrameOnGpu,
+                         testing::Combine(testing::Range(std::size_t{0}, test::particle_frames(kSeed).size()),
+                                          testing::Values(FluidKernel::isotropic, FluidKernel::anisotropic)));
 
 TEST_F(FluidOnGpu, GivesTheBytesOfTheCpuBeyondTheRadiusOfParticles) {
   FluidOptions options;

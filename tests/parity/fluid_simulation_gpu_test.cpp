@@ -43,9 +43,12 @@ class FluidSimulationOnGpu : public test::GpuTest {
   }
 };
 
-TEST_F(FluidSimulationOnGpu, GivesTheBytesOfTheCpuForEveryScene) {
-  for (const SceneKind kind : all_scenes()) expect_parity(kind, 6000, 40);
-}
+/// A test of its own for each scene, so that slow checkers can run many at once.
+class SceneOnGpu : public FluidSimulationOnGpu, public testing::WithParamInterface<SceneKind> {};
+
+TEST_P(SceneOnGpu, GivesTheBytesOfTheCpu) { expect_parity(GetParam(), 6000, 40); }
+
+INSTANTIATE_TEST_SUITE_P(EveryScene, SceneOnGpu, testing::ValuesIn(all_scenes()));
 
 TEST_F(FluidSimulationOnGpu, GivesTheBytesOfTheCpuWithVorticityAndWithoutAWarmStart) {
   SimulationOptions options;

@@ -136,6 +136,7 @@ TYPED_TEST_P(ParticleTreeOn, FindsEveryNeighbourOnce) {
     const auto built = this->build(set);
     const auto n = static_cast<std::int64_t>(set.positions.size());
     auto found = exec::make_buffer<std::int32_t>(ex, n * kMostFound);
+    exec::fill(ex, found.view(), std::int32_t{-1});  // what is not written is copied as well
     const auto positions = upload(ex, built.sorted);
     for_each(ex, "test", n, CollectNeighbours{built.tree.view(), positions.cview(), set.radius, found.view()});
     const std::vector<std::int32_t> host = to_host(ex, found);
@@ -159,6 +160,7 @@ TYPED_TEST_P(ParticleTreeOn, FindsWhatIsNearAnyPlace) {
       places.push_back({set.positions[i].x + 0.9F * set.radius, set.positions[i].y, set.positions[i].z});
     const auto n = static_cast<std::int64_t>(places.size());
     auto found = exec::make_buffer<std::int32_t>(ex, n * kMostFound);
+    exec::fill(ex, found.view(), std::int32_t{-1});  // what is not written is copied as well
     const auto positions = upload(ex, built.sorted);
     const auto at = upload(ex, places);
     for_each(ex, "test", n, CollectNear{built.tree.view(), positions.cview(), at.cview(), set.radius, found.view()});

@@ -275,7 +275,7 @@ int run(const EditArgs& given) {
   Json json = {{"version", 1}, {"command", "edit"}, {"device", to_json(device)}};
   json["input"] = {{"points", base.size() + base.dropped}, {"dropped", base.dropped}};
   json["options"] = report_of(edit_options, args);
-  json["ms"]["read"] = watch.ms();
+  json["ms"] = {{"read", watch.ms()}};
 
   on_interrupt(OnInterrupt::remember);
   const RunMemory memory(device, reconstruction, reconstruction.max_memory_bytes);
@@ -291,7 +291,7 @@ int run(const EditArgs& given) {
   json["ms"]["total"] = total_ms;
   if (!args.report.empty()) {
     describe(scene, args, json);
-    json["memory"]["host_peak_bytes"] = host_peak_bytes();
+    json["memory"] = {{"host_peak_bytes", host_peak_bytes()}};
     write_file_atomically(args.report, json_text(json));
   }
   if (!args.quiet) print_note(summary(scene, args, total_ms));

@@ -43,7 +43,7 @@ Json world(const Vec3f& p, const Vec3d& origin) { return {origin[0] + p.x, origi
 /// What a cloud and the vertices of a mesh have in common.
 Json points_json(const std::vector<Vec3f>& positions, const Vec3d& origin, const std::vector<Attribute>& attributes) {
   const Bounds box = bounds_of(positions);
-  Json json;
+  Json json = Json::object();
   json["bounds"] = {{"lower", world(box.lower, origin)}, {"upper", world(box.upper, origin)}};
   json["origin"] = origin;
   json["attributes"] = attributes_json(attributes);

@@ -1,6 +1,7 @@
 #include "command_line.hpp"
 
 #include <memory>
+#include <new>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 
 #include "args.hpp"
 #include "console.hpp"
+#include "exhaustion.hpp"
 #include "manual.hpp"
 #include "usage_errors.hpp"
 
@@ -48,7 +50,10 @@ class HelpFormatter : public CLI::Formatter {
     label("SUBCOMMAND", "COMMAND");
   }
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-    return CLI::detail::find_and_replace(Formatter::make_help(app, name, mode), "\n\n\n", "\n\n");
+    const std::string text = CLI::detail::find_and_replace(Formatter::make_help(app, name, mode), "\n\n\n", "\n\n");
+    // It is put together by streams, which leave text out where they find no memory, and tell nobody.
+    if (memory_ran_out()) throw std::bad_alloc();
+    return text;
   }
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
     const std::string name =

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -43,7 +44,11 @@ std::string without_controls(std::string text) {
   return text;
 }
 
+/// Nothing follows the last line, also not from threads that do not know yet that the process ends.
+std::atomic<bool> last_line_written{false};
+
 void write_line(const std::string& text) {
+  if (last_line_written) return;
   const std::string line = text + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);  // One call: lines of several processes do not mix.
 }
@@ -59,6 +64,7 @@ void print_error(const std::string& story) {
 
 void print_out_of_memory() noexcept {
   constexpr std::string_view kStory = "pointskin: out of memory; use a smaller --depth or fewer points\n";
+  last_line_written = true;
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kStory.data(), kStory.size());
 }
 

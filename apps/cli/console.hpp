@@ -14,7 +14,7 @@ bool stderr_is_terminal();
 /// Prints "pointskin: `story`" as exactly one line on stderr. The name is red on a terminal unless NO_COLOR is set.
 void print_error(const std::string& story);
 
-/// The error that is told without taking memory.
+/// The error that is told without taking memory. Nothing is printed on stderr after it.
 void print_out_of_memory() noexcept;
 
 /// Prints "pointskin: warning: `story`" as one line on stderr, and remembers it. Threads with a WarningsOf may do so at

@@ -19,6 +19,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "exhaustion.hpp"
 #include "signals.hpp"
 #include "standard_files.hpp"
 
@@ -66,19 +67,12 @@ int without_memory() noexcept {
   return static_cast<int>(ErrorCode::over_limit);
 }
 
-std::atomic<bool> memory_ran_out{false};
 std::terminate_handler library_terminate = std::abort;  ///< tells of other exceptions
-
-/// Called by operator new.
-void remember_and_throw() {
-  memory_ran_out.store(true);
-  throw std::bad_alloc();
-}
 
 /// Where an exception leaves a function that may throw none, as there are in libraries, or cannot be thrown for want of
 /// memory, nothing can be unwound: tell what was the matter, and end.
 [[noreturn]] void end_at_once() {
-  if (memory_ran_out.load()) {
+  if (memory_ran_out()) {
     remove_unfinished_files();  // other threads may be writing
     _exit(without_memory());
   }
@@ -92,7 +86,7 @@ void remember_and_throw() {
 int main(int argc, char** argv) {
   pointskin::cli::hold_standard_files();
   pointskin::cli::install_signal_handlers();
-  std::set_new_handler(pointskin::cli::remember_and_throw);
+  pointskin::cli::watch_memory();
   pointskin::cli::library_terminate = std::set_terminate(pointskin::cli::end_at_once);
   try {
     return pointskin::cli::guarded_main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));

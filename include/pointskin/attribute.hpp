@@ -110,6 +110,11 @@ class AttributeValues {
  public:
   /// No values, of type float32.
   AttributeValues() = default;
+  AttributeValues(const AttributeValues& other);
+  AttributeValues& operator=(const AttributeValues& other);
+  AttributeValues(AttributeValues&&) noexcept = default;
+  AttributeValues& operator=(AttributeValues&&) noexcept = default;
+  ~AttributeValues() = default;
 
   /// Takes over `values`, all of which are there.
   template <AttributeScalar T>

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -72,7 +73,19 @@ void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>
 
 #else
 
-static int available_threads() { return tbb::info::default_concurrency(); }
+/// Where the first call finds no memory, all later ones of oneTBB 2021 would wait for it forever: they are not made.
+static int available_threads() {
+  static std::mutex& mutex = *new std::mutex;  // never destroyed: spaces may outlive statics
+  static bool is_lost = false;
+  const std::lock_guard lock(mutex);
+  if (is_lost) throw std::bad_alloc();
+  try {
+    return tbb::info::default_concurrency();
+  } catch (...) {
+    is_lost = true;
+    throw;
+  }
+}
 
 using Arena = std::unique_ptr<tbb::task_arena>;
 using Arenas = std::vector<Arena>;

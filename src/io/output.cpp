@@ -99,11 +99,24 @@ std::atomic<const char*>* remember_unfinished(const char* name) noexcept {
   return nullptr;
 }
 
+/// Files that threads are making now, whose names are not remembered yet.
+std::atomic<int> files_being_made{0};
+/// The process is about to end: nobody would remove another file.
+std::atomic<bool> process_ends{false};
+
+/// While one is there, a process that ends waits for its file's name.
+class MakingFile {
+ public:
+  MakingFile() { ++files_being_made; }
+  ~MakingFile() { --files_being_made; }
+  MakingFile(const MakingFile&) = delete;
+  MakingFile& operator=(const MakingFile&) = delete;
+};
+
 /// A new file next to `target` that vanishes unless it is renamed.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& path, const std::string& target)
-      : path_(path), fd_(create(target)), place_(remember_unfinished(name_.c_str())) {}
+  TemporaryFile(const std::string& path, const std::string& target) : path_(path), fd_(create(target)) {}
   ~TemporaryFile() {
     if (!name_.empty()) ::unlink(name_.c_str());
     if (place_ != nullptr) place_->store(nullptr);
@@ -138,11 +151,14 @@ class TemporaryFile {
     constexpr std::size_t kLongestBase = 180;  // leaves room for the rest within the 255 bytes of a file name
     const std::string folder = folder_of(target);
     const std::string base = target.substr(folder.size(), kLongestBase);
+    const MakingFile making;
+    if (process_ends) fail_to_write(path_, ECANCELED);
     for (int i = 0; i < kTries; ++i) {
       std::string name = fmt::format("{}.{}.{}-{:016x}.tmp", folder, base, ::getpid(), random_number());
       const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (fd >= 0) {
         name_ = std::move(name);
+        place_ = remember_unfinished(name_.c_str());
         return fd;
       }
       if (errno != EEXIST && errno != EINTR) fail_to_write(path_, errno);
@@ -152,8 +168,8 @@ class TemporaryFile {
 
   const std::string& path_;
   std::string name_;
+  std::atomic<const char*>* place_ = nullptr;
   FileDescriptor fd_;
-  std::atomic<const char*>* place_;
 };
 
 /// Runs the writer; what the system refuses becomes an Error about `path`.
@@ -214,6 +230,10 @@ void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks) 
 namespace pointskin {
 
 void remove_unfinished_files() noexcept {
+  constexpr int kMostWaits = 100;
+  io::process_ends = true;
+  // The files that are being made have their names in microseconds; unless this is a signal handler in that very thread.
+  for (int i = 0; i < kMostWaits && io::files_being_made > 0; ++i) ::poll(nullptr, 0, 1);
   for (const std::atomic<const char*>& place : io::unfinished_files)
     if (const char* const name = place.load(); name != nullptr) ::unlink(name);
 }

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <string>
 
 namespace pointskin {
@@ -26,6 +27,7 @@ std::string encode(const Image& image) {
   if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr) == 0) {
     const std::string reason = header.message;
     png_image_free(&header);
+    if (reason.find("memory") != std::string::npos) throw std::bad_alloc();  // libpng tells in three ways
     throw Error(ErrorCode::internal, "libpng could not encode a picture: " + reason);
   }
   bytes.resize(size);

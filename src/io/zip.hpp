@@ -1,4 +1,4 @@
-// Zip archives in memory. Where they are built in (kHasMinizip), by minizip.
+// Zip archives in memory. Where they are built in (kHasMinizip), minizip reads them and zlib deflates what is written.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,7 @@ struct ZipFile {
 };
 
 /// An archive of `files`; the same bytes at any time. @param deflated  compressed; else as they are
+/// @throws Error over_limit for a name of more than 65,535 bytes; std::bad_alloc
 std::string zip(const std::vector<ZipFile>& files, bool deflated);
 
 }  // namespace pointskin::io

@@ -1,4 +1,4 @@
-// Zip archives by minizip, which reads and writes memory here.
+// Zip archives as they are read, by minizip, whose file is memory here.
 #include "io/zip.hpp"
 
 #include <pointskin/error.hpp>
@@ -12,7 +12,6 @@
 #include <utility>
 
 #include <minizip/unzip.h>
-#include <minizip/zip.h>
 
 #include "io/inflate.hpp"
 
@@ -24,11 +23,8 @@ constexpr std::uint64_t kMostEntries = 1 << 16;
 
 /// Memory as minizip's file.
 struct Memory {
-  std::string_view read{};
-  std::string* written = nullptr;
+  std::string_view bytes;
   std::uint64_t at = 0;
-
-  [[nodiscard]] std::uint64_t size() const { return written != nullptr ? written->size() : read.size(); }
 };
 
 Memory& memory(voidpf of) { return *static_cast<Memory*>(of); }
@@ -37,26 +33,21 @@ voidpf open_memory(voidpf all, const void* /*name*/, int /*mode*/) { return all;
 
 uLong read_memory(voidpf /*all*/, voidpf stream, void* to, uLong count) {
   Memory& m = memory(stream);
-  const std::uint64_t part = std::min<std::uint64_t>(count, m.size() - std::min(m.at, m.size()));
-  if (part > 0) std::memcpy(to, m.read.data() + m.at, part);
+  const std::uint64_t part =
+      std::min<std::uint64_t>(count, m.bytes.size() - std::min<std::uint64_t>(m.at, m.bytes.size()));
+  if (part > 0) std::memcpy(to, m.bytes.data() + m.at, part);
   m.at += part;
   return static_cast<uLong>(part);
-}
-
-uLong write_memory(voidpf /*all*/, voidpf stream, const void* from, uLong count) {
-  Memory& m = memory(stream);
-  if (m.written->size() < m.at + count) m.written->resize(m.at + count);
-  std::memcpy(m.written->data() + m.at, from, count);
-  m.at += count;
-  return count;
 }
 
 ZPOS64_T tell_memory(voidpf /*all*/, voidpf stream) { return memory(stream).at; }
 
 long seek_memory(voidpf /*all*/, voidpf stream, ZPOS64_T offset, int origin) {
   Memory& m = memory(stream);
-  const std::uint64_t base = origin == ZLIB_FILEFUNC_SEEK_CUR ? m.at : origin == ZLIB_FILEFUNC_SEEK_END ? m.size() : 0;
-  if (base + offset > m.size()) return -1;
+  const std::uint64_t base = origin == ZLIB_FILEFUNC_SEEK_CUR   ? m.at
+                             : origin == ZLIB_FILEFUNC_SEEK_END ? m.bytes.size()
+                                                                : 0;
+  if (base + offset > m.bytes.size()) return -1;
   m.at = base + offset;
   return 0;
 }
@@ -64,7 +55,7 @@ long seek_memory(voidpf /*all*/, voidpf stream, ZPOS64_T offset, int origin) {
 int close_memory(voidpf /*all*/, voidpf /*stream*/) { return 0; }
 
 zlib_filefunc64_def functions_on(Memory& memory) {
-  return {open_memory, read_memory, write_memory, tell_memory, seek_memory, close_memory, close_memory, &memory};
+  return {open_memory, read_memory, nullptr, tell_memory, seek_memory, close_memory, close_memory, &memory};
 }
 
 [[noreturn]] void fail_broken(const Source& source, const std::string& what) { fail(source, what, kAgain); }
@@ -148,39 +139,10 @@ class Reader {
   std::unique_ptr<void, Close> file_;
 };
 
-void require(bool done) {
-  if (!done) throw Error(ErrorCode::output_not_written, "the zip archive could not be made");
-}
-
-void add_file(zipFile archive, const ZipFile& file, bool deflated) {
-  zip_fileinfo info{};
-  info.dosDate = (1 << 21) | (1 << 16);  // the first day that the format knows: the same bytes at any time
-  const bool large = file.bytes.size() >= 0xFFFFFFFFu;
-  require(zipOpenNewFileInZip64(archive, file.name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr,
-                                deflated ? Z_DEFLATED : 0, deflated ? Z_DEFAULT_COMPRESSION : 0, large) == ZIP_OK);
-  for (std::uint64_t at = 0; at < file.bytes.size();) {
-    const auto part = static_cast<unsigned>(std::min<std::uint64_t>(file.bytes.size() - at, 1u << 30));
-    require(zipWriteInFileInZip(archive, file.bytes.data() + at, part) == ZIP_OK);
-    at += part;
-  }
-  require(zipCloseFileInZip(archive) == ZIP_OK);
-}
-
 }  // namespace
 
 std::vector<ZipEntry> zip_entries(const Source& source) { return Reader(source).entries(); }
 
 std::string unzip(const Source& source, const ZipEntry& entry) { return Reader(source).unpack(entry); }
-
-std::string zip(const std::vector<ZipFile>& files, bool deflated) {
-  std::string bytes;
-  Memory to{{}, &bytes};
-  zlib_filefunc64_def functions = functions_on(to);
-  const zipFile archive = zipOpen2_64("", APPEND_STATUS_CREATE, nullptr, &functions);
-  require(archive != nullptr);
-  for (const ZipFile& file : files) add_file(archive, file, deflated);
-  require(zipClose(archive, nullptr) == ZIP_OK);
-  return bytes;
-}
 
 }  // namespace pointskin::io

@@ -110,6 +110,7 @@ class AttributeValues {
  public:
   /// No values, of type float32.
   AttributeValues() = default;
+  /// Copies cost as much as their bytes. @throws std::bad_alloc, after which an assignment leaves the old values
   AttributeValues(const AttributeValues& other);
   AttributeValues& operator=(const AttributeValues& other);
   AttributeValues(AttributeValues&&) noexcept = default;

@@ -75,8 +75,8 @@ AttributeValues::AttributeValues(AttributeType type, std::size_t size) {
   visit_type(type, [&](auto tag) { values_ = std::vector<decltype(tag)>(size); });
 }
 
-// The values are copied before the variant takes them. Its own copy, in libstdc++ before 13.3 (PR 112591), destroys what was
-// never made where memory runs out in it.
+// The values are copied before the variant takes them. Where memory runs out in its own copy, that of libstdc++ 12 destroys
+// what was never made.
 AttributeValues::AttributeValues(const AttributeValues& other) : mask_(other.mask_) {
   other.visit([&](const auto& values) { values_ = std::remove_cvref_t<decltype(values)>(values); });
 }

@@ -245,7 +245,7 @@ Json describe(const Points& points, const std::vector<Part>& parts, bool has_fac
   Json json{{"asset", {{"version", "2.0"}, {"generator", "pointskin"}}}, {"scene", 0}};
   json["scenes"] = {{{"nodes", {0}}}};
   json["nodes"] = Json::array({node_of(points.origin, nullptr)});
-  // Not made by the first push_back(): where memory runs out in that, nlohmann-json before 3.11.3 destroys what is not there.
+  // Not made by the first push_back(): where memory runs out in that, nlohmann-json 3.11.2 destroys what is not there.
   json["accessors"] = Json::array();
   json["bufferViews"] = Json::array();
   Json primitive{{"attributes", Json::object()}, {"mode", has_faces ? 4 : 0}, {"material", 0}};

@@ -21,8 +21,24 @@ option(POINTSKIN_STD_THREAD "Run CPU work on std::thread instead of oneTBB (Thre
 option(POINTSKIN_FUZZ "Build the fuzz programs under tests/fuzz (needs clang; see the preset `fuzz`)" OFF)
 set(POINTSKIN_SANITIZE "" CACHE STRING "Sanitizers to build with: address, undefined, thread, or a comma-separated list")
 
+option(POINTSKIN_CUDA_BY_FOLDER "Compile a folder's steps for CUDA at once: sooner done, where little is optimised" OFF)
 option(POINTSKIN_HARDEN "Stop the process at overruns: stack protector, fortified calls, RELRO, BIND_NOW, PIE" ON)
 option(POINTSKIN_ASSERTIONS "Check what containers of the C++ library are asked for (_GLIBCXX_ASSERTIONS)" OFF)
+
+# Where CMAKE_UNITY_BUILD is on, the files of a folder compile as one: most of the time of a build that hardly optimises goes
+# into reading the same headers, file by file. A release is built without it, and so are its tests.
+function(pointskin_unite_folders target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    get_filename_component(group ${source} DIRECTORY)
+    if(group MATCHES "^io")  # of a format, which the first word of their names tells: each has helpers of the same names
+      string(REGEX REPLACE "_[^/]*$" "" group ${source})
+    endif()
+    string(MAKE_C_IDENTIFIER "in_${group}" group)
+    set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()
 
 set(POINTSKIN_HAS_CUDA OFF)
 if(NOT POINTSKIN_CUDA STREQUAL "OFF")

@@ -129,12 +129,16 @@ void say(const scene::StepRecord& step, std::size_t number, const EditArgs& args
 }
 
 /// Does entry `i` of the document.
-void run_entry(const Json& entry, std::size_t i, const EditArgs& args, scene::Scene& scene) {
-  const auto camera_of_picture = [&scene](const RenderOptions& options) { return camera_of(scene.mesh(), options); };
+void run_entry(const Json& entry, std::size_t i, const EditArgs& args, scene::Sources& sources, scene::Scene& scene) {
+  const auto camera_of_picture = [&](RenderOptions options) {
+    options.threads = args.threads;
+    return camera_of(scene.mesh(), options);
+  };
   const bool goes_back = scene::is_undo(entry) || scene::is_redo(entry);
   scene::SceneOperation operation;
   if (!goes_back)
-    operation = scene::operation_of(entry, fmt::format("{}.operations[{}]", args.script, i), "/", camera_of_picture);
+    operation =
+        scene::operation_of(entry, fmt::format("{}.operations[{}]", args.script, i), "/", camera_of_picture, &sources);
   try {
     if (!goes_back) scene.apply(operation);
     if (scene::is_undo(entry) && !scene.undo()) throw_usage("there is nothing to undo");
@@ -147,9 +151,10 @@ void run_entry(const Json& entry, std::size_t i, const EditArgs& args, scene::Sc
 
 void run_document(const scene::Document& document, const EditArgs& args, scene::Scene& scene) {
   if (document.operations.empty()) print_warning(fmt::format("{}: has no operations", args.script));
+  scene::Sources sources(args.threads);
   for (std::size_t i = 0; i < document.done; ++i) {
     throw_if_interrupted();
-    run_entry(document.operations[i], i, args, scene);
+    run_entry(document.operations[i], i, args, sources, scene);
   }
 }
 
@@ -293,6 +298,7 @@ int run(const EditArgs& given) {
     describe(scene, args, json);
     json["memory"] = {{"host_peak_bytes", host_peak_bytes()}};
     write_file_atomically(args.report, json_text(json));
+    ignore_interrupts();
   }
   if (!args.quiet) print_note(summary(scene, args, total_ms));
   return 0;

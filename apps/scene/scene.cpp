@@ -31,9 +31,9 @@ std::shared_ptr<const Stage> base_stage(Cloud base, const Options& options) {
 }
 
 /// The operation as the history keeps it: what is read from files is there to stay.
-SceneOperation with_solid(SceneOperation operation) {
+SceneOperation with_solid(SceneOperation operation, int threads) {
   if (auto* combine = std::get_if<Combine>(&operation); combine != nullptr && combine->solid == nullptr)
-    combine->solid = Sources().solid(combine->with);
+    combine->solid = Sources(threads).solid(combine->with);
   return operation;
 }
 
@@ -54,7 +54,7 @@ class Scene::Impl {
     if (is_edit(operation))
       edit(operation);
     else
-      make_stage(with_solid(operation));
+      make_stage(with_solid(operation, workspace_.device().threads));
     history_.fit(done(), options_.checkpoint_bytes);
     return history_.step(done() - 1).record;
   }

@@ -61,13 +61,13 @@ std::string key_of(const SolidSource& source) {
   return fmt::format("{} {} {}", source.file, bytes, time.time_since_epoch().count());
 }
 
-Solid read_solid(const SolidSource& source) {
+Solid read_solid(const SolidSource& source, const ReadOptions& options) {
   if (source.file.empty()) return shape_cloud(source.shape, source.points);
   if (may_hold_faces(source.file)) {
-    Mesh mesh = read_mesh(source.file);
+    Mesh mesh = read_mesh(source.file, options);
     if (!mesh.triangles.empty()) return mesh;
   }
-  Cloud cloud = read_cloud(source.file);
+  Cloud cloud = read_cloud(source.file, options);
   check_not_empty(cloud, source.file);
   if (!cloud.has_normals())
     throw Error(ErrorCode::no_normals,
@@ -148,12 +148,13 @@ Cloud shape_cloud(const std::string& name, std::int64_t points) {
 }
 
 std::shared_ptr<const Solid> Sources::solid(const SolidSource& source) {
-  return kept(solids_, key_of(source), [&source] { return read_solid(source); });
+  return kept(solids_, key_of(source), [&] { return read_solid(source, {.threads = threads_}); });
 }
 
 std::shared_ptr<const Cloud> Sources::part(const SolidSource& source) {
-  return kept(parts_, key_of(source), [&source] {
-    return source.file.empty() ? shape_cloud(source.shape, source.points) : read_cloud(source.file);
+  return kept(parts_, key_of(source), [&] {
+    return source.file.empty() ? shape_cloud(source.shape, source.points)
+                               : read_cloud(source.file, {.threads = threads_});
   });
 }
 

@@ -73,6 +73,9 @@ class Sources {
  public:
   static constexpr std::size_t kKept = 3;
 
+  /// @param threads  that read files, 0: all
+  explicit Sources(int threads = 0) : threads_(threads) {}
+
   /// A cloud or a mesh, as `pointskin boolean` reads its inputs: clouds with normals alone.
   /// @throws Error as read_cloud and read_mesh, no_normals, empty_result
   std::shared_ptr<const Solid> solid(const SolidSource& source);
@@ -81,6 +84,7 @@ class Sources {
   std::shared_ptr<const Cloud> part(const SolidSource& source);
 
  private:
+  int threads_;
   std::deque<std::pair<std::string, std::shared_ptr<const Solid>>> solids_;  ///< by what names them, newest first
   std::deque<std::pair<std::string, std::shared_ptr<const Cloud>>> parts_;
 };

@@ -46,13 +46,13 @@ void require_normals(const Stage& stage) {
 }
 
 /// B at its place. Its strays are left out as those of a base cloud are; those of A were when the scene began.
-Solid second_operand(const Combine& combine, const Options& options, StepRecord& record) {
+Solid second_operand(const Combine& combine, const Options& options, int threads, StepRecord& record) {
   std::shared_ptr<const Solid> solid = combine.solid;
-  if (solid == nullptr) solid = Sources().solid(combine.with);
+  if (solid == nullptr) solid = Sources(threads).solid(combine.with);
   Solid moved = placed(*solid, combine.placement);
   auto* const cloud = std::get_if<Cloud>(&moved);
   if (cloud == nullptr || options.keep_strays) return moved;
-  const Strays strays = find_strays(cloud->positions);
+  const Strays strays = find_strays(cloud->positions, threads);
   if (strays.points.empty()) return moved;
   std::vector<bool> keep(cloud->positions.size(), true);
   for (const std::int64_t stray : strays.points) keep[static_cast<std::size_t>(stray)] = false;
@@ -149,7 +149,7 @@ Stage StageMaker::make_from(const Stage& before, const Deform& deform, StepRecor
 Stage StageMaker::make_from(const Stage& before, const Combine& combine, StepRecord& record) const {
   require_normals(before);
   Stopwatch watch;
-  const Solid other = second_operand(combine, before.options, record);
+  const Solid other = second_operand(combine, before.options, workspace.device().threads, record);
   BooleanOptions options;
   options.reconstruction = settled_options(before, progress);
   options.reconstruction.attributes = false;  // booleans carry none to the mesh

@@ -12,6 +12,7 @@
 
 #include "core/stopwatch.hpp"
 #include "edit/change.hpp"
+#include "edit/require.hpp"
 #include "edit/states.hpp"
 #include "exec/any_space.hpp"
 #include "reconstruct/engine.hpp"
@@ -19,15 +20,11 @@
 namespace pointskin {
 namespace {
 
-void require(bool holds, const char* story) {
-  if (!holds) throw Error(ErrorCode::usage, story);
-}
-
 const EditOptions& checked(const EditOptions& options) {
   detail::validate_settled(options.reconstruction);
-  require(options.reconstruction.offset == 0, "option offset must be 0 in an editing session");
-  require(options.states_kept >= 1, "option states_kept must be at least 1");
-  require(options.undo_bytes >= 0, "option undo_bytes must not be negative");
+  edit::require(options.reconstruction.offset == 0, "option offset must be 0 in an editing session");
+  edit::require(options.states_kept >= 1, "option states_kept must be at least 1");
+  edit::require(options.undo_bytes >= 0, "option undo_bytes must not be negative");
   return options;
 }
 

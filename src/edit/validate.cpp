@@ -6,13 +6,10 @@
 #include <vector>
 
 #include "edit/change.hpp"
+#include "edit/require.hpp"
 
 namespace pointskin::edit {
 namespace {
-
-void require(bool holds, const char* story) {
-  if (!holds) throw Error(ErrorCode::usage, story);
-}
 
 bool is_finite(const std::vector<Pixel>& pixels) {
   for (const Pixel& p : pixels)

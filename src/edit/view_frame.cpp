@@ -1,16 +1,12 @@
 #include "edit/view_frame.hpp"
 
-#include <pointskin/error.hpp>
-
 #include <cmath>
 #include <cstddef>
 
+#include "edit/require.hpp"
+
 namespace pointskin {
 namespace {
-
-void require(bool holds, const char* story) {
-  if (!holds) throw Error(ErrorCode::usage, story);
-}
 
 double at(const Matrix4& m, std::size_t row, std::size_t column) { return m[4 * row + column]; }
 
@@ -45,20 +41,21 @@ bool is_rotation(const Matrix4& m) {
 
 void validate(const Camera& camera) {
   const Matrix4& projection = camera.projection;
-  require(is_finite(camera.view) && is_finite(projection), "the camera's matrices must be finite");
-  require(camera.width > 0 && camera.height > 0 && std::isfinite(camera.width) && std::isfinite(camera.height),
-          "the camera's width and height must be above 0 pixels");
-  require(is_rotation(camera.view) && has_last_row(camera.view, 0, 1),
-          "the camera's view matrix must be a rotation and a translation, row by row");
+  edit::require(is_finite(camera.view) && is_finite(projection), "the camera's matrices must be finite");
+  edit::require(camera.width > 0 && camera.height > 0 && std::isfinite(camera.width) && std::isfinite(camera.height),
+                "the camera's width and height must be above 0 pixels");
+  edit::require(is_rotation(camera.view) && has_last_row(camera.view, 0, 1),
+                "the camera's view matrix must be a rotation and a translation, row by row");
   const bool perspective = is_perspective(camera);
-  require(perspective || has_last_row(projection, 0, 1),
-          "the last row of the camera's projection matrix must be 0 0 -1 0 (perspective) or 0 0 0 1 (orthographic)");
+  edit::require(
+      perspective || has_last_row(projection, 0, 1),
+      "the last row of the camera's projection matrix must be 0 0 -1 0 (perspective) or 0 0 0 1 (orthographic)");
   const std::size_t unused = perspective ? 3 : 2;  // of the rows of x and y
-  require(at(projection, 0, 1) == 0 && at(projection, 1, 0) == 0 && at(projection, 0, unused) == 0 &&
-              at(projection, 1, unused) == 0,
-          "the camera's projection matrix must have no skew");
-  require(at(projection, 0, 0) > 0 && at(projection, 1, 1) > 0,
-          "the camera's projection matrix must have scales above 0 for x and y");
+  edit::require(at(projection, 0, 1) == 0 && at(projection, 1, 0) == 0 && at(projection, 0, unused) == 0 &&
+                    at(projection, 1, unused) == 0,
+                "the camera's projection matrix must have no skew");
+  edit::require(at(projection, 0, 0) > 0 && at(projection, 1, 1) > 0,
+                "the camera's projection matrix must have scales above 0 for x and y");
 }
 
 namespace edit {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "core/array_view.hpp"
 #include "exec/memory.hpp"
@@ -50,12 +52,13 @@ struct ReduceLane {
   PSK_HD void operator()(std::int64_t lane) const { out[lane] = combine_lane(f, combine, n, lanes, lane); }
 };
 
+}  // namespace detail
+
+/// For reduce(): a sum, which is the same in any order.
 struct Plus {
   static constexpr bool kAnyOrder = true;
   PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
 };
-
-}  // namespace detail
 
 /// out[i] = value. n writes.
 template <class T, Space Exec>
@@ -75,6 +78,14 @@ T read_element(Exec& ex, ArrayView<const T> from, std::int64_t i) {
   T value;
   copy_to_host(ex, from.part(i, 1), &value);
   return value;
+}
+
+/// All of a buffer, on the host. Waits for the work before it.
+template <class T, Space Exec>
+std::vector<T> to_vector(Exec& ex, const Buffer<T>& buffer) {
+  std::vector<T> out(static_cast<std::size_t>(buffer.size()));
+  copy_to_host(ex, buffer.cview(), out.data());
+  return out;
 }
 
 /// Few bytes on the host, and work(), which launches what does not depend on them. A space where the host waits for its work
@@ -135,7 +146,7 @@ T reduce(Exec& ex, const char* label, std::int64_t n, F f, Combine combine) {
 template <Space Exec>
 std::int64_t sum_counts(Exec& ex, const char* label, ArrayView<const std::int32_t> counts) {
   if (counts.empty()) return 0;
-  return reduce<std::int64_t>(ex, label, counts.size, LoadValue<std::int32_t>{counts}, detail::Plus{});
+  return reduce<std::int64_t>(ex, label, counts.size, LoadValue<std::int32_t>{counts}, Plus{});
 }
 
 /// 0, 1, ..., n-1.

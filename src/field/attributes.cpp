@@ -193,7 +193,7 @@ struct Push {
 };
 
 template <int kCount>
-struct Evaluate {
+struct EvaluateChannels {
   octree::OctreeView tree;
   const Values<kCount>* values;
   ArrayView<const Vec3f> points;
@@ -243,9 +243,6 @@ struct CountedDifferently {
   ArrayView<const float> a, b;
   PSK_HD std::int64_t operator()(std::int64_t i) const { return (a[i] == a[i]) != (b[i] == b[i]) ? 1 : 0; }
 };
-struct Plus {
-  PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
-};
 
 /// True if both channels miss the same samples, so that one weight a corner serves both.
 template <exec::Space Exec>
@@ -253,7 +250,7 @@ bool count_alike(Exec& ex, const Channel& a, const Channel& b) {
   if (a.range.counted != b.range.counted) return false;
   if (a.range.counted == a.shares.size()) return true;
   return exec::reduce<std::int64_t>(ex, "attributes.compare", a.shares.size(),
-                                    CountedDifferently{a.shares.cview(), b.shares.cview()}, Plus{}) == 0;
+                                    CountedDifferently{a.shares.cview(), b.shares.cview()}, exec::Plus{}) == 0;
 }
 
 /// Values at the corners of all levels, level-major, of the channels from `channels` on.
@@ -286,7 +283,7 @@ void pass(Exec& ex, const octree::OctreeView& tree, const AttributeSamples& samp
   exec::TypedBuffer out[kCount];
   {
     const exec::Buffer<Values<kCount>> values = corner_values<kCount>(ex, tree, samples, channels);
-    Evaluate<kCount> evaluate{tree, values.data(), points, {}};
+    EvaluateChannels<kCount> evaluate{tree, values.data(), points, {}};
     for (int c = 0; c < kCount; ++c) {
       out[c] = exec::make_typed_buffer(ex, channels[c].type, points.size);
       evaluate.scales[c] = {channels[c].range.lowest, channels[c].range.highest, out[c].output()};

@@ -24,16 +24,13 @@ struct Differ {
   ArrayView<const std::uint8_t> a, b;
   PSK_HD std::int64_t operator()(std::int64_t i) const { return a[i] != b[i] ? 1 : 0; }
 };
-struct Plus {
-  PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
-};
 
 /// True if both labels miss the same samples, so that one search serves both.
 template <exec::Space Exec>
 bool miss_alike(Exec& ex, const exec::TypedBuffer& a, const exec::TypedBuffer& b) {
   if (a.missing.empty() || b.missing.empty()) return a.missing.empty() && b.missing.empty();
   return exec::reduce<std::int64_t>(ex, "labels.compare", a.size, Differ{a.missing.cview(), b.missing.cview()},
-                                    Plus{}) == 0;
+                                    exec::Plus{}) == 0;
 }
 
 /// The samples that have a label, for searches through the tree of all samples.

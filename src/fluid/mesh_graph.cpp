@@ -273,7 +273,7 @@ std::int64_t remove_small_components(Exec& ex, int depth, double least_cells, su
   for_each(ex, kLabel, mesh.triangles.size(), AddVolumes{volumes_of(depth, mesh), sets, volumes.view()});
   constexpr double kLargest = 9e18;
   const IsKept keep{sets, volumes.cview(), static_cast<std::int64_t>(least < kLargest ? std::ceil(least) : kLargest)};
-  const auto removed = exec::reduce<std::int64_t>(ex, kLabel, n, IsRemovedRoot{keep}, exec::detail::Plus{});
+  const auto removed = exec::reduce<std::int64_t>(ex, kLabel, n, IsRemovedRoot{keep}, exec::Plus{});
   if (removed == 0) return 0;
   const exec::Buffer<std::int32_t> vertices = select(ex, kLabel, n, keep);
   const exec::Buffer<std::int32_t> triangles =

@@ -14,7 +14,7 @@ namespace pointskin::io {
 namespace {
 
 constexpr std::int64_t kBlockRows = 1 << 14;
-constexpr const char* kAdvice = "copy or export the file again";
+constexpr const char* kCopyAgain = "copy or export the file again";
 
 /// Walks the rows of an element with lists.
 class RowWalker {
@@ -44,7 +44,7 @@ class RowWalker {
 
   [[noreturn]] void fail_here(const std::string& what) const {
     fail_at_byte(input_.source, fmt::format("{} in row {} of element {}", what, row_, in_quotes(element_.name)), at_,
-                 kAdvice);
+                 kCopyAgain);
   }
 
  private:
@@ -72,7 +72,7 @@ std::size_t skip_fixed(const PlyInput& input, const PlyElement& element, std::si
   const std::size_t left = input.source.bytes.size() - at;
   if (!fits(static_cast<std::uint64_t>(element.count), row_bytes, left))
     fail_at_byte(input.source, fmt::format("the file ends in element {}", in_quotes(element.name)),
-                 input.source.bytes.size(), kAdvice);
+                 input.source.bytes.size(), kCopyAgain);
   return at + static_cast<std::size_t>(element.count) * row_bytes;
 }
 
@@ -149,7 +149,7 @@ std::optional<TriangleRows> find_triangle_rows(exec::Cpu& ex, const PlyInput& in
 
 [[noreturn]] void fail_on_index(const PlyInput& input, std::int64_t index, const char* at) {
   fail_at_byte(input.source, fmt::format("a face names vertex {}, but there are {}", index, vertex_count(input.header)),
-               static_cast<std::size_t>(at - input.source.bytes.data()), kAdvice);
+               static_cast<std::size_t>(at - input.source.bytes.data()), kCopyAgain);
 }
 
 void read_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, AttributeType type,

@@ -63,7 +63,7 @@ struct Plus {
   PSK_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
 };
 
-constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kNoTriangle = std::numeric_limits<std::int64_t>::max();
 
 struct BadTriangle {
   std::int64_t vertices;
@@ -73,7 +73,7 @@ struct BadTriangle {
       const std::int32_t v = triangles[i].data()[k];
       if (v < 0 || v >= vertices) return i;
     }
-    return kNone;
+    return kNoTriangle;
   }
 };
 
@@ -89,7 +89,7 @@ std::int64_t find_bad_triangle(Exec& ex, std::int64_t vertices, ArrayView<const 
   if (triangles.empty()) return -1;
   const auto first =
       exec::reduce<std::int64_t>(ex, "mesh.check", triangles.size, BadTriangle{vertices, triangles}, Smaller{});
-  return first == kNone ? -1 : first;
+  return first == kNoTriangle ? -1 : first;
 }
 
 template <exec::Space Exec>

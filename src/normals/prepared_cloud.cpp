@@ -35,7 +35,7 @@ exec::Buffer<Vec3f> upload_finite(Exec& ex, const std::vector<Vec3f>& values, co
   auto out = exec::make_buffer<Vec3f>(ex, static_cast<std::int64_t>(values.size()));
   copy_to_device(ex, values.data(), out.view());
   const auto bad =
-      exec::reduce<std::int64_t>(ex, "upload.check", out.size(), CountNotFinite{out.cview()}, exec::detail::Plus{});
+      exec::reduce<std::int64_t>(ex, "upload.check", out.size(), CountNotFinite{out.cview()}, exec::Plus{});
   if (bad > 0)
     throw Error(ErrorCode::invalid_input,
                 std::to_string(bad) + " points have " + what + " that are not finite; leave them out");

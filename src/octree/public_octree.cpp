@@ -30,13 +30,6 @@ struct Locate {
   }
 };
 
-template <class T, exec::Space Exec>
-std::vector<T> to_vector(Exec& ex, const exec::Buffer<T>& buffer) {
-  std::vector<T> out(static_cast<std::size_t>(buffer.size()));
-  copy_to_host(ex, buffer.cview(), out.data());
-  return out;
-}
-
 template <exec::Space Exec>
 exec::Buffer<Vec3f> upload(Exec& ex, std::span<const Vec3f> points) {
   auto buffer = exec::make_buffer<Vec3f>(ex, static_cast<std::int64_t>(points.size()));
@@ -53,7 +46,7 @@ exec::Buffer<Vec3f> to_unit(Exec& ex, const Frame& frame, const exec::Buffer<Vec
 
 template <exec::Space Exec>
 std::vector<float> distances_world(Exec& ex, const BuiltOctree& tree, const exec::Buffer<float>& squared) {
-  std::vector<float> distances = to_vector(ex, squared);
+  std::vector<float> distances = exec::to_vector(ex, squared);
   for (float& d : distances) d = static_cast<float>(std::sqrt(static_cast<double>(d)) * tree.frame.size);
   return distances;
 }
@@ -80,7 +73,7 @@ BuiltOctree build_of_points(Exec& ex, std::span<const Vec3f> positions, const Oc
 
 template <exec::Space Exec>
 std::vector<std::int32_t> point_order(Exec& ex, const BuiltOctree& tree) {
-  return to_vector(ex, tree.order);
+  return exec::to_vector(ex, tree.order);
 }
 
 template <exec::Space Exec>
@@ -90,12 +83,12 @@ OctreeLevel level_of(Exec& ex, const BuiltOctree& tree, int depth) {
   level.depth = depth;
   level.cells = tree.data.view().levels[depth].cells();
   level.nodes = std::int64_t{8} * data.bricks;
-  level.brick_keys = to_vector(ex, data.brick_key);
-  level.parents = to_vector(ex, data.parent);
-  level.neighbours = to_vector(ex, data.neighbours);
-  level.child_bricks = to_vector(ex, data.child_brick);
+  level.brick_keys = exec::to_vector(ex, data.brick_key);
+  level.parents = exec::to_vector(ex, data.parent);
+  level.neighbours = exec::to_vector(ex, data.neighbours);
+  level.child_bricks = exec::to_vector(ex, data.child_brick);
   level.child_bricks.resize(static_cast<std::size_t>(level.nodes), -1);  // the finest level has none
-  level.point_begin = to_vector(ex, data.point_begin);
+  level.point_begin = exec::to_vector(ex, data.point_begin);
   level.point_begin.resize(static_cast<std::size_t>(level.cells) + 1);
   return level;
 }
@@ -105,7 +98,7 @@ std::vector<OctreeLeaf> locate_all(Exec& ex, const BuiltOctree& tree, std::span<
   const exec::Buffer<Vec3f> unit = to_unit(ex, tree.frame, upload(ex, queries));
   auto leaves = exec::make_buffer<OctreeLeaf>(ex, unit.size());
   for_each(ex, "octree.locate", unit.size(), Locate{tree.data.view(), unit.cview(), leaves.view()});
-  return to_vector(ex, leaves);
+  return exec::to_vector(ex, leaves);
 }
 
 template <exec::Space Exec>
@@ -117,7 +110,7 @@ OctreeNeighbours nearest(Exec& ex, const BuiltOctree& tree, std::span<const Vec3
   find_nearest(ex, tree.search_view(), unit.cview(), found, ids.view(), squared.view());
   OctreeNeighbours result;
   for (std::size_t q = 0; q <= queries.size(); ++q) result.begin.push_back(static_cast<std::int64_t>(q) * found);
-  result.points = to_vector(ex, ids);
+  result.points = exec::to_vector(ex, ids);
   result.distances = distances_world(ex, tree, squared);
   return result;
 }
@@ -127,8 +120,8 @@ OctreeNeighbours within(Exec& ex, const BuiltOctree& tree, std::span<const Vec3f
   const exec::Buffer<Vec3f> unit = to_unit(ex, tree.frame, upload(ex, queries));
   const WithinRadius found =
       find_within(ex, tree.search_view(), unit.cview(), static_cast<float>(radius / tree.frame.size));
-  const std::vector<std::int32_t> begin = to_vector(ex, found.begin);
-  return {{begin.begin(), begin.end()}, to_vector(ex, found.ids), distances_world(ex, tree, found.squared)};
+  const std::vector<std::int32_t> begin = exec::to_vector(ex, found.begin);
+  return {{begin.begin(), begin.end()}, exec::to_vector(ex, found.ids), distances_world(ex, tree, found.squared)};
 }
 
 PSK_INSTANTIATE(build_of_points);

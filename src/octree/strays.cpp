@@ -68,13 +68,6 @@ struct SkipListed {
   }
 };
 
-template <class T, exec::Space Exec>
-std::vector<T> to_vector(Exec& ex, const exec::Buffer<T>& buffer) {
-  std::vector<T> out(static_cast<std::size_t>(buffer.size()));
-  copy_to_host(ex, buffer.cview(), out.data());
-  return out;
-}
-
 template <exec::Space Exec>
 Extent measure_extent(Exec& ex, ArrayView<const Vec3f> positions) {
   const std::int64_t lanes = exec::reduce_lanes(positions.size);
@@ -91,7 +84,7 @@ Bounds find_ends(Exec& ex, ArrayView<const Vec3f> positions, std::int64_t limit)
   const std::int64_t lanes = std::min(kLanes, exec::reduce_lanes(positions.size));
   auto boxes = exec::make_buffer<Bounds>(ex, lanes);
   for_each_long(ex, "octree.strays", lanes, BoxOfLane{positions, lanes, boxes.view()});
-  return ends_of(to_vector(ex, boxes), limit);
+  return ends_of(exec::to_vector(ex, boxes), limit);
 }
 
 template <exec::Space Exec>
@@ -99,7 +92,7 @@ Candidates find_candidates(Exec& ex, ArrayView<const Vec3f> positions, const Bou
   const exec::Buffer<std::int32_t> found = select(ex, "octree.strays", positions.size, IsBeyond{positions, ends});
   auto places = exec::make_buffer<Vec3f>(ex, found.size());
   exec::gather(ex, positions, found.cview(), places.view());
-  return {to_vector(ex, found), to_vector(ex, places)};
+  return {exec::to_vector(ex, found), exec::to_vector(ex, places)};
 }
 
 }  // namespace

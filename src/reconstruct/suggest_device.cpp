@@ -12,13 +12,13 @@ namespace pointskin {
 namespace {
 
 /// Peaks of runs are 61 to 66 bytes a node.
-constexpr double kBytesPerNode = 80;
+constexpr double kMostBytesPerNode = 80;
 
 /// One GPU; or all as one where it has not enough memory, and they have.
 Device gpu_for(const detail::RunWork& work, int threads) {
   const Device one = Device::automatic(threads);
   if (one.kind == DeviceKind::cpu) return one;
-  const double needed = kBytesPerNode * work.nodes;
+  const double needed = kMostBytesPerNode * work.nodes;
   const auto holds = [&](const Device& device) { return needed <= static_cast<double>(device.available_bytes()); };
   if (holds(one)) return one;
   Device all = Device::parse("cuda:all");

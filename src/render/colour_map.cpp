@@ -38,7 +38,7 @@ Lab lab_of(const Tone& tone) {
   return {tone.lightness, tone.chroma * std::cos(angle), tone.chroma * std::sin(angle)};
 }
 
-Lab mix(const Lab& p, const Lab& q, double t) {
+Lab mixed_lab(const Lab& p, const Lab& q, double t) {
   return {p.l + t * (q.l - p.l), p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)};
 }
 
@@ -84,14 +84,14 @@ class EvenPath {
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const double wanted = length.back() * static_cast<double>(k) / static_cast<double>(points_.size() - 1);
       while (i + 2 < fine.size() && length[i + 1] < wanted) ++i;
-      points_[k] = mix(fine[i], fine[i + 1], (wanted - length[i]) / (length[i + 1] - length[i]));
+      points_[k] = mixed_lab(fine[i], fine[i + 1], (wanted - length[i]) / (length[i + 1] - length[i]));
     }
   }
 
   [[nodiscard]] Lab at(double t) const {
     const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(points_.size() - 1);
     const auto i = std::min(static_cast<std::size_t>(place), points_.size() - 2);
-    return mix(points_[i], points_[i + 1], place - static_cast<double>(i));
+    return mixed_lab(points_[i], points_[i + 1], place - static_cast<double>(i));
   }
 
  private:
@@ -126,7 +126,7 @@ Colour sequential_colour(double t) {
 Colour diverging_colour(double t) {
   constexpr Tone kBlue{0.55, 0.155, 258}, kOrange{0.60, 0.13, 62};
   constexpr Lab kMiddle{0.95, 0, 0};
-  return colour_of(mix(kMiddle, lab_of(t < 0 ? kBlue : kOrange), std::min(std::abs(t), 1.0)));
+  return colour_of(mixed_lab(kMiddle, lab_of(t < 0 ? kBlue : kOrange), std::min(std::abs(t), 1.0)));
 }
 
 Colour no_value_colour() { return from_srgb(0.60, 0.60, 0.60); }

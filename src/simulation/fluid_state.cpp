@@ -15,7 +15,7 @@ struct World {
 };
 
 template <exec::Space Exec>
-World to_world(Exec& ex, const FluidState& state, bool velocities) {
+World world_of(Exec& ex, const FluidState& state, bool velocities) {
   const std::int64_t n = state.particles.position.size();
   World out;
   out.positions = exec::make_buffer<Vec3f>(ex, n);
@@ -62,7 +62,7 @@ FluidState start_particles(Exec& ex, const Scene& scene, float radius_world) {
 
 template <exec::Space Exec>
 ParticleStates copy_particles(Exec& ex, const FluidState& state) {
-  const World world = to_world(ex, state, true);
+  const World world = world_of(ex, state, true);
   const auto count = static_cast<std::size_t>(state.particles.position.size());
   std::vector<std::int32_t> id(count);
   copy_to_host(ex, state.particles.id.cview(), id.data());
@@ -85,7 +85,7 @@ ParticleStates copy_particles(Exec& ex, const FluidState& state) {
 template <exec::Space Exec>
 fluid::FluidSurface surface_of(Exec& ex, const FluidState& state, const FluidOptions& options, const Bounds& box,
                                FluidReport& report) {
-  const World world = to_world(ex, state, options.attributes);
+  const World world = world_of(ex, state, options.attributes);
   fluid::Particles input{world.positions.cview()};
   input.bounds = Bounds{state.radius_world * box.lower, state.radius_world * box.upper};
   input.canonical = true;

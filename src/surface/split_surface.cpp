@@ -74,7 +74,7 @@ struct CountTriangles {
   }
 };
 
-struct EmitTriangles {
+struct EmitSplitTriangles {
   SidesView mesh;
   NewIds ids;
   ArrayView<const std::int32_t> first;
@@ -181,7 +181,7 @@ Surface split_surface(Exec& ex, Surface surface, const SidesView& mesh) {
   Surface trimmed;
   trimmed.triangles = exec::make_buffer<Triangle>(ex, exec::read_element(ex, first.cview(), triangles));
   const NewIds ids{rank.cview(), edges.cview(), static_cast<std::int32_t>(order.size())};
-  for_each(ex, "trim.triangles", triangles, EmitTriangles{mesh, ids, first.cview(), trimmed.triangles.view()});
+  for_each(ex, "trim.triangles", triangles, EmitSplitTriangles{mesh, ids, first.cview(), trimmed.triangles.view()});
   first.reset();
   rank.reset();
   surface.triangles.reset();

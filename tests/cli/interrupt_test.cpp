@@ -59,6 +59,24 @@ TEST(Interrupt, WhileWorkingLeavesNothingBehind) {
   EXPECT_GT(interrupted, 0);
 }
 
+/// The last file is there: what remains is a line for people.
+TEST(Interrupt, ChangesNothingOnceAllIsWritten) {
+  const TemporaryFolder folder;
+  write_file(folder / "in.ply", ply_bytes(sphere(30000)));
+  write_file(folder / "script.json", R"({"version": 1, "operations": []})");
+  Start start;
+  start.args = {"edit",     folder / "in.ply",
+                "--script", folder / "script.json",
+                "-o",       folder / "out.ply",
+                "--report", folder / "report.json",
+                "--depth",  "9"};
+  start.signal = SIGINT;
+  start.signal_once_written = folder / "report.json";
+  const Result result = run_program(start);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"in.ply", "out.ply", "report.json", "script.json"}));
+}
+
 /// Nobody writes to the pipe, or reads from it: the program waits when the signal comes.
 TEST(Interrupt, IsHeardWhileAPipeIsWaitedFor) {
   const TemporaryFolder folder;

@@ -15,8 +15,6 @@ using Clock = std::chrono::steady_clock;
 /// As fast as the simulated time runs.
 constexpr std::chrono::microseconds kFrameTime{16'667};
 
-Vec3f to_floats(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 }  // namespace
 
 Json Live::start(const scene::JsonReader& reader) {

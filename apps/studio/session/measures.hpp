@@ -19,7 +19,7 @@ namespace pointskin::studio {
 class Measures {
  public:
   Measures(Services& services, SceneDesk& desk, MeshTeller& teller)
-      : services_(services), desk_(desk), teller_(teller) {}
+      : services_(services), desk_(desk), teller_(teller), sources_(services.device.threads) {}
 
   Json problems();
   /// Shows the distance of every vertex from the reference. @param name  of it, for the table

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "ms_since.hpp"
 #include "studio/wire/colours.hpp"
 
 namespace pointskin::studio {
@@ -11,10 +12,6 @@ namespace {
 
 constexpr std::int64_t kFirstPoints = 200'000, kPartPoints = 1'000'000;
 constexpr std::size_t kMeshesKept = 6, kFramesKept = 6, kGhostsKept = 4;
-
-double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 template <class T>
 std::vector<T> chosen(const std::vector<T>& from, const std::int64_t* first, const std::int64_t* last) {

@@ -10,6 +10,7 @@
 #include <pointskin/reconstruct.hpp>
 
 #include "classes_of_points.hpp"
+#include "ms_since.hpp"
 #include "scene/options.hpp"
 #include "scene/sources.hpp"
 #include "studio/wire/wire.hpp"
@@ -18,10 +19,6 @@ namespace pointskin::studio {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// Ends a run as soon as something newer waits.
 std::function<bool(const Progress&)> stopping(const JobQueue& queue) {

@@ -11,6 +11,7 @@
 #include <pointskin/error.hpp>
 #include <pointskin/reconstruct.hpp>
 
+#include "ms_since.hpp"
 #include "scene/options.hpp"
 
 namespace pointskin::studio {
@@ -20,10 +21,6 @@ namespace {
 constexpr std::size_t kMostMeasured = 12'000'000;
 
 using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// Restores what a pointer was when it is left.
 class Holding {
@@ -81,7 +78,10 @@ SceneDesk::Opened SceneDesk::open(const scene::Document& document, const std::fi
 
 /// Does what a document says, undo and redo included.
 void SceneDesk::replay(const scene::Document& document, scene::Scene& scene) {
-  const auto camera = [&scene](const RenderOptions& picture) { return camera_of(scene.mesh(), picture); };
+  const auto camera = [&](RenderOptions picture) {
+    picture.threads = services_.device.threads;
+    return camera_of(scene.mesh(), picture);
+  };
   for (std::size_t i = 0; i < document.operations.size(); ++i) {
     const nlohmann::json operation = document.operations[i];
     const std::string op = operation.at("op");
@@ -156,7 +156,10 @@ void SceneDesk::resume(const std::filesystem::path& journal) {
 
 scene::SceneOperation SceneDesk::operation_of(const nlohmann::json& operation) {
   const scene::Scene& scene = present();
-  const auto camera = [&scene](const RenderOptions& picture) { return camera_of(scene.mesh(), picture); };
+  const auto camera = [&](RenderOptions picture) {
+    picture.threads = services_.device.threads;
+    return camera_of(scene.mesh(), picture);
+  };
   return scene::operation_of(operation, "operation", {}, camera, &sources_);
 }
 

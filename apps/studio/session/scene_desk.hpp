@@ -24,7 +24,8 @@ namespace pointskin::studio {
 /// All functions but the constructor may throw Error; the scene then stays as it was. Of the engine's thread.
 class SceneDesk {
  public:
-  SceneDesk(Services& services, MeshTeller& teller) : services_(services), teller_(teller) {}
+  SceneDesk(Services& services, MeshTeller& teller)
+      : services_(services), teller_(teller), sources_(services.device.threads) {}
 
   /// Begins a scene and its journal. What the document says is done is done.
   /// @param journal  file; one that is there is replaced

@@ -22,9 +22,9 @@ simulation::Scene scene_named(const std::string& name, std::int64_t particles) {
 
 Json json_of(const Vec3f& v) { return {v.x, v.y, v.z}; }
 
-Vec3f to_floats(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 }  // namespace
+
+Vec3f to_floats(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
 Water::Water(const std::string& scene, std::int64_t particles, Workspace workspace)
     : simulation_(scene_named(scene, particles), {}, std::move(workspace)), scene_(scene) {}

@@ -14,6 +14,8 @@
 
 namespace pointskin::studio {
 
+Vec3f to_floats(const Vec3d& v);
+
 /// Works where its workspace does; all calls from one thread.
 class Water {
  public:

@@ -15,14 +15,13 @@
 namespace pointskin::io {
 namespace {
 
-constexpr char kAgain[] = "copy or export it again";
 constexpr std::size_t kMostFields = 64;  ///< keeps searches and memory small on garbled files
 
 class Document {
  public:
   Document(const Source& source, const E57Pages& pages) : source_(source) {
     const pugi::xml_parse_result result = document_.load_buffer(pages.xml.data(), pages.xml.size());
-    if (!result) fail(source, std::string("its XML is garbled, ") + result.description(), kAgain);
+    if (!result) fail(source, std::string("its XML is garbled, ") + result.description(), kE57Again);
   }
 
   std::vector<E57Scan> scans() const {
@@ -85,7 +84,7 @@ class Document {
     double w = part("rotation", "w");
     Vec3d q{part("rotation", "x"), part("rotation", "y"), part("rotation", "z")};
     const double length = std::sqrt(w * w + q.x * q.x + q.y * q.y + q.z * q.z);
-    if (!(length > 0) || !std::isfinite(length)) fail(source_, "has a pose without a rotation", kAgain);
+    if (!(length > 0) || !std::isfinite(length)) fail(source_, "has a pose without a rotation", kE57Again);
     w /= length;
     q = q * (1 / length);
     pose.rotation = {{{1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y - w * q.z), 2 * (q.x * q.z + w * q.y)},
@@ -117,7 +116,7 @@ class Document {
     if (error != std::errc{} || end != text.data() + text.size())
       fail(source_,
            fmt::format("its XML has the {} {}, which is no whole number", in_quotes(attribute.name()), in_quotes(text)),
-           kAgain);
+           kE57Again);
     return value;
   }
 
@@ -129,12 +128,12 @@ class Document {
     double value = 0;
     const char* const end = text.data() + text.size();
     if (parse_number(text.data(), end, value) != end || !(std::abs(value) <= kLargestCoordinate))
-      fail(source_, fmt::format("its XML has {} where a number must be", in_quotes(text)), kAgain);
+      fail(source_, fmt::format("its XML has {} where a number must be", in_quotes(text)), kE57Again);
     return value;
   }
 
   [[noreturn]] void fail_field(const E57Field& field, const std::string& what) const {
-    fail(source_, fmt::format("the value {} of its points {}", in_quotes(field.name), what), kAgain);
+    fail(source_, fmt::format("the value {} of its points {}", in_quotes(field.name), what), kE57Again);
   }
 
   const Source& source_;

@@ -11,7 +11,6 @@
 namespace pointskin::io {
 namespace {
 
-constexpr char kAgain[] = "copy or export it again";
 constexpr std::size_t kHeader = 48;
 constexpr std::size_t kChecksum = 4;
 constexpr std::size_t kSmallestPage = 64, kLargestPage = 1 << 20;
@@ -29,19 +28,20 @@ struct Header {
 
 Header parse_header(const Source& source) {
   const std::string_view bytes = source.bytes;
-  if (!is_e57(bytes)) fail(source, "does not begin as an E57 file", kAgain);
-  if (bytes.size() < kHeader) fail_at_byte(source, "is truncated in its header", bytes.size(), kAgain);
+  if (!is_e57(bytes)) fail(source, "does not begin as an E57 file", kE57Again);
+  if (bytes.size() < kHeader) fail_at_byte(source, "is truncated in its header", bytes.size(), kE57Again);
   const auto number = [&](std::size_t at) { return load<std::uint64_t>(bytes.data() + at, false); };
   if (const auto major = load<std::uint32_t>(bytes.data() + 8, false); major != 1)
     fail(source, fmt::format("is of E57 {}.{}", major, load<std::uint32_t>(bytes.data() + 12, false)),
          "export it as E57 1.0");
   const Header header{number(16), number(24), number(32), number(40)};
   if (header.page_bytes < kSmallestPage || header.page_bytes > kLargestPage)
-    fail(source, fmt::format("has pages of {} bytes", header.page_bytes), kAgain);
+    fail(source, fmt::format("has pages of {} bytes", header.page_bytes), kE57Again);
   if (header.file_bytes > bytes.size())
-    fail_at_byte(source, fmt::format("is truncated, {} bytes are promised", header.file_bytes), bytes.size(), kAgain);
+    fail_at_byte(source, fmt::format("is truncated, {} bytes are promised", header.file_bytes), bytes.size(),
+                 kE57Again);
   if (header.file_bytes < header.page_bytes || header.file_bytes % header.page_bytes != 0)
-    fail(source, "does not end at the end of a page", kAgain);
+    fail(source, "does not end at the end of a page", kE57Again);
   return header;
 }
 
@@ -52,7 +52,7 @@ void copy_pages(const Source& source, const Header& header, std::size_t first, s
     const std::string_view from = source.bytes.substr(page * header.page_bytes, held);
     const auto sum = load<std::uint32_t>(from.data() + held, true);
     if (kChecksSums && crc32c(from) != sum)
-      fail_at_byte(source, "is damaged, the checksum of a page differs", page * header.page_bytes, kAgain);
+      fail_at_byte(source, "is damaged, the checksum of a page differs", page * header.page_bytes, kE57Again);
     std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(page * held));
   }
 }
@@ -66,7 +66,7 @@ std::size_t E57Pages::place_of(const Source& source, std::uint64_t in_file) cons
   const std::uint64_t page = in_file / page_bytes;
   const std::uint64_t rest = in_file % page_bytes;
   if (rest >= held || page >= bytes.size() / held)
-    fail(source, fmt::format("names byte {}, where nothing can be", in_file), kAgain);
+    fail(source, fmt::format("names byte {}, where nothing can be", in_file), kE57Again);
   return page * held + rest;
 }
 
@@ -80,7 +80,7 @@ E57Pages read_e57_pages(exec::Cpu& ex, const Source& source) {
     copy_pages(source, header, first, std::min(pages, first + kBlockPages), read.bytes);
   });
   const std::size_t place = read.place_of(source, header.xml_place);
-  if (header.xml_bytes > read.bytes.size() - place) fail(source, "ends before its XML does", kAgain);
+  if (header.xml_bytes > read.bytes.size() - place) fail(source, "ends before its XML does", kE57Again);
   read.xml = std::string_view(read.bytes).substr(place, header.xml_bytes);
   return read;
 }

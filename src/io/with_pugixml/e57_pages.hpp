@@ -11,6 +11,9 @@
 
 namespace pointskin::io {
 
+/// The advice in errors about E57 files.
+constexpr char kE57Again[] = "copy or export it again";
+
 /// A file without the checksums at the ends of its pages, and where its XML lies.
 struct E57Pages {
   std::string bytes;

@@ -21,7 +21,6 @@
 namespace pointskin::io {
 namespace {
 
-constexpr char kAgain[] = "copy or export it again";
 constexpr std::array kCartesian{"cartesianX", "cartesianY", "cartesianZ"};
 constexpr std::array kSpherical{"sphericalRange", "sphericalAzimuth", "sphericalElevation"};
 constexpr std::array kNormal{"nor:normalX", "nor:normalY", "nor:normalZ"};
@@ -156,7 +155,7 @@ class E57Points {
     const auto fields = cartesian ? cartesian : scan.find(kSpherical);
     if (!fields) fail(source_, "has a scan without coordinates", "export it with cartesian ones");
     for (const std::size_t field : *fields)
-      if (scan.fields[field].coding == E57Coding::text) fail(source_, "has coordinates that are text", kAgain);
+      if (scan.fields[field].coding == E57Coding::text) fail(source_, "has coordinates that are text", kE57Again);
     const auto invalid = scan.find(std::string(cartesian ? "cartesianInvalidState" : "sphericalInvalidState"));
     const auto normal = has_normals_ ? scan.find(kNormal) : std::nullopt;
     for_each_record(ex, s, [&](std::uint64_t i, std::int64_t row) {

@@ -9,14 +9,13 @@
 namespace pointskin::io {
 namespace {
 
-constexpr char kAgain[] = "copy or export it again";
 constexpr std::size_t kSectionHead = 32;
 constexpr std::size_t kPacketHead = 4, kDataHead = 6;
 enum : std::uint8_t { kIndexPacket = 0, kDataPacket = 1, kEmptyPacket = 2 };
 
 std::uint16_t short_at(std::string_view bytes, std::size_t at) { return load<std::uint16_t>(bytes.data() + at, false); }
 
-[[noreturn]] void fail_garbled(const Source& source) { fail(source, "the packets of a scan are garbled", kAgain); }
+[[noreturn]] void fail_garbled(const Source& source) { fail(source, "the packets of a scan are garbled", kE57Again); }
 
 /// The packets of a scan, one after the other.
 std::string_view packets_of(const Source& source, const E57Pages& pages, const E57Scan& scan) {
@@ -49,7 +48,7 @@ void take_packet(const Source& source, std::string_view packet, std::vector<std:
 std::vector<std::string> read_e57_streams(const Source& source, const E57Pages& pages, const E57Scan& scan) {
   // At least a byte a point, however few bits its values have: memory is taken for each.
   if (scan.fields.empty() || !fits(scan.records, 1, pages.bytes.size()))
-    fail(source, fmt::format("{} points are promised, but the file ends before", scan.records), kAgain);
+    fail(source, fmt::format("{} points are promised, but the file ends before", scan.records), kE57Again);
   std::vector<std::string> streams(scan.fields.size());
   std::string_view rest = packets_of(source, pages, scan);
   while (rest.size() >= kPacketHead) {
@@ -64,7 +63,7 @@ std::vector<std::string> read_e57_streams(const Source& source, const E57Pages& 
     if (bits > 0 && !fits(scan.records, bits, 8 * std::uint64_t{streams[s].size()}))
       fail(source,
            fmt::format("the values {} end before the {} points do", in_quotes(scan.fields[s].name), scan.records),
-           kAgain);
+           kE57Again);
     streams[s].append(kE57Padding, '\0');
   }
   return streams;

@@ -344,6 +344,9 @@ TEST(PoolOfACpu, CachesNothingBeyondItsLimit) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer watches blocks of malloc, which are not given up one by one";
 #endif
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "the thread sanitizer holds two bytes in memory for each that is written";
+#endif
   constexpr std::int64_t kMiB = std::int64_t{1} << 20;
   exec::Cpu ex(2);
   const std::int64_t before = resident_bytes();

@@ -14,6 +14,7 @@
 
 namespace pointskin::studio {
 
+/// A place or a direction of a page, as the simulation has them.
 Vec3f to_floats(const Vec3d& v);
 
 /// Works where its workspace does; all calls from one thread.

@@ -22,9 +22,11 @@ TEST(Interrupt, WhileReadingStdinEndsWith130) {
     const TemporaryFolder folder;
     Start start;
     start.args = {"reconstruct", "-", "-o", folder / "out.ply"};
+    start.input = "ply\nformat ascii 1.0\n";
     start.keep_stdin_open = true;
     start.signal = signal;
     start.signal_after = milliseconds(300);
+    start.signal_once_read = true;
     const Result result = run_program(start);
     EXPECT_EQ(result.exit_code, 130) << result.err;
     EXPECT_TRUE(is_one_error_line(result.err)) << result.err;

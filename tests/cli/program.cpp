@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -105,9 +106,15 @@ class Process {
 
   [[nodiscard]] bool may_signal() const {
     if (elapsed() * 1000 < static_cast<double>(start_.signal_after.count())) return false;
+    if (start_.signal_once_read && !all_read()) return false;
     std::error_code missing;
     const std::string& file = start_.signal_once_written;
     return file.empty() || (std::filesystem::file_size(file, missing) > 0 && !missing);
+  }
+
+  [[nodiscard]] bool all_read() const {
+    int waiting = 0;
+    return sent_ == start_.input.size() && ioctl(in_.write, FIONREAD, &waiting) == 0 && waiting == 0;
   }
 
   /// Moves bytes for at most 5 ms and sends what is due.

@@ -12,6 +12,8 @@ namespace pointskin::test {
 /// How many times longer programs take under the tool that the tests were compiled for.
 #ifdef __SANITIZE_THREAD__
 inline constexpr int kSlowdown = 4;
+#elif defined(__SANITIZE_ADDRESS__)
+inline constexpr int kSlowdown = 2;
 #else
 inline constexpr int kSlowdown = 1;
 #endif
@@ -36,7 +38,8 @@ struct Start {
   std::string folder;                         ///< working folder; empty: the test's own
   int signal = 0;                             ///< signal to send...
   std::chrono::milliseconds signal_after{0};  ///< ...after this time...
-  std::string signal_once_written;            ///< ...and not before this file holds something
+  std::string signal_once_written;            ///< ...and not before this file holds something...
+  bool signal_once_read = false;              ///< ...and not before the program has read all of `input`
   std::chrono::seconds limit{60 * kSlowdown};
 };
 

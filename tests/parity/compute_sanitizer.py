@@ -27,6 +27,8 @@ import time
 TOOLS = {"racecheck": 1, "initcheck": 1, "synccheck": 8, "memcheck": 16}
 SUMMARY = re.compile(r"(?:ERROR|RACECHECK) SUMMARY: (\d+) (?:error|hazard)")
 EXCLUDED = {"endurance"}
+# Of the host, for one part: racecheck keeps records of every launch, and the kernel kills parts where memory ends.
+PART_BYTES = {"racecheck": 26 << 30}
 
 
 def tests_of(program):
@@ -51,14 +53,15 @@ def visible_gpus():
 
 
 class Part:
-    def __init__(self, tool, program, number, tests):
-        self.tool, self.program, self.tests = tool, program, tests
+    def __init__(self, tool, program, number, tests, excluded):
+        self.tool, self.program, self.tests, self.excluded = tool, program, tests, excluded
         self.name = f"{tool} {program.stem.removesuffix('_gpu_test')} {number}"
 
     def run(self, logs, limit, gpu):
         """The line of this part, and whether all is well."""
         # Some tests ask for more memory than there is: the refusal that they expect is no error of theirs.
         options = ["--report-api-errors", "no"] if self.tool == "memcheck" else []
+        options += [word for name in self.excluded for word in ("--kernel-name-exclude", f"kns={name}")]
         command = ["compute-sanitizer", "--tool", self.tool, *options, str(self.program),
                    "--gtest_filter=" + ":".join(self.tests)]
         log = logs / (self.name.replace(" ", "_") + ".log")
@@ -90,7 +93,10 @@ def main():
     parser.add_argument("build", type=pathlib.Path, help="folder of a build with CUDA")
     parser.add_argument("--tools", nargs="+", choices=TOOLS, default=list(TOOLS))
     parser.add_argument("--tests", nargs="+", metavar="NAME", help="programs, as octree for octree_gpu_test")
-    parser.add_argument("--jobs", type=int, help="parts side by side (12 a GPU, at most one a core)")
+    parser.add_argument("--exclude", nargs="+", default=[], metavar="PART",
+                        help="kernels with this in their mangled name are not checked; cub: those of CUB")
+    parser.add_argument("--jobs", type=int,
+                        help="parts side by side (12 a GPU, at most one a core; of racecheck one per 26 GiB of memory)")
     parser.add_argument("--limit", type=float, default=600, metavar="SECONDS", help="for one part")
     parser.add_argument("--total", type=float, default=float("inf"), metavar="SECONDS",
                         help="parts that have not ended by then are stopped, and those not begun are named")
@@ -111,7 +117,8 @@ def main():
     for tool in given.tools:
         for program in programs:
             tests, few = tests_of(program), TOOLS[tool]
-            parts += [Part(tool, program, 1 + i // few, tests[i:i + few]) for i in range(0, len(tests), few)]
+            parts += [Part(tool, program, 1 + i // few, tests[i:i + few], given.exclude)
+                      for i in range(0, len(tests), few)]
 
     if given.after:
         well = set(re.findall(r"^(\w+ \w+ \d+): .* 0 found, exit 0$", given.after.read_text(), re.MULTILINE))
@@ -121,7 +128,9 @@ def main():
     gpus = visible_gpus()
     if not gpus:
         sys.exit("no GPU")
-    jobs = given.jobs or min(12 * len(gpus), os.cpu_count() or 1)
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    jobs = given.jobs or max(1, min(12 * len(gpus), os.cpu_count() or 1,
+                                    *(memory // PART_BYTES[tool] for tool in given.tools if tool in PART_BYTES)))
     places = queue.SimpleQueue()  # a GPU for every part that runs
     for i in range(jobs):
         places.put(gpus[i % len(gpus)])

@@ -43,6 +43,18 @@ function cutOff(page) {
   });
 }
 
+/** Until the page is drawn and what moves has come to rest; what turns for ever does not count. */
+function settled(page) {
+  return page.evaluate(async () => {
+    const frame = () => new Promise(resolve => requestAnimationFrame(resolve));
+    await frame();
+    await frame();
+    const ending = document.getAnimations().filter(each => each.effect?.getComputedTiming().endTime !== Infinity);
+    await Promise.allSettled(ending.map(each => each.finished));
+    await frame();
+  });
+}
+
 const tools = ['v', 'b', 'r', 'l', 'p', 'e', 'c', 'd', 'g', 'u', 'o', 'x', 'w'];
 const panels = ['reconstruct', 'points', 'surface', 'problems', 'history'];
 
@@ -52,7 +64,7 @@ for (const [theme, width, height, ratio] of [['dark', 1280, 800, 1], ['light', 1
     const studio = await Studio.open({ theme, width, height, ratio });
     const found = [];
     const look = async what => {
-      await studio.page.waitForTimeout(250);
+      await settled(studio.page);
       for (const fault of await faults(studio.page)) found.push(`${what}: ${fault}`);
       for (const text of await cutOff(studio.page)) found.push(`${what}: cut off: ${text}`);
       if (pictures && await pictureOf(studio.page)) await studio.page.screenshot({ path: join(pictures, `${theme}_${width}_${what}.png`) });

@@ -27,7 +27,7 @@ import time
 TOOLS = {"racecheck": 1, "initcheck": 1, "synccheck": 8, "memcheck": 16}
 SUMMARY = re.compile(r"(?:ERROR|RACECHECK) SUMMARY: (\d+) (?:error|hazard)")
 EXCLUDED = {"endurance"}
-# Of the host, for one part: racecheck keeps records of every launch, and the kernel kills parts where memory ends.
+# Memory of the host that one part may take: racecheck keeps records of every launch, and where memory ends parts are killed.
 PART_BYTES = {"racecheck": 26 << 30}
 
 
@@ -93,7 +93,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path, help="folder of a build with CUDA")
     parser.add_argument("--tools", nargs="+", choices=TOOLS, default=list(TOOLS))
     parser.add_argument("--tests", nargs="+", metavar="NAME", help="programs, as octree for octree_gpu_test")
-    parser.add_argument("--exclude", nargs="+", default=[], metavar="PART",
+    parser.add_argument("--exclude", nargs="+", default=[], metavar="WORD",
                         help="kernels with this in their mangled name are not checked; cub: those of CUB")
     parser.add_argument("--jobs", type=int,
                         help="parts side by side (12 a GPU, at most one a core; of racecheck one per 26 GiB of memory)")

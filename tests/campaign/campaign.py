@@ -6,6 +6,7 @@ import math
 import os
 import pathlib
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -150,7 +151,7 @@ def judge_file(case, name, data, said):
         wrong = judge_points(case, found)
     # Points that a script adds have no values of the properties that only the others have.
     added = case.command() == "edit" and not name.startswith("mesh")
-    return wrong + ([] if added else judge.attributes(found, doubtful(case)))
+    return wrong + ([] if added else judge.attributes(found, doubtful(case, said)))
 
 
 def judge_points(case, found):
@@ -184,15 +185,20 @@ def count_usable(cloud):
     return sum(all(map(math.isfinite, row)) and (len(row) < 6 or max(map(abs, row[3:])) > 1e-18) for row in zip(*columns))
 
 
-def doubtful(case):
+def doubtful(case, said):
     """Properties that the input itself has with values that are not finite, under the names that a mesh gives them.
 
-    So has one that only some files have, and these only a few points that count: as strays they may be left out.
+    So has one that only some files have, and these only a few points that count: as strays they may be left out. A script
+    may remove more of them; it says how many.
+
+    @param said  stderr
     """
     names = set()
     clouds = [ply.read(case.inputs[cloud]) for cloud in case.points]
     sources = len(clouds) + (case.command() == "edit")  # a script may replace all points by those of a shape
     few = max(FEW_POINTS, sum(map(count_usable, clouds)) // 50)
+    if case.command() == "edit":
+        few += sum(map(int, re.findall(r"(\d+) removed", said)))
     for name in {n for found in clouds for n in found.columns}:
         have = [count_usable(found) for found in clouds if name in found.columns]
         if len(have) < sources and sum(have) <= few:

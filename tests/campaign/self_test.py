@@ -24,9 +24,9 @@ class WhatIsJudged(unittest.TestCase):
             columns = ["x", "y", "z", "nx", "ny", "nz", name]
             return ply.write([[n, "float"] for n in columns], [(0, 0, 0, *normal, 1)] * count)
 
-        def doubtful(*clouds, command="reconstruct"):
+        def doubtful(*clouds, command="reconstruct", said=""):
             inputs = {str(i): data for i, data in enumerate(clouds)}
-            return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs, command=lambda: command))
+            return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs, command=lambda: command), said)
 
         self.assertEqual(doubtful(cloud("heat", 2), cloud("x2", 100)), {"heat", "input_heat"})
         self.assertEqual(doubtful(cloud("heat", 90, (0, 0, 0)), cloud("x2", 100)), {"heat", "input_heat"})
@@ -35,6 +35,9 @@ class WhatIsJudged(unittest.TestCase):
         self.assertEqual(doubtful(cloud("heat", 2)), set())
         self.assertLessEqual({"heat", "input_heat"}, doubtful(cloud("heat", 2), command="edit"))
         self.assertEqual(doubtful(cloud("heat", 90), command="edit"), set())
+        removed = "0: erase: 0 points added, {} removed; components 1 -> 1"
+        self.assertEqual(doubtful(cloud("heat", 90), command="edit", said=removed.format(80)), set())
+        self.assertLessEqual({"heat"}, doubtful(cloud("heat", 90), command="edit", said=removed.format(90)))
 
 
 class JudgeOfMeshes(unittest.TestCase):

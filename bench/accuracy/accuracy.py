@@ -191,12 +191,7 @@ def without_infinities(value):
 
 def main(words):
     options = parse(words)
-    known = list(cases.shape_cases(options.bin, options.points, options.seed))
-    known += cases.scanned_shape_cases(options.bin, options.seed)
-    known += cases.spoiled_cases(options.bin, options.seed)
-    if options.data:
-        known += cases.file_cases(options.bin, options.data.resolve(), options.seed)
-    chosen = cases.choose(known, options.cases)
+    chosen = cases.choose(cases.known_cases(options.bin, options.points, options.seed, options.data), options.cases)
     if not chosen:
         print(f"accuracy.py: no case matches {options.cases}; see --list", file=sys.stderr)
         return 2

@@ -271,6 +271,48 @@ class Accuracy(unittest.TestCase):
             self.assertIn("accuracy.py: ", result.stderr)
 
 
+class SameBytes(unittest.TestCase):
+    """The command, with made up programs: what they write depends on the depth, and on a word in them."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.program("pointskin_generate", FAKE_GENERATOR)
+
+    def program(self, name, text):
+        path = self.folder / name
+        path.write_text(f"#!{sys.executable}\n{text}", encoding="utf-8")
+        path.chmod(0o755)
+        return path
+
+    def compare(self, old, new):
+        head = "import pathlib, sys\nwords = sys.argv[1:]\nmesh = pathlib.Path(words[words.index('-o') + 1])\n"
+        head += "depth = int(words[words.index('--depth') + 1])\n"
+        self.program("pointskin", head + new)
+        return subprocess.run([sys.executable, str(HERE / "same_bytes.py"), str(self.program("old", head + old)), "--bin",
+                               str(self.folder), "--cases", "sphere-clean,torus-clean", "--depths", "4,5"],
+                              capture_output=True, text=True, check=False)
+
+    def test_the_same_meshes_and_the_same_failures_are_the_same(self):
+        either = "mesh.write_text(f'{depth}') if depth < 5 else sys.exit(5)"
+        result = self.compare(either, either)
+        self.assertEqual((result.returncode, result.stdout), (0, "depth 4: 2 of 2 are the same\ndepth 5: 2 of 2 are the same\n"))
+
+    def test_what_differs_is_named(self):
+        result = self.compare("mesh.write_text('a')", "mesh.write_text('a' if depth < 5 else 'b')")
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual([line.split(":")[0] for line in sorted(result.stdout.splitlines())],
+                         ["depth 4", "depth 5", "sphere-clean, depth 5", "torus-clean, depth 5"])
+        self.assertIn("depth 5: 0 of 2 are the same", result.stdout)
+
+    def test_a_failure_is_no_mesh(self):
+        for old, new in (("sys.exit(5)", "mesh.write_text('a')"), ("sys.exit(5)", "sys.exit(6)")):
+            result = self.compare(old, new)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("torus-clean, depth 4: exit code 5, now ", result.stdout)
+
+
 @unittest.skipUnless(PROGRAMS and (PROGRAMS / "pointskin").exists(), "the program pointskin is not built")
 class WithTheProgramsThemselves(unittest.TestCase):
     def test_measures_generated_and_scanned_shapes(self):

@@ -116,6 +116,12 @@ def file_cases(tools, folder, seed):
                            seed, SPOILED_MESHES)
 
 
+def known_cases(tools, points, seed, data):
+    """All of them; those of files only where there is a folder `data`."""
+    known = [*shape_cases(tools, points, seed), *scanned_shape_cases(tools, seed), *spoiled_cases(tools, seed)]
+    return known + list(file_cases(tools, data.resolve(), seed)) if data else known
+
+
 def choose(cases, patterns):
     """The cases whose name matches one of the comma separated shell patterns."""
     return [case for case in cases if any(fnmatch.fnmatchcase(case.name, p) for p in patterns.split(","))]

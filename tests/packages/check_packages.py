@@ -46,15 +46,15 @@ def found_by_cmake(cache):
     return paths
 
 
-def owner_of(path):
-    """The Debian packages that own `path`; none for what was not installed by dpkg, and for folders of everybody."""
-    result = subprocess.run(["dpkg-query", "-S", path], capture_output=True, text=True, check=False)
-    owners = set()
-    for line in result.stdout.splitlines():
-        names, _, owned = line.rpartition(": ")
-        if owned == path:
-            owners |= {name.split(":")[0] for name in names.split(", ")}
-    return owners if len(owners) <= 2 else set()
+def owners_of(paths):
+    """{path: the Debian packages that own it}, without what was not installed by dpkg and folders of everybody."""
+    found = subprocess.run(["dpkg-query", "-S", *paths], capture_output=True, text=True, check=False).stdout if paths else ""
+    owners = {path: set() for path in paths}
+    for line in found.splitlines():
+        names, _, path = line.rpartition(": ")
+        if path in owners:
+            owners[path] |= {name.split(":")[0] for name in names.split(", ")}
+    return {path: names for path, names in owners.items() if 1 <= len(names) <= 2}
 
 
 def installed():
@@ -86,20 +86,20 @@ def closure(packages, machine):
     return reached
 
 
-def build_faults(cache, packages, machine):
+def build_faults(owners, packages, machine):
+    """@param owners  what owners_of() says of all that CMake found"""
     reached = closure(packages, machine)
-    for path in sorted(found_by_cmake(cache)):
-        owners = owner_of(path)
-        if owners and not owners & reached:
-            yield f".ci/packages: {path} is used and belongs to {', '.join(sorted(owners))}, which no task names"
+    for path, names in owners.items():
+        if not names & reached:
+            yield f".ci/packages: {path} is used and belongs to {', '.join(sorted(names))}, which no task names"
 
 
-def self_test(cache, tasks, machine):
+def self_test(owners, tasks, machine):
     listed = [package for task in TASKS for package in tasks[task]]
     faults = []
     for package in ("libeigen3-dev", "libtbb-dev", "libgtest-dev"):
         rest = [name for name in listed if name != package]
-        if not any(package in fault for fault in build_faults(cache, rest, machine)):
+        if not any(package in fault for fault in build_faults(owners, rest, machine)):
             faults.append(f"self test: {package} was taken out of the list, and nothing was missed")
     if not readme_faults("    apt-get install g++\n", tasks):
         faults.append("self test: a README without the packages passed")
@@ -111,16 +111,16 @@ def main():
     cache = (pathlib.Path(arguments[0]) / "CMakeCache.txt").read_text(encoding="utf-8")
     tasks = read_list((ROOT / ".ci/packages").read_text(encoding="utf-8"))
     try:
-        machine = installed()
+        machine, owners = installed(), owners_of(sorted(found_by_cmake(cache)))
     except (FileNotFoundError, subprocess.CalledProcessError):
         print("no dpkg here: only README.md was compared")
         machine = None
     if "--self-test" in sys.argv:
-        faults = self_test(cache, tasks, machine) if machine else []
+        faults = self_test(owners, tasks, machine) if machine else []
     else:
         faults = readme_faults((ROOT / "README.md").read_text(encoding="utf-8"), tasks)
         if machine:
-            faults += build_faults(cache, [package for task in TASKS for package in tasks[task]], machine)
+            faults += build_faults(owners, [package for task in TASKS for package in tasks[task]], machine)
     print("\n".join(faults) if faults else "packages: all that the build uses is listed")
     return 1 if faults else 0
 

@@ -32,6 +32,7 @@ class Repository:
         self.root = pathlib.Path(root)
         self.files = set(self._walk())
         self.folders = {str(parent) for name in self.files for parent in pathlib.PurePath(name).parents}
+        self.known = self.files | self.folders
         self.words, self.whole, self.options = {}, set(), set()
         self.constants, self.commands, self.comments = {}, set(), {}
         for name in sorted(self.files):
@@ -76,9 +77,13 @@ class Repository:
         if "/" not in path:  # a bare name stands for the one file that is called so
             candidates |= {name for one in expanded(path) for name in self.files
                            if fnmatch.fnmatchcase(os.path.basename(name), one)}
-        known = self.files | self.folders
-        return {name for one in candidates for name in known
-                if name == one or fnmatch.fnmatchcase(name, one) or fnmatch.fnmatchcase(name, one + ".[hc]pp")}
+        return {name for one in candidates for name in self.called(one)}
+
+    def called(self, name):
+        """Files or folders of this name, in which *, ? and [...] stand for more, with or without .hpp or .cpp."""
+        if re.search(r"[*?[]", name):
+            return [n for pattern in (name, name + ".[hc]pp") for n in fnmatch.filter(self.known, pattern)]
+        return [n for n in (name, name + ".hpp", name + ".cpp") if n in self.known]
 
 
 def expanded(path):

@@ -151,7 +151,7 @@ def judge_file(case, name, data, said):
         wrong = judge_points(case, found)
     # Points that a script adds have no values of the properties that only the others have.
     added = case.command() == "edit" and not name.startswith("mesh")
-    return wrong + ([] if added else judge.attributes(found, doubtful(case, said)))
+    return wrong + ([] if added else judge.attributes(found, doubtful(case) | removed(case, found, said)))
 
 
 def judge_points(case, found):
@@ -185,20 +185,25 @@ def count_usable(cloud):
     return sum(all(map(math.isfinite, row)) and (len(row) < 6 or max(map(abs, row[3:])) > 1e-18) for row in zip(*columns))
 
 
-def doubtful(case, said):
+def removed(case, mesh, said):
+    """Properties without a value at any vertex, where a script has removed as many points as had them, as it says (stderr)."""
+    if case.command() != "edit":
+        return set()
+    count = sum(map(int, re.findall(r"(\d+) removed", said)))
+    clouds = [ply.read(case.inputs[cloud]) for cloud in case.points]
+    have = {name: sum(count_usable(found) for found in clouds if name in found.columns) for name in mesh.columns}
+    return {name for name, column in mesh.columns.items() if 0 < have[name] <= count and not any(map(math.isfinite, column))}
+
+
+def doubtful(case):
     """Properties that the input itself has with values that are not finite, under the names that a mesh gives them.
 
-    So has one that only some files have, and these only a few points that count: as strays they may be left out. A script
-    may remove more of them; it says how many.
-
-    @param said  stderr
+    So has one that only some files have, and these only a few points that count: as strays they may be left out.
     """
     names = set()
     clouds = [ply.read(case.inputs[cloud]) for cloud in case.points]
     sources = len(clouds) + (case.command() == "edit")  # a script may replace all points by those of a shape
     few = max(FEW_POINTS, sum(map(count_usable, clouds)) // 50)
-    if case.command() == "edit":
-        few += sum(map(int, re.findall(r"(\d+) removed", said)))
     for name in {n for found in clouds for n in found.columns}:
         have = [count_usable(found) for found in clouds if name in found.columns]
         if len(have) < sources and sum(have) <= few:

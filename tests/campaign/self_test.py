@@ -24,9 +24,9 @@ class WhatIsJudged(unittest.TestCase):
             columns = ["x", "y", "z", "nx", "ny", "nz", name]
             return ply.write([[n, "float"] for n in columns], [(0, 0, 0, *normal, 1)] * count)
 
-        def doubtful(*clouds, command="reconstruct", said=""):
+        def doubtful(*clouds, command="reconstruct"):
             inputs = {str(i): data for i, data in enumerate(clouds)}
-            return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs, command=lambda: command), said)
+            return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs, command=lambda: command))
 
         self.assertEqual(doubtful(cloud("heat", 2), cloud("x2", 100)), {"heat", "input_heat"})
         self.assertEqual(doubtful(cloud("heat", 90, (0, 0, 0)), cloud("x2", 100)), {"heat", "input_heat"})
@@ -35,9 +35,21 @@ class WhatIsJudged(unittest.TestCase):
         self.assertEqual(doubtful(cloud("heat", 2)), set())
         self.assertLessEqual({"heat", "input_heat"}, doubtful(cloud("heat", 2), command="edit"))
         self.assertEqual(doubtful(cloud("heat", 90), command="edit"), set())
-        removed = "0: erase: 0 points added, {} removed; components 1 -> 1"
-        self.assertEqual(doubtful(cloud("heat", 90), command="edit", said=removed.format(80)), set())
-        self.assertLessEqual({"heat"}, doubtful(cloud("heat", 90), command="edit", said=removed.format(90)))
+
+    def test_a_property_ends_with_all_points_that_had_it(self):
+        nan = float("nan")
+
+        def removed(count, values, command="edit"):
+            columns = [[n, "float"] for n in ("x", "y", "z", "nx", "ny", "nz", "heat")]
+            cloud = ply.write(columns, [(0, 0, 0, 0, 0, 1, 1)] * 90)
+            case = types.SimpleNamespace(points=["a"], inputs={"a": cloud}, command=lambda: command)
+            mesh = types.SimpleNamespace(columns={"x": [0] * len(values), "heat": values})
+            return campaign.removed(case, mesh, f"0: erase: 0 points added, {count} removed; components 1 -> 1")
+
+        self.assertEqual(removed(90, [nan, nan]), {"heat"})
+        self.assertEqual(removed(89, [nan, nan]), set())
+        self.assertEqual(removed(90, [nan, 1.0]), set())
+        self.assertEqual(removed(90, [nan, nan], command="reconstruct"), set())
 
 
 class JudgeOfMeshes(unittest.TestCase):

@@ -9,6 +9,7 @@
 #include "exec/atomic.hpp"
 #include "exec/disjoint_sets.hpp"
 #include "exec/this_space.hpp"
+#include "surface/volume.hpp"
 
 namespace pointskin::fluid {
 namespace {
@@ -120,53 +121,15 @@ struct UniteCorners {
   }
 };
 
-/// Six times the signed volume of a triangle's tetrahedron, modulo 2^64.
-struct SixVolumes {
-  ArrayView<const Triangle> triangles;
-  ArrayView<const Vec3f> positions;
-  float quanta;  // in the unit cube's side
-
-  [[nodiscard]] PSK_HD std::uint64_t rounded(float v) const {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(v * quanta + 0.5F));
-  }
-  PSK_HD std::uint64_t operator()(std::int64_t t) const {
-    const std::int32_t* v = triangles[t].data();
-    std::uint64_t p[3][3];
-    for (int k = 0; k < 3; ++k) {
-      const Vec3f at = positions[v[k]];
-      p[k][0] = rounded(at.x);
-      p[k][1] = rounded(at.y);
-      p[k][2] = rounded(at.z);
-    }
-    const std::uint64_t x = p[1][1] * p[2][2] - p[1][2] * p[2][1];
-    const std::uint64_t y = p[1][2] * p[2][0] - p[1][0] * p[2][2];
-    const std::uint64_t z = p[1][0] * p[2][1] - p[1][1] * p[2][0];
-    return p[0][0] * x + p[0][1] * y + p[0][2] * z;
-  }
-};
-
-/// Adds them to the triangles' components.
+/// Adds the triangles' volumes to their components.
 struct AddVolumes {
-  SixVolumes of;
+  surface::SixVolumes of;
   exec::DisjointSets sets;
   ArrayView<std::uint64_t> volumes;
   PSK_HD void operator()(std::int64_t t) const {
     exec::add(volumes.data + sets.root(of.triangles[t].data()[0]), of(t));
   }
 };
-
-struct AddModulo {
-  static constexpr bool kAnyOrder = true;
-  PSK_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
-};
-
-/// Vertices are rounded to a sixteenth of a cell, or so that six times the cube's volume fits.
-int depth_of_quanta(int depth) { return depth <= 16 ? depth + 4 : 20; }
-
-SixVolumes volumes_of(int depth, const surface::Surface& mesh) {
-  return {mesh.triangles.cview(), mesh.positions.cview(),
-          static_cast<float>(std::int64_t{1} << depth_of_quanta(depth))};
-}
 
 struct IsKept {
   exec::DisjointSets sets;
@@ -250,19 +213,9 @@ exec::Buffer<Vec3f> normals_of(Exec& ex, const Fans& fans, ArrayView<const Trian
 }
 
 template <exec::Space Exec>
-bool encloses_volume(Exec& ex, int depth, const surface::Surface& mesh) {
-  const auto six =
-      exec::reduce<std::uint64_t>(ex, "fluid.volume", mesh.triangles.size(), volumes_of(depth, mesh), AddModulo{});
-  // (1/16 cell)^3 in quanta, which are coarser than that at the deepest levels.
-  const double of_triangle = std::ldexp(1.0, 3 * (depth_of_quanta(depth) - depth - 4));
-  return static_cast<double>(static_cast<std::int64_t>(six)) >
-         6 * of_triangle * static_cast<double>(mesh.triangles.size());
-}
-
-template <exec::Space Exec>
 std::int64_t remove_small_components(Exec& ex, int depth, double least_cells, surface::Surface& mesh) {
   constexpr const char* kLabel = "fluid.components";
-  const double per_cell = std::ldexp(1.0, 3 * (depth_of_quanta(depth) - depth));
+  const double per_cell = std::ldexp(1.0, 3 * (surface::depth_of_quanta(depth) - depth));
   const double least = 6 * per_cell * least_cells;
   const std::int64_t n = mesh.positions.size();
   exec::Buffer<std::int32_t> parents = exec::iota(ex, n);
@@ -270,7 +223,7 @@ std::int64_t remove_small_components(Exec& ex, int depth, double least_cells, su
   for_each(ex, kLabel, mesh.triangles.size(), UniteCorners{mesh.triangles.cview(), sets});
   auto volumes = exec::make_buffer<std::uint64_t>(ex, n);
   exec::fill(ex, volumes.view(), std::uint64_t{0});
-  for_each(ex, kLabel, mesh.triangles.size(), AddVolumes{volumes_of(depth, mesh), sets, volumes.view()});
+  for_each(ex, kLabel, mesh.triangles.size(), AddVolumes{surface::volumes_of(depth, mesh), sets, volumes.view()});
   constexpr double kLargest = 9e18;
   const IsKept keep{sets, volumes.cview(), static_cast<std::int64_t>(least < kLargest ? std::ceil(least) : kLargest)};
   const auto removed = exec::reduce<std::int64_t>(ex, kLabel, n, IsRemovedRoot{keep}, exec::Plus{});
@@ -292,7 +245,6 @@ std::int64_t remove_small_components(Exec& ex, int depth, double least_cells, su
 PSK_INSTANTIATE(find_fans);
 PSK_INSTANTIATE(smooth);
 PSK_INSTANTIATE(normals_of);
-PSK_INSTANTIATE(encloses_volume);
 PSK_INSTANTIATE(remove_small_components);
 
 }  // namespace pointskin::fluid

@@ -36,14 +36,8 @@ template <exec::Space Exec>
 exec::Buffer<Vec3f> normals_of(Exec& ex, const Fans& fans, ArrayView<const Triangle> triangles,
                                ArrayView<const Vec3f> positions);
 
-/// True if a closed mesh encloses more than rounding alone can, measured as below: (1/16 cell)^3 for each triangle. A
-/// mesh of the extraction, with about two triangles a cell, has that where it is a thousandth of a cell thick.
-/// O(triangles), one host round trip.
-template <exec::Space Exec>
-bool encloses_volume(Exec& ex, int depth, const surface::Surface& mesh);
-
 /// Removes the components of a closed mesh that enclose less than `least_cells` finest cells, inside out or not.
-/// Volumes are measured with vertices rounded to 1/16 of a cell, in integers.
+/// Volumes are those of surface::SixVolumes.
 /// @param depth  the cells are 2^-depth wide
 /// @returns how many. Three host round trips
 template <exec::Space Exec>

@@ -13,6 +13,7 @@
 #include "fluid/values_at.hpp"
 #include "fluid/walls.hpp"
 #include "reconstruct/phase_clock.hpp"
+#include "surface/volume.hpp"
 
 namespace pointskin::fluid {
 namespace {
@@ -70,7 +71,7 @@ void finish(Exec& ex, const SortedParticles& sorted, const Particles& particles,
     const double crowd = kBulk * std::pow(options.smoothing_length, 3);
     if (weighted) to_smoothing_weights(ex, static_cast<float>(crowd), weights.view());
     smooth(ex, fans, mesh.triangles.cview(), weights.cview(), options.smoothing_iterations, mesh.positions);
-    if (!encloses_volume(ex, frame.depth, mesh))
+    if (surface::sign_of_volume(ex, frame.depth, mesh) <= 0)
       throw Error(ErrorCode::empty_result,
                   "smoothing has drawn the surface together until it encloses nothing; choose fewer iterations");
   }

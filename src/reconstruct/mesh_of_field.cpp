@@ -23,6 +23,7 @@
 #include "reconstruct/trim_to_samples.hpp"
 #include "reconstruct/within_envelope.hpp"
 #include "surface/pieces.hpp"
+#include "surface/volume.hpp"
 
 namespace pointskin::detail {
 namespace {
@@ -111,6 +112,16 @@ surface::Surface without_pieces(Exec& ex, surface::Surface surface, std::int64_t
   return surface;
 }
 
+/// Of a closed surface whose vertices were moved onto an envelope: one narrower than the cells presses it flat. Of a
+/// surface whose pieces were chosen, a cavity may be what is left.
+template <exec::Space Exec>
+void check_volume(Exec& ex, int depth, const surface::Surface& surface) {
+  if (surface.triangles.empty() || surface::sign_of_volume(ex, depth, surface) != 0) return;
+  throw Error(ErrorCode::empty_result,
+              "the surface encloses nothing within the envelope, which is narrower there than the octree's cells; "
+              "choose a larger depth, or an envelope of the points' size");
+}
+
 }  // namespace
 
 template <exec::Space Exec>
@@ -119,8 +130,9 @@ surface::Surface extract(Exec& ex, const FieldData& field, const Options& option
   const bool trim = rule.share > 0;  // which needs normals
   surface::ExtractOptions extraction{options.linear_fit ? 0 : kCurvature, options.normals || trim};
   if (field.envelope != nullptr) extraction.move_vertices = clip_to(ex, *field.envelope, field.frame, report.envelope);
-  surface::Surface surface = surface::extract_surface(
-      ex, field.view(domain_faces(field, options), options.isovalue.value_or(field.isovalue)), extraction);
+  const DomainFaces faces = domain_faces(field, options);
+  surface::Surface surface =
+      surface::extract_surface(ex, field.view(faces, options.isovalue.value_or(field.isovalue)), extraction);
   const std::int64_t lone_corners = surface.lone_corners;
   if (trim && is_worth_trimming(ex, field, surface, options)) {
     surface::TrimCounts counts;
@@ -131,8 +143,11 @@ surface::Surface extract(Exec& ex, const FieldData& field, const Options& option
   }
   if (!options.normals) surface.normals.reset();
   surface = without_pieces(ex, std::move(surface), lone_corners, field, options, report);
-  if (field.envelope != nullptr)
+  if (field.envelope != nullptr) {
     project_onto(ex, *field.envelope, field.frame, surface.positions.view(), report.envelope);
+    const bool closed = faces == DomainFaces::closed && report.trim.triangles_before == 0;
+    if (closed && report.envelope.vertices_moved > 0) check_volume(ex, field.tree.depth, surface);
+  }
   return surface;
 }
 

@@ -240,6 +240,24 @@ TEST(Envelope, FailsWhereAllPointsLieOutside) {
       ErrorCode::empty_result);
 }
 
+TEST(Envelope, FailsWhereItIsNarrowerThanTheCells) {
+  // One corner of the octree is inside, the middle of the cube, where many points are.
+  Cloud cloud = test::sphere_cloud(1000, 13);
+  for (int i = 0; i < 1000; ++i) {
+    cloud.positions.push_back({0, 0, 0});
+    cloud.normals.push_back({0, 0, 1});
+  }
+  const Mesh box = test::box_mesh({-1, -1, -1}, {1, 1, 1});
+  const auto within = [&](float half_width) {
+    Mesh envelope = box;
+    for (Vec3f& v : envelope.vertices) v = {half_width * v.x, half_width * v.y, half_width * v.z};
+    return error_of(
+        [&] { EXPECT_GT(measure(run(cloud, {{.depth = 4, .envelope = shared(envelope)}}).mesh).volume, 0); });
+  };
+  EXPECT_EQ(within(0.5F), std::nullopt);
+  EXPECT_EQ(within(0.005F), ErrorCode::empty_result);
+}
+
 TEST(Envelope, HoldsPointsOnADevice) {
   const Case c = cases()[1];
   Reconstructor r(Device::cpu(2));

@@ -207,6 +207,8 @@ Record run_reconstruction(const ReconstructArgs& args, const Stopwatch& watch,
   write_output(args, mesh, record);
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
+  // What looks at the mesh takes memory of its own, in place of that of the run.
+  if (!args.each && record.device.kind == DeviceKind::cpu) reconstructor->workspace().release_memory();
 
   if (record.options.weakness)
     record.problems = find_problems(mesh.on_host(), problem_options(args.pictures, args.threads));

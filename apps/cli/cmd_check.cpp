@@ -1,4 +1,5 @@
 // pointskin check: is a mesh watertight, and does it run through itself?
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -8,12 +9,14 @@
 #include <pointskin/error.hpp>
 #include <pointskin/formats.hpp>
 #include <pointskin/io.hpp>
+#include <pointskin/scale.hpp>
 
 #include "args.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "fit_args.hpp"
 #include "json_text.hpp"
+#include "run_memory.hpp"
 #include "scene/vector_json.hpp"
 
 namespace pointskin::cli {
@@ -24,6 +27,7 @@ using Json = nlohmann::ordered_json;
 struct CheckArgs {
   std::string file;
   int threads = 0;
+  std::int64_t max_memory_bytes = 0;
   bool json = false;
   bool self_intersections = false;
 };
@@ -105,13 +109,33 @@ std::string human_text(const CheckArgs& args, const Findings& findings) {
   return findings.self_intersections ? text + human_text(*findings.self_intersections) : text;
 }
 
+/// What the numbers of the vertices tell, from a file that may be larger than memory.
+MeshReport measure_within(const CheckArgs& args) {
+  if (args.max_memory_bytes == 0) return measure_file(args.file, {.max_memory_bytes = 0, .threads = args.threads});
+  const std::int64_t left = bytes_left_of(args.max_memory_bytes);
+  try {
+    return measure_file(args.file, {.max_memory_bytes = left, .threads = args.threads});
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::over_limit) throw;
+    throw Error(ErrorCode::over_limit,
+                fmt::format("--max-memory {}, of which the program takes {}: {}",
+                            format_bytes(static_cast<double>(args.max_memory_bytes)),
+                            format_bytes(static_cast<double>(args.max_memory_bytes - left)), error.what()));
+  }
+}
+
+Findings find(const CheckArgs& args) {
+  if (!args.self_intersections) return {measure_within(args), std::nullopt};
+  const Mesh mesh = read_mesh(args.file, {.shift = std::nullopt, .threads = args.threads});
+  if (mesh.triangles.empty()) return {};
+  return {measure(mesh, args.threads), find_self_intersections(mesh, {.threads = args.threads})};
+}
+
 int run(const CheckArgs& args) {
   check_threads(args.threads);
-  const Mesh mesh = read_mesh(args.file, {.shift = std::nullopt, .threads = args.threads});
-  if (mesh.triangles.empty())
+  const Findings findings = find(args);
+  if (findings.mesh.triangles == 0)
     throw Error(ErrorCode::invalid_input, args.file + ": has no triangles; name a mesh, not a cloud");
-  Findings findings{measure(mesh, args.threads), std::nullopt};
-  if (args.self_intersections) findings.self_intersections = find_self_intersections(mesh, {.threads = args.threads});
   write_stdout(args.json ? json_text(to_json(args, findings)) : human_text(args, findings));
   return findings.good() ? 0 : static_cast<int>(ErrorCode::empty_result);
 }
@@ -127,14 +151,18 @@ constexpr char kFooter[] =
     "`reconstruct` crosses itself in single cells of three rare kinds only; an envelope and smoothing may fold it.";
 
 OptionTable check_options(CheckArgs& args) {
-  return {{"Check",
-           {option("MESH", "mesh: " + format_names(&FormatInfo::reads_meshes) + "; - reads PLY from stdin", &args.file,
-                   {}, {.required = true}),
-            option("--self-intersections",
-                   "also find pairs of triangles that meet beside what they share; 5 if there are any",
-                   &args.self_intersections)}},
-          {"Output", {json_row(args.json)}},
-          {"Limits", {threads_row(args.threads)}}};
+  return {
+      {"Check",
+       {option("MESH", "mesh: " + format_names(&FormatInfo::reads_meshes) + "; - reads PLY from stdin", &args.file, {},
+               {.required = true}),
+        option("--self-intersections",
+               "also find pairs of triangles that meet beside what they share; 5 if there are any",
+               &args.self_intersections)}},
+      {"Output", {json_row(args.json)}},
+      {"Limits",
+       {option("--max-memory SIZE", "memory that the process may take, e.g. 1G; less than the mesh needs takes longer",
+               memory_limit(args.max_memory_bytes), {}, {.excludes = "--self-intersections"}),
+        threads_row(args.threads)}}};
 }
 
 }  // namespace

@@ -107,6 +107,10 @@ void RunMemory::throw_named(const Error& error) const {
   throw Error(ErrorCode::over_limit, fmt::format("--max-memory {}{}: {}", text(limit_), beside, error.what()));
 }
 
+std::int64_t bytes_left_of(std::int64_t limit) {
+  return std::max<std::int64_t>(1, limit - process_bytes() - kTouchedByWork);
+}
+
 std::string bytes_text(std::int64_t bytes) {
   return fmt::format("{} ({} bytes)", format_bytes(static_cast<double>(bytes)), bytes);
 }

@@ -76,6 +76,9 @@ class RunMemory {
   std::int64_t beside_ = 0;
 };
 
+/// What --max-memory leaves to work that begins now, beside the program: at least a byte.
+std::int64_t bytes_left_of(std::int64_t limit);
+
 /// "62.5 MiB (65536000 bytes)".
 std::string bytes_text(std::int64_t bytes);
 

@@ -24,6 +24,7 @@
 #include <pointskin/problems.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/render.hpp>
+#include <pointskin/scale.hpp>
 #include <pointskin/simulation.hpp>
 #include <pointskin/suggest_device.hpp>
 #include <pointskin/unfinished_files.hpp>

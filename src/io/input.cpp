@@ -52,12 +52,32 @@ Source Input::source() const {
   return {name_, memory_};
 }
 
+void Input::read_at(std::size_t at, std::size_t bytes, char* out) const {
+  if (!mapping_.mapped()) {
+    std::copy_n(memory_.data() + at, bytes, out);
+    return;
+  }
+  while (bytes > 0) {
+    const ssize_t got = ::pread(file_.get(), out, bytes, static_cast<off_t>(at));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail_to_read(name_, errno);
+    if (got == 0) fail_as_cut();
+    at += static_cast<std::size_t>(got);
+    out += got;
+    bytes -= static_cast<std::size_t>(got);
+  }
+}
+
+void Input::fail_as_cut() const {
+  fail({name_, {}}, "was cut short while it was read", "check the program that writes it");
+}
+
 void Input::check_whole() const {
   if (!mapping_.mapped()) return;
   struct stat status {};
   const bool cut =
       ::fstat(file_.get(), &status) == 0 && static_cast<std::size_t>(status.st_size) < mapping_.bytes().size();
-  if (cut) fail({name_, {}}, "was cut short while it was read", "check the program that writes it");
+  if (cut) fail_as_cut();
   if (mapping_.lost_bytes())
     fail({name_, {}}, "could not be read to its end", "check the disk, and what writes the file");
 }

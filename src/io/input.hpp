@@ -1,6 +1,7 @@
 // The bytes of an input: a mapped file, or memory where a file cannot be mapped.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -25,12 +26,17 @@ class Input {
 
   [[nodiscard]] Source source() const;
 
+  /// Copies bytes of the file without looking at its mapping, whose pages would stay in memory. For many threads at once.
+  /// @throws Error invalid_input if they are not there any more, or cannot be read
+  void read_at(std::size_t at, std::size_t bytes, char* out) const;
+
   /// To be called when the bytes have been used: a mapped file may have lost some since, which then read as zeros.
   /// @throws Error invalid_input if it did
   void check_whole() const;
 
  private:
   void read_all(int fd);
+  [[noreturn]] void fail_as_cut() const;
 
   std::string name_;
   std::string memory_;

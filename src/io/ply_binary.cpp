@@ -8,6 +8,7 @@
 #include "exec/host_array.hpp"
 #include "io/blocks.hpp"
 #include "io/ply_body.hpp"
+#include "io/ply_triangle_rows.hpp"
 #include "io/polygon.hpp"
 
 namespace pointskin::io {
@@ -84,15 +85,8 @@ std::size_t skip_element(const PlyInput& input, const PlyElement& element, std::
 }
 
 std::size_t view_vertices(const PlyInput& input, const PlyElement& element, std::size_t at, PlyBody& body) {
-  const std::size_t row_bytes = element.smallest_row_bytes();
-  const std::size_t end = skip_fixed(input, element, at, row_bytes);
-  body.vertices.rows = element.count;
-  const char* data = input.source.bytes.data() + at;
-  for (const PlyProperty& p : element.properties) {
-    body.vertices.columns.push_back({p.name, p.type, p.type, data, static_cast<std::int64_t>(row_bytes),
-                                     input.header.encoding == PlyEncoding::big_endian});
-    data += size_of(p.type);
-  }
+  const std::size_t end = skip_fixed(input, element, at, element.smallest_row_bytes());
+  body.vertices = view_rows(element, input.header.encoding, input.source.bytes.data() + at, element.count);
   return end;
 }
 
@@ -114,62 +108,34 @@ std::size_t copy_vertices(const PlyInput& input, const PlyElement& element, std:
   return walker.at();
 }
 
-/// Where the corner list of a face lies if every face is a triangle.
-struct TriangleRows {
-  const char* length = nullptr;  ///< of the first row
-  const char* corners = nullptr;
-  std::size_t row_bytes = 0;
-};
-
-/// Finds out whether all faces are triangles with nothing but scalars around their list: row i + 1 lies where that
-/// says it does if row i has length 3, so checking every row at its place proves all of them.
+/// The rows of the faces at byte `at`, if all are triangles, which checking every row at its place proves.
 std::optional<TriangleRows> find_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& face,
                                                std::size_t list, std::size_t at) {
-  if (std::count_if(face.properties.begin(), face.properties.end(), [](const auto& p) { return p.is_list; }) != 1)
+  const std::optional<TriangleRows> rows = triangle_rows_of(face, list, input.header.encoding);
+  if (!rows || !fits(static_cast<std::uint64_t>(face.count), rows->row_bytes, input.source.bytes.size() - at))
     return std::nullopt;
-  const PlyProperty& property = face.properties[list];
-  TriangleRows rows;
-  rows.row_bytes = face.smallest_row_bytes() + 3 * size_of(property.type);
-  if (!fits(static_cast<std::uint64_t>(face.count), rows.row_bytes, input.source.bytes.size() - at))
-    return std::nullopt;
-  rows.length = input.source.bytes.data() + at;
-  for (std::size_t p = 0; p < list; ++p) rows.length += size_of(face.properties[p].type);
-  rows.corners = rows.length + size_of(property.count_type);
-  const bool swapped = input.header.encoding == PlyEncoding::big_endian;
+  const char* data = input.source.bytes.data() + at;
   std::atomic<bool> all_three{true};
   run_in_order(ex, (face.count + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {
-    visit_type(property.count_type, [&](auto tag) {
-      const auto last = static_cast<std::size_t>(std::min(face.count, (b + 1) * kBlockRows));
-      for (auto row = static_cast<std::size_t>(b * kBlockRows); row < last && all_three; ++row)
-        if (load<decltype(tag)>(rows.length + row * rows.row_bytes, swapped) != 3) all_three = false;
-    });
+    const std::int64_t first = b * kBlockRows;
+    const std::int64_t count = std::min(face.count - first, kBlockRows);
+    if (all_three && !rows->are_triangles(data + static_cast<std::size_t>(first) * rows->row_bytes, count))
+      all_three = false;
   });
-  return all_three ? std::optional(rows) : std::nullopt;
+  return all_three ? rows : std::nullopt;
 }
 
-[[noreturn]] void fail_on_index(const PlyInput& input, std::int64_t index, const char* at) {
-  fail_at_byte(input.source, fmt::format("a face names vertex {}, but there are {}", index, vertex_count(input.header)),
-               static_cast<std::size_t>(at - input.source.bytes.data()), kCopyAgain);
-}
-
-void read_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, AttributeType type,
-                        const TriangleRows& rows, std::vector<Triangle>& triangles) {
+void read_triangle_rows(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, const TriangleRows& rows,
+                        std::size_t at, std::vector<Triangle>& triangles) {
   exec::resize_to_overwrite(ex, triangles, static_cast<std::size_t>(face.count));
   const std::int64_t vertices = vertex_count(input.header);
-  const bool swapped = input.header.encoding == PlyEncoding::big_endian;
   run_in_order(ex, (face.count + kBlockRows - 1) / kBlockRows, [&](std::int64_t b) {
-    visit_type(type, [&](auto tag) {
-      using T = decltype(tag);
-      const auto last = static_cast<std::size_t>(std::min(face.count, (b + 1) * kBlockRows));
-      for (auto row = static_cast<std::size_t>(b * kBlockRows); row < last; ++row) {
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-          const char* from = rows.corners + row * rows.row_bytes + corner * sizeof(T);
-          const auto index = static_cast<std::int64_t>(load<T>(from, swapped));
-          if (index < 0 || index >= vertices) fail_on_index(input, index, from);
-          triangles[row][corner] = static_cast<std::int32_t>(index);
-        }
-      }
-    });
+    const std::int64_t first = b * kBlockRows;
+    const char* data = input.source.bytes.data() + at + static_cast<std::size_t>(first) * rows.row_bytes;
+    const char* bad = rows.read(data, std::min(face.count - first, kBlockRows), vertices, triangles.data() + first);
+    if (bad != nullptr)
+      fail_on_corner(input.source, load_integer(rows.type, bad, rows.swapped), vertices,
+                     static_cast<std::size_t>(bad - input.source.bytes.data()));
   });
 }
 
@@ -178,7 +144,7 @@ std::size_t read_faces(exec::Cpu& ex, const PlyInput& input, const PlyElement& f
   const std::size_t list = find_corner_list(input.source, face);
   const AttributeType type = face.properties[list].type;
   if (const auto rows = find_triangle_rows(ex, input, face, list, at)) {
-    read_triangle_rows(ex, input, face, type, *rows, triangles);
+    read_triangle_rows(ex, input, face, *rows, at, triangles);
     return at + static_cast<std::size_t>(face.count) * rows->row_bytes;
   }
   const std::int64_t vertices = vertex_count(input.header);
@@ -190,7 +156,8 @@ std::size_t read_faces(exec::Cpu& ex, const PlyInput& input, const PlyElement& f
     for (std::int64_t c = 0; c < walker.count(list); ++c) {
       const char* from = walker.data(list) + static_cast<std::size_t>(c) * size_of(type);
       const std::int64_t index = load_integer(type, from, walker.swapped());
-      if (index < 0 || index >= vertices) fail_on_index(input, index, from);
+      if (index < 0 || index >= vertices)
+        fail_on_corner(input.source, index, vertices, static_cast<std::size_t>(from - input.source.bytes.data()));
       corners.push_back(static_cast<std::int32_t>(index));
     }
     append_fan(corners, triangles);
@@ -199,6 +166,21 @@ std::size_t read_faces(exec::Cpu& ex, const PlyInput& input, const PlyElement& f
 }
 
 }  // namespace
+
+void fail_on_corner(const Source& source, std::int64_t index, std::int64_t vertices, std::size_t byte) {
+  fail_at_byte(source, fmt::format("a face names vertex {}, but there are {}", index, vertices), byte, kCopyAgain);
+}
+
+PointTable view_rows(const PlyElement& element, PlyEncoding encoding, const char* data, std::int64_t rows) {
+  PointTable table;
+  table.rows = rows;
+  const auto row_bytes = static_cast<std::int64_t>(element.smallest_row_bytes());
+  for (const PlyProperty& p : element.properties) {
+    table.columns.push_back({p.name, p.type, p.type, data, row_bytes, encoding == PlyEncoding::big_endian});
+    data += size_of(p.type);
+  }
+  return table;
+}
 
 void read_binary_body(exec::Cpu& ex, const PlyInput& input, PlyBody& body) {
   std::size_t at = input.header.body;

@@ -31,6 +31,12 @@ struct PlyInput {
 /// @throws Error invalid_input with the byte
 void read_binary_body(exec::Cpu& ex, const PlyInput& input, PlyBody& body);
 
+/// Throws Error invalid_input about the corner of a face that is not in [0, vertices).
+[[noreturn]] void fail_on_corner(const Source& source, std::int64_t index, std::int64_t vertices, std::size_t byte);
+
+/// Binary rows of an element without lists as columns, in place.
+PointTable view_rows(const PlyElement& element, PlyEncoding encoding, const char* data, std::int64_t rows);
+
 /// Reads a text body, one row a line, in parallel.
 /// @throws Error invalid_input with the line
 void read_ascii_body(exec::Cpu& ex, const PlyInput& input, PlyBody& body);

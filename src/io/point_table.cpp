@@ -51,6 +51,7 @@ Roles find_roles(const Source& source, const PointTable& table) {
 /// Consecutive rows of a table.
 struct RowRange {
   std::int64_t first, end;
+  explicit RowRange(const PointTable& table) : first(0), end(table.rows) {}
   RowRange(const PointTable& table, std::int64_t block)
       : first(block * kBlockRows), end(std::min(table.rows, first + kBlockRows)) {}
 };
@@ -121,23 +122,6 @@ Survey survey(exec::Cpu& ex, const PointTable& table, const Roles& roles, bool w
   return result;
 }
 
-/// Finite points outside of a box, in the order of the rows.
-std::vector<Vec3d> points_beyond(exec::Cpu& ex, const PointTable& table, const Roles& roles, const Box& box) {
-  const std::int64_t blocks = (table.rows + kBlockRows - 1) / kBlockRows;
-  std::vector<std::vector<Vec3d>> found(static_cast<std::size_t>(blocks));
-  run_in_order(ex, blocks, [&](std::int64_t b) {
-    for_triples(table, roles.position, {table, b}, [&](const Vec3d& p) {
-      bool inside = true;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        inside = inside && p[axis] >= box.lower[axis] && p[axis] <= box.upper[axis];
-      if (!inside && is_finite(p)) found[static_cast<std::size_t>(b)].push_back(p);
-    });
-  });
-  std::vector<Vec3d> all;
-  for (const std::vector<Vec3d>& some : found) all.insert(all.end(), some.begin(), some.end());
-  return all;
-}
-
 bool holds_floats(const PointTable& table, const Roles& roles) {
   return std::all_of(roles.position.begin(), roles.position.end(),
                      [&](std::size_t c) { return table.columns[c].stored == AttributeType::float32; });
@@ -182,6 +166,10 @@ void fill_attribute(const Column& column, const KeptRows& kept, std::int64_t to,
   });
 }
 
+Vec3f relative(const Vec3d& p, const Vec3d& origin) {
+  return {to_float(p[0] - origin[0]), to_float(p[1] - origin[1]), to_float(p[2] - origin[2])};
+}
+
 /// The second pass over block `b`: writes its points from index `to` of the cloud on.
 void fill_block(const PointTable& table, const Roles& roles, std::int64_t b, std::int64_t to, Cloud& cloud) {
   KeptRows kept{RowRange(table, b), {}, true};
@@ -191,7 +179,7 @@ void fill_block(const PointTable& table, const Roles& roles, std::int64_t b, std
   for_triples(table, roles.position, kept.rows, [&](const Vec3d& p) {
     *keep = is_finite(p);
     kept.all = kept.all && *keep;
-    if (*keep++) *position++ = {to_float(p[0] - origin[0]), to_float(p[1] - origin[1]), to_float(p[2] - origin[2])};
+    if (*keep++) *position++ = relative(p, origin);
   });
   if (roles.normal) {
     Vec3f* normal = cloud.normals.data() + to;
@@ -222,6 +210,42 @@ void check_shift(const Vec3d& shift) {
 
 bool is_coordinate(const std::string& name) { return name == "x" || name == "y" || name == "z"; }
 
+void read_positions(const PointTable& table, const Source& source, const Vec3d& origin, Vec3f* out) {
+  for_triples(table, find_roles(source, table).position, RowRange(table),
+              [&](const Vec3d& p) { *out++ = relative(p, origin); });
+}
+
+std::vector<Vec3d> points_beyond(exec::Cpu& ex, const Source& source, const PointTable& table, const Box& box) {
+  const Roles roles = find_roles(source, table);
+  const std::int64_t blocks = (table.rows + kBlockRows - 1) / kBlockRows;
+  std::vector<std::vector<Vec3d>> found(static_cast<std::size_t>(blocks));
+  run_in_order(ex, blocks, [&](std::int64_t b) {
+    for_triples(table, roles.position, {table, b}, [&](const Vec3d& p) {
+      bool inside = true;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        inside = inside && p[axis] >= box.lower[axis] && p[axis] <= box.upper[axis];
+      if (!inside && is_finite(p)) found[static_cast<std::size_t>(b)].push_back(p);
+    });
+  });
+  std::vector<Vec3d> all;
+  for (const std::vector<Vec3d>& some : found) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
+std::int64_t OriginSearch::add(exec::Cpu& ex, const Source& source, const PointTable& part) {
+  const Roles roles = find_roles(source, part);
+  const Survey found = survey(ex, part, roles, true);
+  runs_.insert(runs_.end(), found.runs.begin(), found.runs.end());
+  points_ += found.first.back();
+  resolution_ = part.resolution;
+  has_digits_ = !holds_floats(part, roles);
+  return found.first.back();
+}
+
+Vec3d OriginSearch::origin(const std::function<std::vector<Vec3d>(const Box&)>& beyond) const {
+  return points_ > 0 ? automatic_shift(runs_, points_, resolution_, has_digits_, beyond) : Vec3d{};
+}
+
 Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, const std::optional<Vec3d>& shift) {
   if (shift) check_shift(*shift);
   const Roles roles = find_roles(source, table);
@@ -234,7 +258,7 @@ Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, con
     cloud.origin = *shift;
   else if (wants_shift && kept > 0)
     cloud.origin = automatic_shift(found.runs, found.first.back(), table.resolution, !holds_floats(table, roles),
-                                   [&](const Box& box) { return points_beyond(ex, table, roles, box); });
+                                   [&](const Box& box) { return points_beyond(ex, source, table, box); });
   exec::resize_to_overwrite(ex, cloud.positions, kept);
   if (roles.normal) exec::resize_to_overwrite(ex, cloud.normals, kept);
   for (const std::size_t c : roles.attributes) {

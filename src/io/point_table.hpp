@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <pointskin/cloud.hpp>
 
+#include "core/box.hpp"
 #include "exec/cpu.hpp"
 #include "io/scalar.hpp"
 #include "io/source.hpp"
@@ -43,5 +45,30 @@ bool is_coordinate(const std::string& name);
 /// Deterministic for any number of threads.
 /// @throws Error invalid_input without x, y, z; usage if `shift` is not finite
 Cloud assemble(exec::Cpu& ex, const Source& source, const PointTable& table, const std::optional<Vec3d>& shift);
+
+/// Positions of all rows relative to `origin`, as assemble() has them, for rows that are finite.
+/// @param out  shape (rows)
+/// @throws Error invalid_input without x, y, z
+void read_positions(const PointTable& table, const Source& source, const Vec3d& origin, Vec3f* out);
+
+/// The origin that assemble() chooses, for a table that comes in parts. 48 bytes for 64 rows.
+class OriginSearch {
+ public:
+  /// Parts come in the order of their rows; all but the last have a multiple of kRunRows rows.
+  /// @returns how many of its points are finite
+  std::int64_t add(exec::Cpu& ex, const Source& source, const PointTable& part);
+
+  /// @param beyond  returns all points of all parts that are outside of a box, in any order; seldom called
+  [[nodiscard]] Vec3d origin(const std::function<std::vector<Vec3d>(const Box&)>& beyond) const;
+
+ private:
+  std::vector<Box> runs_;
+  std::int64_t points_ = 0;
+  double resolution_ = 0;
+  bool has_digits_ = false;
+};
+
+/// Finite points of a table that are outside of a box, in the order of the rows.
+std::vector<Vec3d> points_beyond(exec::Cpu& ex, const Source& source, const PointTable& table, const Box& box);
 
 }  // namespace pointskin::io

@@ -31,18 +31,6 @@ bool is_finite(const Column& column, std::int64_t row) {
   });
 }
 
-[[noreturn]] void fail_on_bad_vertex(const Source& source, const PointTable& table) {
-  std::int64_t bad = 0;
-  const auto is_good = [&](std::int64_t row) {
-    for (const Column& column : table.columns)
-      if (is_coordinate(column.name) && !is_finite(column, row)) return false;
-    return true;
-  };
-  while (is_good(bad)) ++bad;
-  fail(source, fmt::format("vertex {} has a coordinate that is not finite, or beyond 1e38", bad),
-       "remove the vertex or export the mesh again");
-}
-
 void read_body(exec::Cpu& ex, const PlyInput& input, PlyBody& body) {
   (input.header.encoding == PlyEncoding::ascii ? read_ascii_body : read_binary_body)(ex, input, body);
 }
@@ -68,7 +56,7 @@ Mesh assemble_mesh(exec::Cpu& ex, const Source& source, const PointTable& table,
                    const ReadOptions& options) {
   check_vertex_count(source, table.rows);
   Cloud points = assemble(ex, source, table, options.shift);
-  if (points.dropped > 0) fail_on_bad_vertex(source, table);
+  if (points.dropped > 0) fail_on_bad_vertex(source, table, 0);
   constexpr std::size_t kBlockRows = 1 << 14;
   const std::size_t normals = points.normals.size();
   run_in_order(ex, static_cast<std::int64_t>((normals + kBlockRows - 1) / kBlockRows), [&](std::int64_t b) {
@@ -78,6 +66,18 @@ Mesh assemble_mesh(exec::Cpu& ex, const Source& source, const PointTable& table,
   });
   return {points.origin, std::move(points.positions), std::move(points.normals), std::move(points.attributes),
           std::move(triangles)};
+}
+
+void fail_on_bad_vertex(const Source& source, const PointTable& table, std::int64_t first_row) {
+  std::int64_t bad = 0;
+  const auto is_good = [&](std::int64_t row) {
+    for (const Column& column : table.columns)
+      if (is_coordinate(column.name) && !is_finite(column, row)) return false;
+    return true;
+  };
+  while (is_good(bad)) ++bad;
+  fail(source, fmt::format("vertex {} has a coordinate that is not finite, or beyond 1e38", first_row + bad),
+       "remove the vertex or export the mesh again");
 }
 
 void check_vertex_count(const Source& source, std::int64_t vertices) {

@@ -70,6 +70,10 @@ bool looks_like_json(std::string_view bytes, bool want_mesh);
 Mesh assemble_mesh(exec::Cpu& ex, const Source& source, const PointTable& table, std::vector<Triangle>&& triangles,
                    const ReadOptions& options);
 
+/// Throws Error invalid_input about the first row of `table` that has a coordinate that is not finite; there must be one.
+/// @param first_row  number of the first row in the file
+[[noreturn]] void fail_on_bad_vertex(const Source& source, const PointTable& table, std::int64_t first_row);
+
 /// @throws Error over_limit if triangles could not name so many vertices
 void check_vertex_count(const Source& source, std::int64_t vertices);
 

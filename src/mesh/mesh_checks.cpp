@@ -28,23 +28,6 @@ std::int64_t first_bad_triangle(const Mesh& mesh, std::int64_t begin, std::int64
   return kNone;
 }
 
-void include(const Vec3f& vertex, CornerBounds& box) {
-  const Vec3d p = to_double(vertex);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(p[axis])) {
-      box.finite = false;
-      continue;
-    }
-    box.lower[axis] = std::min(box.lower[axis], p[axis]);
-    box.upper[axis] = std::max(box.upper[axis], p[axis]);
-  }
-}
-
-CornerBounds nothing() {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, true};
-}
-
 }  // namespace
 
 void check_indices(exec::Cpu& ex, const Mesh& mesh) {
@@ -68,25 +51,48 @@ void check_indices(exec::Cpu& ex, const Mesh& mesh) {
 
 CornerBounds corner_bounds(exec::Cpu& ex, const Mesh& mesh) {
   const std::int64_t n = triangle_count(mesh);
-  std::vector<CornerBounds> part(static_cast<std::size_t>(exec::block_count(n, exec::kCpuBlock)), nothing());
+  std::vector<CornerBounds> part(static_cast<std::size_t>(exec::block_count(n, exec::kCpuBlock)), CornerBounds::none());
   ex.run_blocks(static_cast<std::int64_t>(part.size()), [&](std::int64_t b) {
-    CornerBounds box = nothing();
+    CornerBounds box = CornerBounds::none();
     for (std::int64_t t = b * exec::kCpuBlock; t < std::min(n, (b + 1) * exec::kCpuBlock); ++t)
       for (const std::int32_t id : mesh.triangles[static_cast<std::size_t>(t)])
-        include(mesh.vertices[static_cast<std::size_t>(id)], box);
+        box.add(mesh.vertices[static_cast<std::size_t>(id)]);
     part[static_cast<std::size_t>(b)] = box;
   });
-  CornerBounds all = nothing();
-  for (const CornerBounds& box : part) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      all.lower[axis] = std::min(all.lower[axis], box.lower[axis]);
-      all.upper[axis] = std::max(all.upper[axis], box.upper[axis]);
-    }
-    all.finite = all.finite && box.finite;
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (all.lower[axis] > all.upper[axis]) all.lower[axis] = all.upper[axis] = 0;
+  CornerBounds all = CornerBounds::none();
+  for (const CornerBounds& box : part) all.add(box);
+  all.close();
   return all;
+}
+
+CornerBounds CornerBounds::none() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, true};
+}
+
+void CornerBounds::add(const Vec3f& vertex) {
+  const Vec3d p = to_double(vertex);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(p[axis])) {
+      finite = false;
+      continue;
+    }
+    lower[axis] = std::min(lower[axis], p[axis]);
+    upper[axis] = std::max(upper[axis], p[axis]);
+  }
+}
+
+void CornerBounds::add(const CornerBounds& other) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lower[axis] = std::min(lower[axis], other.lower[axis]);
+    upper[axis] = std::max(upper[axis], other.upper[axis]);
+  }
+  finite = finite && other.finite;
+}
+
+void CornerBounds::close() {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (lower[axis] > upper[axis]) lower[axis] = upper[axis] = 0;
 }
 
 Vec3d CornerBounds::centre() const { return 0.5 * (lower + upper); }

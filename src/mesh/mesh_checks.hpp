@@ -17,6 +17,13 @@ struct CornerBounds {
   Vec3d lower{0, 0, 0}, upper{0, 0, 0};
   bool finite = true;  ///< every corner of every triangle is finite
 
+  /// The box around nothing, to add to.
+  static CornerBounds none();
+  void add(const Vec3f& vertex);
+  void add(const CornerBounds& other);
+  /// All zero if nothing finite was added.
+  void close();
+
   [[nodiscard]] Vec3d centre() const;
   [[nodiscard]] double diagonal() const;
 };

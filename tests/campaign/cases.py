@@ -119,7 +119,7 @@ TABLES = {
                "--target": (["0,0,0", "1e9,0,0"], ["0,0"]), "--colour-by": (["x", "z"], ["no_such"]),
                "--colour-map": (["auto", "sequential", "diverging"], ["x"]), "--no-colours": ([None], [])},
     "compare": {"--tau": (["0.01", "0.5"], ["-1"]), "--samples": (["1", "1000", "20000"], ["0"])},
-    "check": {"--self-intersections": ([None], [])},
+    "check": {"--self-intersections": ([None], []), "--max-memory": (["12M", "20M", "100M", "8G"], ["0", "x", "-1"])},
     "info": {"--shift": SURFACE["--shift"]},
 }
 # Pairs that the documents call usage errors.

@@ -126,6 +126,7 @@ TABLES = {
 REFUSED = [("--field", name) for name in ("--envelope", "--weakness", "--boundary")]
 REFUSED += [("--offset", name) for name in ("--trim", "--density", "--keep-attributes", "--envelope", "--open",
                                             "--weakness")]
+REFUSED += [("--max-memory", "--self-intersections")]
 
 
 def _options(r, case, table, most=5):

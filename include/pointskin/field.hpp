@@ -44,7 +44,8 @@ class Field {
   /// vertices at the cut then come last. May be called again and again, with other options: the same bytes as
   /// Reconstructor::reconstruct with the same ones.
   /// @throws Error usage (an option out of range, or one that the solve excludes), empty_result if nothing crosses the
-  ///         isovalue, or nothing is left after ExtractOptions::trim, or an envelope within one cell presses the surface flat
+  ///         isovalue, nothing is left after ExtractOptions::trim, or an envelope within one cell presses the surface
+  ///         flat
   [[nodiscard]] Mesh extract(const ExtractOptions& options) const;
   [[nodiscard]] Mesh extract() const;
 

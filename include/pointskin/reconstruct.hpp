@@ -285,7 +285,8 @@ class Reconstructor {
   /// @throws Error usage (an option out of range), no_normals (no normals, or all zero length),
   ///         invalid_input (points that are not finite, an attribute of another length, an envelope that is not
   ///         watertight), empty_result (no points, all at one place or outside of the envelope; an offset that leaves
-  ///         nothing; an envelope within one cell), over_limit (memory or 32-bit indices), interrupted (RunOptions::progress returned false)
+  ///         nothing; an envelope within one cell), over_limit (memory or 32-bit indices), interrupted
+  ///         (RunOptions::progress returned false)
   Field solve(const Cloud& cloud, const SolveOptions& options = {}, const RunOptions& run = {});
 
   /// The same from points in the memory of the workspace's device, which are not needed any more when it returns.

@@ -105,7 +105,8 @@ enum {
   PSK_STRUCT_FLUID_OPTIONS = 24,
   PSK_STRUCT_FLUID_REPORT = 25,
   PSK_STRUCT_DEPTH_SUGGESTION = 26,
-  PSK_STRUCT_COUNT = 26
+  PSK_STRUCT_SCALE_OPTIONS = 27,
+  PSK_STRUCT_COUNT = 27
 };
 
 /* Bytes of a struct in this library; 0 for a kind that it does not know. */
@@ -345,6 +346,19 @@ typedef struct psk_mesh_report {
 } psk_mesh_report;
 
 PSK_C_API psk_code psk_mesh_measure(const psk_mesh* mesh, int32_t threads, psk_mesh_report* report, psk_error* error);
+
+/* See ScaleOptions (scale.hpp). */
+typedef struct psk_scale_options {
+  size_t size;
+  int64_t max_memory_bytes; /* that the work may take, beside the process; 0: as much as it likes */
+  int32_t threads;          /* 0: all */
+} psk_scale_options;
+
+/* The same numbers, to the last bit, as psk_mesh_measure() of the mesh in a file, which is read in parts where memory
+   does not hold it. Fails with PSK_INVALID_INPUT as psk_mesh_read(), and with PSK_OVER_LIMIT where the limit is too
+   small or the file cannot be read in parts (scale.hpp). */
+PSK_C_API psk_code psk_measure_file(const char* path, const psk_scale_options* options, psk_mesh_report* report,
+                                    psk_error* error);
 /* Pairs of triangles that meet elsewhere than in what they share; `touching` of them only in points of their borders. */
 PSK_C_API psk_code psk_mesh_self_intersections(const psk_mesh* mesh, int32_t threads, int64_t* pairs, int64_t* touching,
                                                psk_error* error);
@@ -796,7 +810,8 @@ PSK_C_API psk_format psk_format_get(int64_t index);
            : PSK_STRUCT_BOOLEAN_REPORT, psk_fluid_options   \
            : PSK_STRUCT_FLUID_OPTIONS, psk_fluid_report     \
            : PSK_STRUCT_FLUID_REPORT, psk_depth_suggestion  \
-           : PSK_STRUCT_DEPTH_SUGGESTION)
+           : PSK_STRUCT_DEPTH_SUGGESTION, psk_scale_options \
+           : PSK_STRUCT_SCALE_OPTIONS)
 /* With C11 the struct's type says its kind; C99 names it: PSK_INIT_AS(PSK_STRUCT_OPTIONS, options). */
 #define PSK_INIT(variable) PSK_INIT_AS(PSK_KIND_OF(variable), variable)
 #endif

@@ -40,7 +40,8 @@ PSK_STRUCT_BOOLEAN_REPORT = 23
 PSK_STRUCT_FLUID_OPTIONS = 24
 PSK_STRUCT_FLUID_REPORT = 25
 PSK_STRUCT_DEPTH_SUGGESTION = 26
-PSK_STRUCT_COUNT = 26
+PSK_STRUCT_SCALE_OPTIONS = 27
+PSK_STRUCT_COUNT = 27
 PSK_INT8 = 0
 PSK_UINT8 = 1
 PSK_INT16 = 2
@@ -220,6 +221,14 @@ class psk_mesh_report(Structure):
         ("manifold", c_int32),
         ("oriented", c_int32),
         ("watertight", c_int32),
+    )
+
+
+class psk_scale_options(Structure):
+    _fields_ = (
+        ("size", c_size_t),
+        ("max_memory_bytes", c_int64),
+        ("threads", c_int32),
     )
 
 
@@ -682,6 +691,7 @@ FUNCTIONS = {
     "psk_mesh_cloud": (c_int32, (c_void_p, POINTER(c_void_p), POINTER(psk_error))),
     "psk_mesh_add_normals": (c_int32, (c_void_p, POINTER(psk_error))),
     "psk_mesh_measure": (c_int32, (c_void_p, c_int32, POINTER(psk_mesh_report), POINTER(psk_error))),
+    "psk_measure_file": (c_int32, (c_char_p, POINTER(psk_scale_options), POINTER(psk_mesh_report), POINTER(psk_error))),
     "psk_mesh_self_intersections": (c_int32, (c_void_p, c_int32, POINTER(c_int64), POINTER(c_int64), POINTER(psk_error))),
     "psk_mesh_components": (c_int32, (c_void_p, c_int32, POINTER(c_int32), POINTER(c_int64), POINTER(psk_error))),
     "psk_reconstructor_create": (c_int32, (c_void_p, POINTER(c_void_p), POINTER(psk_error))),
@@ -763,4 +773,5 @@ KINDS = {
     psk_fluid_options: PSK_STRUCT_FLUID_OPTIONS,
     psk_fluid_report: PSK_STRUCT_FLUID_REPORT,
     psk_depth_suggestion: PSK_STRUCT_DEPTH_SUGGESTION,
+    psk_scale_options: PSK_STRUCT_SCALE_OPTIONS,
 }

@@ -9,13 +9,14 @@ import numpy as np
 
 from . import _c
 from ._arrays import NumpyArray
-from ._library import Handle, call, make, struct
+from ._library import Handle, call, encoded, make, struct
 from ._options import Filled, as_dict, choice, normal_options, render_options, run_options
 from ._progress import Progress, Watch
 from ._workspaces import workspace_for
 from .clouds import Cloud, cloud_of
-from .errors import PointskinWarning
-from .meshes import Mesh
+from .errors import PointskinWarning, UsageError
+from .files import Path
+from .meshes import Mesh, measures_of
 from .pictures import Image, pair
 from .reconstruction import EXTRACT, SOLVE, Device, _named
 
@@ -66,14 +67,25 @@ def distances(surface: Surface, reference: Surface, *, with_sign: bool = False, 
     return found
 
 
-def measure(mesh: Mesh, threads: int = 0) -> Dict[str, Any]:
-    """Counts and measures of a mesh; see Mesh.measure()."""
-    return mesh.measure(threads)
+def measure(mesh: Union[Mesh, Path], threads: int = 0, *, max_memory: int = 0) -> Dict[str, Any]:
+    """Counts and measures of a mesh, or of the mesh in a file; see Mesh.measure().
+
+    max_memory: bytes that measuring a file may take, 0: no limit. Where the limit does not hold the mesh, a binary PLY file of
+    triangles is read in parts: the same numbers, to the last bit. Raises InvalidInputError, OverLimitError (which says how much
+    would do), UsageError for a limit with a mesh that is in memory already. O(t log t) and readings of the file."""
+    if isinstance(mesh, Mesh):
+        if max_memory:
+            raise UsageError("max_memory is for a mesh in a file; this one is in memory already")
+        return mesh.measure(threads)
+    report = struct(_c.psk_mesh_report)
+    options = Filled(_c.psk_scale_options).set({"max_memory_bytes": max_memory, "threads": threads}, "measure")
+    call("psk_measure_file", encoded(mesh), options, ctypes.byref(report))
+    return measures_of(report)
 
 
-def check(mesh: Mesh, threads: int = 0) -> bool:
-    """True if the mesh is watertight: closed, 2-manifold, oriented and not inside out."""
-    return bool(mesh.measure(threads)["watertight"])
+def check(mesh: Union[Mesh, Path], threads: int = 0, *, max_memory: int = 0) -> bool:
+    """True if the mesh, or that in a file, is watertight: closed, 2-manifold, oriented and not inside out; see measure()."""
+    return bool(measure(mesh, threads, max_memory=max_memory)["watertight"])
 
 
 class _ProblemsHandle(Handle):

@@ -21,6 +21,13 @@ Report = Union[Dict[str, Any], Callable[[], Dict[str, Any]]]
 Array = Union[NumpyArray, DeviceArray]
 
 
+def measures_of(report: _c.psk_mesh_report) -> Dict[str, Any]:
+    """What Mesh.measure() returns."""
+    found = as_dict(report)
+    found.update({name: bool(found[name]) for name in ("closed", "manifold", "oriented", "watertight")})
+    return found
+
+
 class MeshHandle(Handle):
     """A mesh, and the workspace whose memory it is in, if it is on a GPU."""
 
@@ -172,9 +179,7 @@ class Mesh:
         report = struct(_c.psk_mesh_report)
         with self._busy():
             call("psk_mesh_measure", self.handle, threads, ctypes.byref(report))
-        found = as_dict(report)
-        found.update({name: bool(found[name]) for name in ("closed", "manifold", "oriented", "watertight")})
-        return found
+        return measures_of(report)
 
     @property
     def is_watertight(self) -> bool:

@@ -171,6 +171,12 @@ void set_defaults(psk_fluid_options& options) {
   options.attributes = from.attributes;
 }
 
+void set_defaults(psk_scale_options& options) {
+  const ScaleOptions from;
+  options.max_memory_bytes = from.max_memory_bytes;
+  options.threads = from.threads;
+}
+
 }  // namespace pointskin::c
 
 size_t psk_struct_size(int32_t kind) {

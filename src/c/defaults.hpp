@@ -23,6 +23,7 @@ void set_defaults(psk_handle& handle);
 void set_defaults(psk_lattice& lattice);
 void set_defaults(psk_boolean_options& options);
 void set_defaults(psk_fluid_options& options);
+void set_defaults(psk_scale_options& options);
 
 /// Reports and arrays begin as zeros.
 template <class T>
@@ -109,6 +110,9 @@ bool visit_struct(int kind, const F& f) {
       return true;
     case PSK_STRUCT_DEPTH_SUGGESTION:
       f(psk_depth_suggestion{});
+      return true;
+    case PSK_STRUCT_SCALE_OPTIONS:
+      f(psk_scale_options{});
       return true;
     default:
       return false;

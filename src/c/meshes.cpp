@@ -1,5 +1,6 @@
 #include <pointskin/formats.hpp>
 #include <pointskin/merge.hpp>
+#include <pointskin/scale.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -35,6 +36,28 @@ Mesh& host_mesh(psk_mesh* mesh) {
   auto* host = std::get_if<Mesh>(&required(mesh, "mesh").mesh);
   if (host == nullptr) throw Error(ErrorCode::usage, "the mesh is on a device; take psk_mesh_to_host() first");
   return *host;
+}
+
+psk_mesh_report report_of(const MeshReport& from) {
+  auto to = defaults<psk_mesh_report>();
+  to.vertices = from.vertices;
+  to.used_vertices = from.used_vertices;
+  to.triangles = from.triangles;
+  to.edges = from.edges;
+  to.boundary_edges = from.boundary_edges;
+  to.non_manifold_edges = from.non_manifold_edges;
+  to.misoriented_edges = from.misoriented_edges;
+  to.non_manifold_vertices = from.non_manifold_vertices;
+  to.degenerate_triangles = from.degenerate_triangles;
+  to.components = from.components;
+  to.euler = from.euler;
+  to.volume = from.volume;
+  to.area = from.area;
+  to.closed = from.closed() ? 1 : 0;
+  to.manifold = from.manifold() ? 1 : 0;
+  to.oriented = from.oriented() ? 1 : 0;
+  to.watertight = from.watertight() ? 1 : 0;
+  return to;
 }
 
 }  // namespace
@@ -150,27 +173,15 @@ psk_code psk_mesh_add_normals(psk_mesh* mesh, psk_error* error) {
 }
 
 psk_code psk_mesh_measure(const psk_mesh* mesh, int32_t threads, psk_mesh_report* report, psk_error* error) {
+  return guarded(error, [&] { give(report_of(measure(*HostMesh(mesh), threads)), &required(report, "report")); });
+}
+
+psk_code psk_measure_file(const char* path, const psk_scale_options* options, psk_mesh_report* report,
+                          psk_error* error) {
   return guarded(error, [&] {
-    const MeshReport from = measure(*HostMesh(mesh), threads);
-    auto to = defaults<psk_mesh_report>();
-    to.vertices = from.vertices;
-    to.used_vertices = from.used_vertices;
-    to.triangles = from.triangles;
-    to.edges = from.edges;
-    to.boundary_edges = from.boundary_edges;
-    to.non_manifold_edges = from.non_manifold_edges;
-    to.misoriented_edges = from.misoriented_edges;
-    to.non_manifold_vertices = from.non_manifold_vertices;
-    to.degenerate_triangles = from.degenerate_triangles;
-    to.components = from.components;
-    to.euler = from.euler;
-    to.volume = from.volume;
-    to.area = from.area;
-    to.closed = from.closed() ? 1 : 0;
-    to.manifold = from.manifold() ? 1 : 0;
-    to.oriented = from.oriented() ? 1 : 0;
-    to.watertight = from.watertight() ? 1 : 0;
-    give(to, &required(report, "report"));
+    const psk_scale_options given = known(options);
+    give(report_of(measure_file(&required(path, "path"), {given.max_memory_bytes, given.threads})),
+         &required(report, "report"));
   });
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -274,6 +275,36 @@ TEST(CInterface, AReportWritesNoMoreThanItsCallerHas) {
   old.size = 0;
   EXPECT_EQ(psk_mesh_measure(mesh, 0, reinterpret_cast<psk_mesh_report*>(&old), nullptr), PSK_USAGE);
   psk_mesh_free(mesh);
+}
+
+TEST(CInterface, AFileIsMeasuredInPartsWhereMemoryIsLimited) {
+  Session session;
+  const std::vector<float> xyz = sphere(3000);
+  psk_mesh* mesh = session.mesh(points_of(xyz), options_of(7));
+  const std::string path = testing::TempDir() + "pointskin_measured.ply";
+  ASSERT_EQ(psk_mesh_write(mesh, path.c_str(), nullptr, &session.error), PSK_OK) << session.error.message;
+  psk_mesh_report whole, parts;
+  psk_init(PSK_STRUCT_MESH_REPORT, &whole, sizeof(whole), nullptr);
+  psk_init(PSK_STRUCT_MESH_REPORT, &parts, sizeof(parts), nullptr);
+  ASSERT_EQ(psk_mesh_measure(mesh, 0, &whole, nullptr), PSK_OK);
+  psk_mesh_free(mesh);
+  EXPECT_TRUE(whole.watertight);
+  ASSERT_EQ(psk_measure_file(path.c_str(), nullptr, &parts, nullptr), PSK_OK);
+  EXPECT_EQ(std::memcmp(&parts, &whole, sizeof(whole)), 0);
+
+  psk_scale_options options;
+  psk_init(PSK_STRUCT_SCALE_OPTIONS, &options, sizeof(options), nullptr);
+  EXPECT_EQ(options.max_memory_bytes, 0);
+  options.max_memory_bytes = 1;
+  EXPECT_EQ(psk_measure_file(path.c_str(), &options, &parts, &session.error), PSK_OVER_LIMIT);
+  options.max_memory_bytes = 1'500'000;  // a third of what the whole takes
+  options.threads = 1;
+  ASSERT_EQ(psk_measure_file(path.c_str(), &options, &parts, &session.error), PSK_OK) << session.error.message;
+  EXPECT_EQ(std::memcmp(&parts, &whole, sizeof(whole)), 0);
+  EXPECT_EQ(psk_measure_file(nullptr, &options, &parts, nullptr), PSK_USAGE);
+  EXPECT_EQ(psk_measure_file(path.c_str(), &options, nullptr, nullptr), PSK_USAGE);
+  std::remove(path.c_str());
+  EXPECT_EQ(psk_measure_file(path.c_str(), &options, &parts, nullptr), PSK_INVALID_INPUT);
 }
 
 TEST(CInterface, ACallerOfANewerStructIsRefusedWhereItAsksForMore) {

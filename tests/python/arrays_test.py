@@ -1,6 +1,8 @@
 """Arrays of any type, strides and library come in, and ours go out, without copies where that is possible."""
 import array
 import gc
+import os
+import re
 
 from common import Case, bytes_of, has, np, ps, sphere, unittest
 
@@ -154,6 +156,27 @@ class Outputs(Case):
         self.assertTrue(ps.check(again))
         with self.assertRaisesRegex(ps.InvalidInputError, "names vertex"):
             ps.Mesh(self.mesh.vertices, self.mesh.faces + 1)
+
+    def test_files_are_measured_in_parts_where_memory_is_limited(self):
+        path, mesh = self.file("mesh.ply"), ps.reconstruct(*sphere(20000), depth=7)
+        mesh.save(path)
+        expected = mesh.measure()
+        self.assertEqual(ps.measure(path), expected)
+        limit, found = 1, None
+        while found is None:  # what each error says would do is more than before
+            try:
+                found = ps.measure(path, 1, max_memory=limit)
+            except ps.OverLimitError as refused:
+                more = int(re.search(r"(\d+) bytes", str(refused))[1])
+                self.assertGreater(more, limit)
+                limit = more
+        self.assertEqual(found, expected)
+        self.assertLess(limit, os.path.getsize(path))
+        self.assertTrue(ps.check(path, max_memory=limit))
+        with self.assertRaisesRegex(ps.UsageError, "in memory already"):
+            ps.check(mesh, max_memory=limit)
+        with self.assertRaises(ps.InvalidInputError):
+            ps.measure(self.file("none.ply"))
 
     def test_numpy_takes_them_by_dlpack(self):
         taken = np.from_dlpack(self.mesh.vertices)

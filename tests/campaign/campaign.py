@@ -42,8 +42,9 @@ def has_gpu(program):
 class Runner:
     """Runs cases, each in a folder of its own below a temporary one."""
 
-    def __init__(self, program, seconds, gpu):
-        self.program, self.seconds, self.gpu = str(pathlib.Path(program).resolve()), seconds, gpu
+    def __init__(self, options):
+        self.program, self.seconds, self.gpu = str(pathlib.Path(options.program).resolve()), options.seconds, options.gpu
+        self.sanitized = options.sanitized
         self.root = pathlib.Path(tempfile.mkdtemp(prefix="pointskin-campaign-"))
         self.launcher = subprocess.Popen([sys.executable, "-S", "-E", str(HERE / "launcher.py")], text=True,
                                          stdin=subprocess.PIPE, stdout=subprocess.PIPE)
@@ -93,7 +94,7 @@ def named(case, name):
                for out in case.outputs() + (["points.ply"] if case.command() == "convert" else []))
 
 
-def judge_run(case, result):
+def judge_run(case, result, sanitized):
     """Exit code, messages, files and memory; then each file by itself."""
     code, made = result["code"], new_files(case, result)
     if result["late"]:
@@ -112,7 +113,7 @@ def judge_run(case, result):
         wrong.append("another number of frames was written than asked for")
     if case.has("--dry-run") and made:
         wrong.append("a dry run has written files")
-    wrong += judge_memory(case, result)
+    wrong += [] if sanitized else judge_memory(case, result)
     for name, data in made.items():
         wrong += [f"{name}: {what}" for what in judge_file(case, name, data, result["err"])]
     return wrong + judge_answer(case, result)
@@ -286,7 +287,7 @@ def judge_again(case, runner, first):
 def judge_case(case, runner):
     # What a process may take is measured on the CPU: a driver takes more than small limits allow.
     first = runner.run(case.words() + on("cpu" if case.has("--max-memory") else "cuda", case, runner), case.inputs)
-    wrong = judge_run(case, first)
+    wrong = judge_run(case, first, runner.sanitized)
     return wrong if wrong or first["code"] == 2 else judge_again(case, runner, first)
 
 
@@ -348,7 +349,7 @@ class Campaign:
             return None if past else self.next - 1
 
     def work(self):
-        runner = Runner(self.options.program, self.options.seconds, self.options.gpu)
+        runner = Runner(self.options)
         try:
             while (number := self.take()) is not None:
                 case = cases.random_case(self.options.seed, number)
@@ -385,7 +386,7 @@ class Campaign:
 
 
 def run_regressions(options, paths):
-    runner, failed = Runner(options.program, options.seconds, options.gpu), []
+    runner, failed = Runner(options), []
     for path in paths:
         case = cases.Case.from_json(pathlib.Path(path).read_text())
         wrong = judge_case(case, runner)
@@ -415,6 +416,8 @@ def main():
     parser.add_argument("--cases", type=int, default=0, help="at most so many")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--seconds", type=float, default=120, help="time limit of one run")
+    parser.add_argument("--sanitized", action="store_true",
+                        help="the program is built with a sanitizer, whose memory counts as the program's: memory is not judged")
     parser.add_argument("--shrink-seconds", type=float, default=60)
     parser.add_argument("--no-shrink", action="store_true")
     parser.add_argument("--keep", default=str(REGRESSIONS), help="folder for cases that fail")

@@ -1,4 +1,5 @@
-"""Makes the seeds of fuzz_read_cloud and fuzz_read_mesh: a small file of every format, behind the byte that picks it.
+"""Makes the seeds of fuzz_read_cloud and fuzz_read_mesh: a small file of every format, behind the byte that picks it. Those of
+fuzz_mesh_parts are the PLY files alone.
 
     POINTSKIN_PROGRAM=build/bin/pointskin python3 tests/fuzz/make_seeds.py tests/fuzz/corpus
 
@@ -8,6 +9,7 @@ import gzip
 import os
 import pathlib
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -16,6 +18,10 @@ import numpy as np
 
 PROGRAM = os.environ.get("POINTSKIN_PROGRAM", "build/bin/pointskin")
 FILES = pathlib.Path(__file__).resolve().parents[1] / "data" / "formats"
+BIG_PLY = (b"ply\nformat binary_big_endian 1.0\nelement mark 1\nproperty uchar m\nelement vertex 4\nproperty double z\nproperty ushort x\n"
+           b"property float y\nelement face 4\nproperty uchar kind\nproperty list uint ushort vertex_index\nproperty float w\nend_header\n"
+           + b"m" + b"".join(struct.pack(">dHf", z, x, y) for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))
+           + b"".join(struct.pack(">BIHHHf", 1, 3, *t, 0.5) for t in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))))
 MESH = """ply
 format ascii 1.0
 element vertex 4
@@ -109,6 +115,7 @@ def make(folder):
         subprocess.run([PROGRAM, "convert", str(folder / "mesh.ply"), str(folder / name), "-q"], check=True)
     for name, option in (("small.glb", "--compress"), ("double.ply", "--double")):
         subprocess.run([PROGRAM, "convert", str(folder / "mesh.ply"), str(folder / name), option, "-q"], check=True)
+    (folder / "big.ply").write_bytes(BIG_PLY)
     (folder / "mesh.gltf").write_text('{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],'
                                       '"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":1}],'
                                       '"bufferViews":[{"buffer":0,"byteLength":12}],"buffers":[{"byteLength":12,'
@@ -145,6 +152,9 @@ def main():
                 seed = bytes([picks[file.suffix]]) + file.read_bytes()
                 if len(seed) <= 8192:
                     (out / program / file.name.replace(".", "_")).write_bytes(seed)
+        (out / "fuzz_mesh_parts").mkdir(parents=True, exist_ok=True)
+        for file in sorted(folder.glob("*.ply")):
+            (out / "fuzz_mesh_parts" / file.name.replace(".", "_")).write_bytes(file.read_bytes())
 
 
 if __name__ == "__main__":

@@ -57,6 +57,7 @@ std::unique_ptr<PlyMeshParts> PlyMeshParts::open(const std::string& path) {
     if (!bytes) return nullptr;
     at += *bytes;
   }
+  if (parts->vertex_.count == 0) return nullptr;
   return parts;
 }
 

@@ -23,8 +23,8 @@ class PlyMeshParts {
  public:
   using Bytes = std::vector<char>;
 
-  /// @returns null if the file cannot be read in parts: no regular file, no binary PLY, no vertices, some with lists, or faces
-  ///          whose number of bytes shows that some are no triangles
+  /// @returns null if the file cannot be read in parts: no regular file, no binary PLY, no vertices, some with lists, or
+  ///          faces whose number of bytes shows that some are no triangles
   /// @throws Error invalid_input if it cannot be read, or its header is garbled
   static std::unique_ptr<PlyMeshParts> open(const std::string& path);
 

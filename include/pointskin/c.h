@@ -356,7 +356,8 @@ typedef struct psk_scale_options {
 
 /* The same numbers, to the last bit, as psk_mesh_measure() of the mesh in a file, which is read in parts where memory
    does not hold it. Fails with PSK_INVALID_INPUT as psk_mesh_read(), and with PSK_OVER_LIMIT where the limit is too
-   small or the file cannot be read in parts (scale.hpp). */
+   small or the file cannot be read in parts (scale.hpp). O(t log t), and two readings of the triangles for each range of
+   vertices that memory holds. */
 PSK_C_API psk_code psk_measure_file(const char* path, const psk_scale_options* options, psk_mesh_report* report,
                                     psk_error* error);
 /* Pairs of triangles that meet elsewhere than in what they share; `touching` of them only in points of their borders. */

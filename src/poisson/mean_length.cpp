@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "exec/exact_sum.hpp"
 #include "exec/this_space.hpp"
 
 namespace pointskin::poisson {
@@ -15,15 +16,14 @@ struct LengthOf {
   }
 };
 
-struct Add {
-  PSK_HD double operator()(double a, double b) const { return a + b; }
-};
+/// Normals are mostly of about length 1.
+constexpr int kFraction = 64;
 
 }  // namespace
 
 template <exec::Space Exec>
 double mean_length(Exec& ex, ArrayView<const Vec3f> normals) {
-  return exec::reduce<double>(ex, "density.confidence", normals.size, LengthOf{normals}, Add{}) /
+  return exec::exact_sum(ex, "density.confidence", normals.size, LengthOf{normals}, kFraction) /
          static_cast<double>(normals.size);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "exec/exact_sum.hpp"
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
 #include "octree/placed.hpp"
@@ -41,6 +42,10 @@ struct ProlongWithDetail {
     prolong.other[n] = value;
   }
 };
+
+/// Units of exact sums, 2^-these: of squared residuals, and of values of the field, which are mostly about 0.5.
+constexpr int kResidualFraction = 90;
+constexpr int kValueFraction = 64;
 
 /// Unknowns that are not solved for are 0; other corners keep what was interpolated.
 struct HoldAtZero {
@@ -94,7 +99,8 @@ double lower_end(int iterations) {
 
 template <exec::Space Exec>
 double residual_norm(Exec& ex, const LevelSystem& system, const float* u) {
-  return std::sqrt(exec::reduce<double>(ex, "solve.residual", system.level.bricks, SquaredResidual{system, u}, Plus{}));
+  return std::sqrt(
+      exec::exact_sum(ex, "solve.residual", system.level.bricks, SquaredResidual{system, u}, kResidualFraction));
 }
 
 /// Iterations one after another, from one array into the other and back.
@@ -143,9 +149,26 @@ struct SumOfValues {
   double sum = 0;
   std::int64_t count = 0;
 };
+struct SumInCell {
+  ArrayView<const SumOfValues> cells;
+  PSK_HD double operator()(std::int64_t cell) const { return cells[cell].sum; }
+};
+
+/// The same of many cells: exact.
+struct ExactSumOfValues {
+  exec::ExactSum sum;
+  std::int64_t count = 0;
+};
+struct ExactlyInCell {
+  ArrayView<const SumOfValues> cells;
+  PSK_HD ExactSumOfValues operator()(std::int64_t cell) const {
+    return {exec::exact_term(cells[cell].sum, kValueFraction), cells[cell].count};
+  }
+};
 struct AddSums {
-  PSK_HD SumOfValues operator()(const SumOfValues& a, const SumOfValues& b) const {
-    return {a.sum + b.sum, a.count + b.count};
+  static constexpr bool kAnyOrder = true;
+  PSK_HD ExactSumOfValues operator()(const ExactSumOfValues& a, const ExactSumOfValues& b) const {
+    return {exec::AddExactly{}(a.sum, b.sum), a.count + b.count};
   }
 };
 /// The samples of one finest cell that stand for some area: all samples lie in finest cells.
@@ -283,9 +306,12 @@ double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const
   const octree::LevelView level = tree.view().finest();
   auto cells = exec::make_buffer<SumOfValues>(ex, level.cells());
   for_each(ex, "solve.isovalue", level.cells(), ValuesInCell{level, u.data + level.first_node, samples, cells.view()});
-  const auto total = exec::reduce<SumOfValues>(ex, "solve.isovalue", cells.size(),
-                                               exec::LoadValue<SumOfValues>{cells.cview()}, AddSums{});
-  return total.sum / static_cast<double>(total.count);
+  const auto total =
+      exec::reduce<ExactSumOfValues>(ex, "solve.isovalue", cells.size(), ExactlyInCell{cells.cview()}, AddSums{});
+  const double sum = total.sum.reliable(cells.size())
+                         ? total.sum.value(kValueFraction)
+                         : exec::exact_sum(ex, "solve.isovalue", cells.size(), SumInCell{cells.cview()});
+  return sum / static_cast<double>(total.count);
 }
 
 PSK_INSTANTIATE(solve_poisson);

@@ -28,15 +28,15 @@ Surface trim_surface(Exec& ex, Surface surface, ArrayView<const float> values, c
     return exec::reduce<Extent>(ex, "trim.measure", triangles, ExtentOf{mesh}, AddExtents{});
   };
   Extent extent = measure();
-  const auto least = area_units(options.island_ratio * extent.area);
+  const auto least = area_units(options.island_ratio * extent.area.value(kAreaFraction));
   if (least > 0) {
     const SmallPieces small = clear_small_pieces(ex, mesh, least, kept.view());
     counts.islands_removed = small.kept;
     counts.holes_filled = small.cut;
     if (small.kept > 0 || small.cut > 0) extent = measure();
   }
-  counts.area_before = extent.area;
-  counts.area_kept = extent.kept_area;
+  counts.area_before = extent.area.value(kAreaFraction);
+  counts.area_kept = extent.kept_area.value(kAreaFraction);
   counts.triangles_before = triangles;
   counts.triangles_removed = triangles - extent.whole - extent.split;
   counts.triangles_split = extent.split;

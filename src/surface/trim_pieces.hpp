@@ -12,6 +12,7 @@
 
 #include "exec/algorithms.hpp"
 #include "exec/disjoint_sets.hpp"
+#include "exec/exact_sum.hpp"
 #include "surface/edge_vertex.hpp"
 #include "surface/trim.hpp"
 
@@ -80,25 +81,30 @@ struct IsKept {
   PSK_HD void operator()(std::int64_t v) const { kept[v] = values[v] <= limit ? 1 : 0; }
 };
 
+/// Units of exact sums of areas, 2^-this. A triangle in the unit cube is far below the 2^5 that a term may have.
+inline constexpr int kAreaFraction = 90;
+
 /// Areas and numbers of triangles by what becomes of them.
 struct Extent {
-  double area = 0, kept_area = 0;
+  exec::ExactSum area, kept_area;     // in units of 2^-kAreaFraction
   std::int64_t whole = 0, split = 0;  // triangles
 };
 struct ExtentOf {
   SidesView mesh;
   PSK_HD Extent operator()(std::int64_t t) const {
     const double area = mesh.area(t);
+    const exec::ExactSum all = exec::exact_term(area, kAreaFraction);
     const int corners = mesh.kept_corners(t);
-    if (corners == 0) return {area, 0, 0, 0};
-    if (corners == 3) return {area, area, 1, 0};
+    if (corners == 0) return {all, {}, 0, 0};
+    if (corners == 3) return {all, all, 1, 0};
     const double corner = mesh.corner_share(mesh.split(t));
-    return {area, area * (corners == 1 ? corner : 1 - corner), 0, 1};
+    return {all, exec::exact_term(area * (corners == 1 ? corner : 1 - corner), kAreaFraction), 0, 1};
   }
 };
 struct AddExtents {
   PSK_HD Extent operator()(const Extent& a, const Extent& b) const {
-    return {a.area + b.area, a.kept_area + b.kept_area, a.whole + b.whole, a.split + b.split};
+    const exec::AddExactly add;
+    return {add(a.area, b.area), add(a.kept_area, b.kept_area), a.whole + b.whole, a.split + b.split};
   }
 };
 

@@ -5,12 +5,14 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "exec/disjoint_sets.hpp"
+#include "exec/exact_sum.hpp"
 #include "support/spaces.hpp"
 
 namespace pointskin::test {
@@ -63,6 +65,18 @@ struct HashOf {
 struct AddExactly {
   static constexpr bool kAnyOrder = true;
   PSK_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+
+/// Of both signs, from 2^-40 to 2^15 in size, all of them whole numbers of 2^-63.
+struct MixedDouble {
+  PSK_HD double operator()(std::int64_t i) const {
+    const int exponent = static_cast<int>(hash(static_cast<std::uint64_t>(i) + 1) % 56) - 40;
+    return std::ldexp(static_cast<double>(RandomFloat{}(i)), exponent);
+  }
+};
+struct Constant {
+  double value;
+  PSK_HD double operator()(std::int64_t /*i*/) const { return value; }
 };
 
 /// out[i] = the sum of 8 random floats, 8 i and on.
@@ -324,6 +338,22 @@ TYPED_TEST_P(Primitives, ReduceInAnyOrderWhatIsExact) {
   }
 }
 
+TYPED_TEST_P(Primitives, SumExactlyWhateverTheOrder) {
+  for (const std::int64_t n : kSizes) {
+    if (n == 0) continue;
+    SCOPED_TRACE(n);
+    exec::ExactSum backwards;
+    for (std::int64_t i = n - 1; i >= 0; --i)
+      backwards = exec::AddExactly{}(backwards, exec::exact_term(MixedDouble{}(i), 64));
+    EXPECT_EQ(exec::exact_sum(this->space(), "test", n, MixedDouble{}, 64), backwards.value(64));
+  }
+}
+
+TYPED_TEST_P(Primitives, SumExactlyWhatIsTooLargeForTheUnit) {
+  EXPECT_EQ(exec::exact_sum(this->space(), "test", 1 << 20, Constant{0x1p300}, 64), 0x1p320);
+  EXPECT_EQ(exec::exact_sum(this->space(), "test", 1 << 20, Constant{0x1p-300}, 64), 0x1p-280);
+}
+
 TYPED_TEST_P(Primitives, FindWhereRunsStart) {
   auto& ex = this->space();
   for (const std::int64_t n : kSizes) {
@@ -535,10 +565,11 @@ REGISTER_TYPED_TEST_SUITE_P(Primitives, CallEveryIndexOnce, CallEveryIndexOfLong
                             SortPairsByAllBits, SortPairsStably, SortPairsByTheirLowestBitsAlone,
                             SortPairsWhoseKeysAgreeInSomeDigits, SortKeys, SortKeysByTheirLowestBitsAlone,
                             CopyToTheSpaceWithinItAndBack, FillGatherAndCount, ReduceByTheDocumentedTree,
-                            ReduceInAnyOrderWhatIsExact, FindWhereRunsStart, SortUniqueLeavesEveryKeyOnce,
-                            DisjointSetsEndAtTheirSmallestMembers, AddToSharedWordsWithoutLosingAny,
-                            SweepRoundsOfTheirOwnSizesOneAfterAnother, ReadWhatTheWorkBeforeHasWritten,
-                            PoolsCountWhatIsHeldAndItsPeak, MoreMemoryThanThereIsIsOverTheLimit,
-                            MoreBytesThan64BitsCountIsOverTheLimit, BuffersMoveTheirMemoryAndKeepTheirPool);
+                            ReduceInAnyOrderWhatIsExact, SumExactlyWhateverTheOrder, SumExactlyWhatIsTooLargeForTheUnit,
+                            FindWhereRunsStart, SortUniqueLeavesEveryKeyOnce, DisjointSetsEndAtTheirSmallestMembers,
+                            AddToSharedWordsWithoutLosingAny, SweepRoundsOfTheirOwnSizesOneAfterAnother,
+                            ReadWhatTheWorkBeforeHasWritten, PoolsCountWhatIsHeldAndItsPeak,
+                            MoreMemoryThanThereIsIsOverTheLimit, MoreBytesThan64BitsCountIsOverTheLimit,
+                            BuffersMoveTheirMemoryAndKeepTheirPool);
 
 }  // namespace pointskin::test

@@ -8,7 +8,8 @@
 
 namespace pointskin::poisson {
 
-/// Shape (n), n > 0. O(n), one wait. The same bits on every device.
+/// Shape (n), n > 0. O(n); one wait, three where lengths are far from 1. NaN if one is not finite.
+/// The same bits on every device and in any order.
 template <exec::Space Exec>
 double mean_length(Exec& ex, ArrayView<const Vec3f> normals);
 

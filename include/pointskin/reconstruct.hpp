@@ -120,7 +120,8 @@ struct ExtractOptions {
   /// true: the mesh carries every attribute of the cloud in its type (docs/algorithm.md, section 9). Labels (is_label)
   /// are those of the nearest point that has one, exactly; all else is interpolated at the vertices, smoothly extended
   /// over holes, and rounded in integers. A point whose value is missing or not finite does not count for that
-  /// attribute; with `confidence` the others count by their weight. An attribute whose name the mesh has itself (x, y,
+  /// attribute; with `confidence` the others count by their weight. An attribute that no point used has a value of is
+  /// left out. An attribute whose name the mesh has itself (x, y,
   /// z, nx, ny, nz, with `density` also density, with `weakness` that), or that came before, gets `input_` in front of
   /// it.
   bool attributes = false;

@@ -18,6 +18,7 @@ enum class WarningKind {
   far_from_points,     ///< much of the surface is far from all points
   coarse_depth,        ///< the points hold clearly more detail than the depth shows
   coarse_coordinates,  ///< the coordinates have too few digits for how far apart the points lie
+  attributes_missing,  ///< no point that is used has a value of an attribute, so the mesh is without it
 };
 
 /// "strays", "normals_disagree" and so on: the enumerator's own name.
@@ -29,7 +30,7 @@ struct Warning {
   WarningKind kind = WarningKind::strays;
   double share = 0;  ///< how much, in [0, 1]: of the points, of pairs of neighbours, of the surface's area; of the
                      ///< cells of the depth that the points hold, those that the depth cannot show; of the
-                     ///< points' spacing, a step of their coordinates; 0 for strays
+                     ///< points' spacing, a step of their coordinates; 0 for strays and attributes
   std::string text;
 };
 

@@ -33,6 +33,13 @@ void warn_of_strays(std::int64_t count, const std::vector<Vec3d>& farthest, std:
                                   count, at[0], at[1], at[2])});
 }
 
+void warn_of_attributes(const std::vector<std::string>& names, std::vector<Warning>& warnings) {
+  if (names.empty()) return;
+  warnings.push_back({WarningKind::attributes_missing, 0,
+                      fmt::format("no point that is used has a value of {}: the mesh is without {}",
+                                  fmt::join(names, ", "), names.size() == 1 ? "it" : "them")});
+}
+
 void warn_of_fit(const Findings& findings, const Cube& cube, std::vector<Warning>& warnings) {
   constexpr double kMost = 0.5;
   constexpr int kClearlyMore = 2;
@@ -174,9 +181,11 @@ const char* name_of(WarningKind kind) {
     case WarningKind::coarse_depth:
       return "coarse_depth";
     case WarningKind::coarse_coordinates:
+      return "coarse_coordinates";
+    case WarningKind::attributes_missing:
       break;
   }
-  return "coarse_coordinates";
+  return "attributes_missing";
 }
 
 }  // namespace pointskin

@@ -4,6 +4,7 @@
 #include <pointskin/reconstruct.hpp>
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "diagnose/verdict.hpp"
@@ -21,6 +22,9 @@ struct Cube {
 /// Points that were left out; nothing if none were.
 /// @param farthest  world units
 void warn_of_strays(std::int64_t count, const std::vector<Vec3d>& farthest, std::vector<Warning>& warnings);
+
+/// Attributes that no point has a value of; nothing if there are none.
+void warn_of_attributes(const std::vector<std::string>& names, std::vector<Warning>& warnings);
 
 /// What is said of the field of a run: points off the surface, and more detail than the depth shows.
 void warn_of_fit(const Findings& findings, const Cube& cube, std::vector<Warning>& warnings);

@@ -293,14 +293,6 @@ void pass(Exec& ex, const octree::OctreeView& tree, const AttributeSamples& samp
   for (int c = 0; c < kCount; ++c) take(channels[c].place, std::move(out[c]));
 }
 
-/// A channel for which no sample counts.
-template <exec::Space Exec>
-void take_nothing(Exec& ex, const Channel& channel, std::int64_t points, const TakeValues& take) {
-  exec::TypedBuffer out = exec::make_typed_buffer(ex, channel.type, points);
-  for_each(ex, "attributes.evaluate", points, exec::typed::FillNan{out.output()});
-  take(channel.place, std::move(out));
-}
-
 }  // namespace
 
 template <exec::Space Exec>
@@ -325,11 +317,6 @@ void interpolate(Exec& ex, const octree::OctreeData& tree, const AttributeSample
   const octree::OctreeView view = tree.view();
   for (std::size_t first = 0; first < channels.size();) {
     const Channel* channel = channels.data() + first;
-    if (channel->range.counted == 0) {
-      take_nothing(ex, *channel, points.size, take);
-      ++first;
-      continue;
-    }
     const std::size_t most = std::min(kAttributesAtOnce, channels.size() - first);
     std::size_t count = 1;
     while (count < most && count_alike(ex, channel[0], channel[count])) ++count;

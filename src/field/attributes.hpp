@@ -67,9 +67,10 @@ struct Label {
 
 /// Everything that is known of the samples' attributes.
 struct AttributeSamples {
-  std::vector<std::string> names;  ///< on the mesh
-  exec::Buffer<Vec3f> positions;   ///< (n) in the unit cube, in the octree's order
-  exec::Buffer<float> weights;     ///< (n) at least 0; (0): all count the same
+  std::vector<std::string> names;           ///< on the mesh
+  std::vector<std::string> without_values;  ///< of no sample; they are neither channels nor labels
+  exec::Buffer<Vec3f> positions;            ///< (n) in the unit cube, in the octree's order
+  exec::Buffer<float> weights;              ///< (n) at least 0; (0): all count the same
   std::vector<Channel> channels;
   std::vector<Label> labels;
 };
@@ -89,7 +90,7 @@ Channel make_channel(Exec& ex, std::size_t place, const TypedView& values, const
 /// Receives the place of an attribute and its (points) values, which it may keep.
 using TakeValues = std::function<void(std::size_t, exec::TypedBuffer)>;
 
-/// Interpolates every channel at `points` of the unit cube and hands it on, in the order of the channels.
+/// Interpolates every channel, of each of which a sample counts, at `points` of the unit cube and hands it on, in the order of the channels.
 ///
 /// With hats phi_c of level d, weights w_p and values a_p of the samples:
 ///   N_D[c] = sum_p w_p phi_c(p),             m_D[c] = sum_p w_p phi_c(p) a_p / N_D[c]
@@ -98,7 +99,7 @@ using TakeValues = std::function<void(std::size_t, exec::TypedBuffer)>;
 /// f_D at a point is one trilinear interpolation in its leaf: next to a coarser leaf no sample has a hat, so f_d is
 /// P f_(d-1) there and f is continuous. Every value is a mean of the samples' values with weights of at least 0: values
 /// stay in the range of the input, and an attribute that is the same everywhere comes back exactly. Values keep their
-/// type; integers are rounded. An attribute without samples that count is NaN everywhere, or 0 if it is an integer.
+/// type; integers are rounded.
 /// Up to kAttributesAtOnce neighbouring channels that miss the same samples share a pass, of 8 to 16 bytes a node and
 /// one value a point and channel. O(8 n + 27 nodes + points depth) a pass. Gathers in a fixed order: the same bits on
 /// every device.

@@ -49,6 +49,11 @@ class PSK_HIDDEN FieldImpl {
   /// What was counted of the samples and the field and, after extract_and_release, of the surface.
   [[nodiscard]] const diagnose::Counts& seen() const { return data_.seen; }
 
+  /// field::AttributeSamples::without_values.
+  [[nodiscard]] const std::vector<std::string>& attributes_without_values() const {
+    return data_.attributes.without_values;
+  }
+
   /// FieldData::core.
   [[nodiscard]] const std::optional<Bounds>& core() const { return data_.core; }
 

@@ -141,21 +141,28 @@ void require_finite(const Flaws& flaws) {
         std::to_string(flaws.not_finite) + " points have coordinates or normals that are not finite; leave them out");
 }
 
-/// The attributes in the order of the samples.
+/// The attributes in the order of the samples, but for those that no sample has a value of.
 /// @param order  index of the caller's point of every sample
 template <exec::Space Exec>
 field::AttributeSamples sort_attributes(Exec& ex, const PointBuffers& points, ArrayView<const std::int32_t> order) {
   field::AttributeSamples sorted;
   for (const AttributeBuffer& attribute : points.attributes) {
+    const TypedView values = attribute.values.view();
+    const bool is_label = attribute.is_label();
+    field::ValueRange range;
+    if (!is_label || values.missing != nullptr) {
+      range = field::find_range(ex, values, points.used.cview());
+      if (range.counted == 0) {
+        sorted.without_values.push_back(attribute.name);
+        continue;
+      }
+    }
     const std::size_t place = sorted.names.size();
     sorted.names.push_back(attribute.name);
-    const TypedView values = attribute.values.view();
-    if (attribute.is_label()) {
+    if (is_label)
       sorted.labels.push_back({place, exec::gather_typed(ex, values, order)});
-      continue;
-    }
-    const field::ValueRange range = field::find_range(ex, values, points.used.cview());
-    sorted.channels.push_back(field::make_channel(ex, place, values, range, order));
+    else
+      sorted.channels.push_back(field::make_channel(ex, place, values, range, order));
   }
   return sorted;
 }

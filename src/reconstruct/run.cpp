@@ -87,6 +87,7 @@ std::shared_ptr<FieldImpl> Run::solve(const Input& input, bool keep_all) {
     }
   }
   diagnose::warn_of_strays(report_.strays, report_.farthest_strays, report_.warnings);
+  if (options_.attributes) diagnose::warn_of_attributes(field->attributes_without_values(), report_.warnings);
   if (report_.normals)
     if (std::optional<Warning> doubts = warning_of_doubts(*report_.normals)) report_.warnings.push_back(*doubts);
   const diagnose::Findings findings = diagnose::findings_of(field->seen());

@@ -21,7 +21,6 @@ import ply
 
 HERE = pathlib.Path(__file__).resolve().parent
 REGRESSIONS = HERE / "regressions"
-FEW_POINTS = 8  # that may all be left out, and so may a fiftieth of all
 CODES = {0, 3, 4, 5, 6}  # of a run whose command line is right and whose outputs can be written
 UNITS = {"K": 2 ** 10, "M": 2 ** 20, "G": 2 ** 30}
 PROGRAM_ALONE = 32 * 2 ** 20  # with the driver of a GPU, before it has read anything
@@ -152,7 +151,7 @@ def judge_file(case, name, data, said):
         wrong = judge_points(case, found)
     # Points that a script adds have no values of the properties that only the others have.
     added = case.command() == "edit" and not name.startswith("mesh")
-    return wrong + ([] if added else judge.attributes(found, doubtful(case) | removed(case, found, said)))
+    return wrong + ([] if added else judge.attributes(found, doubtful(case, name.startswith("mesh"))))
 
 
 def judge_points(case, found):
@@ -180,36 +179,15 @@ def judge_oriented(given, found):
     return [f"{bad} normals are neither given nor of unit length"] if bad else []
 
 
-def count_usable(cloud):
-    """Points that are finite and have no normal, or one that a program may take for a direction."""
-    columns = [cloud.columns[n] for n in ("x", "y", "z", "nx", "ny", "nz") if n in cloud.columns]
-    return sum(all(map(math.isfinite, row)) and (len(row) < 6 or max(map(abs, row[3:])) > 1e-18) for row in zip(*columns))
+def doubtful(case, is_mesh):
+    """Properties that the input itself has with values that are not finite, and that what is written may have, too.
 
-
-def removed(case, mesh, said):
-    """Properties without a value at any vertex, where a script has removed as many points as had them, as it says (stderr)."""
-    if case.command() != "edit":
-        return set()
-    count = sum(map(int, re.findall(r"(\d+) removed", said)))
-    clouds = [ply.read(case.inputs[cloud]) for cloud in case.points]
-    have = {name: sum(count_usable(found) for found in clouds if name in found.columns) for name in mesh.columns}
-    return {name for name, column in mesh.columns.items() if 0 < have[name] <= count and not any(map(math.isfinite, column))}
-
-
-def doubtful(case):
-    """Properties that the input itself has with values that are not finite, under the names that a mesh gives them.
-
-    So has one that only some files have, and these only a few points that count: as strays they may be left out.
+    A mesh that is made of points has only finite ones.
     """
+    if is_mesh and case.command() not in ("fluid", "compare", "convert"):
+        return set()
     names = set()
-    clouds = [ply.read(case.inputs[cloud]) for cloud in case.points]
-    sources = len(clouds) + (case.command() == "edit")  # a script may replace all points by those of a shape
-    few = max(FEW_POINTS, sum(map(count_usable, clouds)) // 50)
-    for name in {n for found in clouds for n in found.columns}:
-        have = [count_usable(found) for found in clouds if name in found.columns]
-        if len(have) < sources and sum(have) <= few:
-            names |= {name, f"input_{name}"}
-    for found in clouds:
+    for found in (ply.read(case.inputs[cloud]) for cloud in case.points):
         bad = {n for n, column in found.columns.items() if not all(map(math.isfinite, column))}
         names |= bad | {f"input_{n}" for n in bad}
         if bad & {"x", "y", "z"} and case.command() in ("compare", "convert"):

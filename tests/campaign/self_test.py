@@ -19,37 +19,17 @@ def wrong(places=PLACES, triangles=TRIANGLES, closed=True):
 
 
 class WhatIsJudged(unittest.TestCase):
-    def test_attributes_of_few_points_may_be_left_out(self):
-        def cloud(name, count, normal=(0, 0, 1)):
-            columns = ["x", "y", "z", "nx", "ny", "nz", name]
-            return ply.write([[n, "float"] for n in columns], [(0, 0, 0, *normal, 1)] * count)
+    def test_meshes_made_of_points_have_finite_properties_only(self):
+        cloud = ply.write([[n, "float"] for n in ("x", "y", "z", "heat")], [(0, 0, 0, 1), (0, 0, 1, float("nan"))])
 
-        def doubtful(*clouds, command="reconstruct"):
-            inputs = {str(i): data for i, data in enumerate(clouds)}
-            return campaign.doubtful(types.SimpleNamespace(points=list(inputs), inputs=inputs, command=lambda: command))
-
-        self.assertEqual(doubtful(cloud("heat", 2), cloud("x2", 100)), {"heat", "input_heat"})
-        self.assertEqual(doubtful(cloud("heat", 90, (0, 0, 0)), cloud("x2", 100)), {"heat", "input_heat"})
-        self.assertEqual(doubtful(cloud("heat", 90), cloud("x2", 100)), set())
-        self.assertEqual(doubtful(cloud("heat", 2), cloud("heat", 100)), set())
-        self.assertEqual(doubtful(cloud("heat", 2)), set())
-        self.assertLessEqual({"heat", "input_heat"}, doubtful(cloud("heat", 2), command="edit"))
-        self.assertEqual(doubtful(cloud("heat", 90), command="edit"), set())
-
-    def test_a_property_ends_with_all_points_that_had_it(self):
-        nan = float("nan")
-
-        def removed(count, values, command="edit"):
-            columns = [[n, "float"] for n in ("x", "y", "z", "nx", "ny", "nz", "heat")]
-            cloud = ply.write(columns, [(0, 0, 0, 0, 0, 1, 1)] * 90)
+        def doubtful(command, is_mesh):
             case = types.SimpleNamespace(points=["a"], inputs={"a": cloud}, command=lambda: command)
-            mesh = types.SimpleNamespace(columns={"x": [0] * len(values), "heat": values})
-            return campaign.removed(case, mesh, f"0: erase: 0 points added, {count} removed; components 1 -> 1")
+            return campaign.doubtful(case, is_mesh)
 
-        self.assertEqual(removed(90, [nan, nan]), {"heat"})
-        self.assertEqual(removed(89, [nan, nan]), set())
-        self.assertEqual(removed(90, [nan, 1.0]), set())
-        self.assertEqual(removed(90, [nan, nan], command="reconstruct"), set())
+        for command in ("reconstruct", "edit", "deform", "boolean"):
+            self.assertEqual(doubtful(command, True), set())
+        for command, is_mesh in (("fluid", True), ("orient", False), ("convert", False)):
+            self.assertEqual(doubtful(command, is_mesh), {"heat", "input_heat"})
 
 
 class JudgeOfMeshes(unittest.TestCase):

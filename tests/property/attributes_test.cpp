@@ -150,6 +150,40 @@ TEST(KeptAttributes, AreThoseOfThePointsThatHaveThem) {  // missing values chang
     ASSERT_NEAR(mesh.attributes[0].values.at(i), mesh.vertices[i].x, 2 * 2.2 / 64);
 }
 
+TEST(KeptAttributes, ThatNoPointUsedHasAreLeftOutAndNamed) {
+  Cloud cloud = test::sphere_cloud(5'000, 18);
+  cloud.positions.push_back({100, 0, 0});  // a stray
+  cloud.normals.push_back({1, 0, 0});
+  const std::size_t n = cloud.positions.size();
+  const auto height = attribute(cloud, "height", [](const Vec3f& p) { return p.z; });
+  const auto classes = attribute(
+      cloud, "class", [](const Vec3f&) { return 3; }, AttributeType::int32);
+  AttributeValues of_stray = AttributeValues::missing(AttributeType::uint8, n - 1);
+  of_stray.append(std::vector<std::uint8_t>{7});
+  const AttributeValues infinite(std::vector<double>(n, std::numeric_limits<double>::infinity()));
+  cloud.attributes = {height, classes};
+  const Options options{{.depth = 6}, {.attributes = true}};
+  const test::Outcome with_both = test::run(cloud, options);
+  cloud.attributes = {{"infinite", infinite},
+                      height,
+                      {"label", AttributeValues::missing(AttributeType::int32, n)},
+                      classes,
+                      {"heat", AttributeValues::missing(AttributeType::uint8, n)},
+                      {"of_stray", of_stray}};
+  const test::Outcome with_all = test::run(cloud, options);
+  EXPECT_EQ(names_of(with_all.mesh), (std::vector<std::string>{"height", "class"}));
+  expect_same_bytes(with_both.mesh, with_all.mesh);
+  const auto named = [](const test::Outcome& outcome) {
+    std::string all;
+    for (const Warning& warning : outcome.report.warnings)
+      if (warning.kind == WarningKind::attributes_missing) all += warning.text;
+    return all;
+  };
+  EXPECT_EQ(named(with_both), "");
+  EXPECT_EQ(named(with_all),
+            "no point that is used has a value of infinite, label, heat, of_stray: the mesh is without them");
+}
+
 /// Points of a sphere without a cap, in two halves of different value: the step is a cell wide where there are points,
 /// and as wide as the hole is in its middle.
 TEST(KeptAttributes, GoOnSmoothlyIntoHoles) {

@@ -398,6 +398,27 @@ TEST(Attributes, HaveNoValueAtAddedPointsThatLackThem) {
   EXPECT_EQ(edited.attributes[1].values.as<std::uint8_t>().back(), 1);
 }
 
+TEST(Attributes, EndWithTheLastPointThatHasThem) {
+  Cloud cloud = test::sphere_cloud(5'000, 18, 0.2, {1, 0, 0});
+  test::append(cloud, test::sphere_cloud(5'000, 19, 0.2, {-1, 0, 0}));
+  AttributeValues heat(std::vector<float>(5'000, 20));
+  heat.append(AttributeValues::missing(AttributeType::float32, 5'000));
+  cloud.attributes.push_back({"heat", heat});
+  EditOptions options = options_at(6);
+  options.reconstruction.attributes = true;
+  EditSession session(cloud, options, Device::cpu(2));
+  for (const float v : session.mesh().attributes.at(0).values.as<float>()) EXPECT_EQ(v, 20);
+  Remove right_half;
+  right_half.camera = front_camera();
+  right_half.area = {{pixel_at(0, -2), pixel_at(2, -2), pixel_at(2, 2), pixel_at(0, 2)}};
+  right_half.originals = true;
+  session.apply(right_half);
+  EXPECT_EQ(measure(session.mesh()).components, 1);
+  EXPECT_TRUE(session.mesh().attributes.empty());
+  session.undo();
+  EXPECT_EQ(session.mesh().attributes.size(), 1U);
+}
+
 TEST(AWarmStart, EndsNearTheSurfaceOfAColdOne) {
   const Cloud cloud = two_fingers_cloud(40'000, 19);
   EditOptions cold = options_at(7);

@@ -1,0 +1,38 @@
+// What memory does not hold, in a file without a name.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "io/file_descriptor.hpp"
+
+namespace pointskin::scale {
+
+/// Bytes on a disk that vanish with their owner, however that ends: the file has no name from the start, or none as soon as it is
+/// there. Its space is reserved first, so that a disk that is too small is known before work begins.
+class Spool {
+ public:
+  /// @param folder  where the file lies; it must exist
+  /// @param bytes   that it has, all 0, at least 0
+  /// @throws Error output_not_written with the reason of the operating system
+  Spool(std::string folder, std::int64_t bytes);
+
+  [[nodiscard]] std::int64_t size() const { return bytes_; }
+
+  /// Many threads may read and write at once, as long as nobody writes where another one is.
+  /// @param at  of the first byte; at + count <= size()
+  /// @throws Error output_not_written with the reason of the operating system, or because the file has become shorter;
+  ///         interrupted
+  void write(std::int64_t at, const void* data, std::int64_t count) const;
+  void read(std::int64_t at, void* data, std::int64_t count) const;
+
+ private:
+  [[noreturn]] void fail(const char* what, int error) const;
+  void reserve() const;
+
+  std::string folder_;
+  std::int64_t bytes_;
+  io::FileDescriptor file_;
+};
+
+}  // namespace pointskin::scale

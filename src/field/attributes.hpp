@@ -90,7 +90,8 @@ Channel make_channel(Exec& ex, std::size_t place, const TypedView& values, const
 /// Receives the place of an attribute and its (points) values, which it may keep.
 using TakeValues = std::function<void(std::size_t, exec::TypedBuffer)>;
 
-/// Interpolates every channel, of each of which a sample counts, at `points` of the unit cube and hands it on, in the order of the channels.
+/// Interpolates every channel at `points` of the unit cube and hands it on, in the order of the channels. Of each channel
+/// a sample counts.
 ///
 /// With hats phi_c of level d, weights w_p and values a_p of the samples:
 ///   N_D[c] = sum_p w_p phi_c(p),             m_D[c] = sum_p w_p phi_c(p) a_p / N_D[c]

@@ -13,8 +13,8 @@ namespace pointskin::scale {
 /// @param blocks  at least 1
 /// @returns  (blocks + 1) where each block begins, and n: block i has cells [result[i], result[i + 1]), which may be none
 ///
-/// O(n log(sum of loads)). Greedy runs of a given greatest load, and a search by halves for the smallest with which `blocks` of
-/// them are enough.
+/// O(n log(sum of loads)). Greedy runs of a given greatest load, and a search by halves for the smallest with which
+/// `blocks` of them are enough.
 std::vector<std::int64_t> cut_evenly(std::span<const std::int64_t> loads, int blocks);
 
 }  // namespace pointskin::scale

@@ -1,4 +1,5 @@
-// Sets of cells of one level of the octree, which grow by whole cells: what a block of a cloud needs around its own cells.
+// Sets of cells of one level of the octree, which grow by whole cells: what a block of a cloud needs around its own
+// cells.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@
 
 namespace pointskin::scale {
 
-/// A set of cells of one level, as intervals along z in the columns that have any. A surface crosses a column a few times, so
-/// that the set is small at any level: 8 bytes an interval and 16 a column.
+/// A set of cells of one level, as intervals along z in the columns that have any. A surface crosses a column a few
+/// times, so that the set is small at any level: 8 bytes an interval and 16 a column.
 class CellSet {
  public:
   /// @param level  of the cells, 0 to octree::kMaxDepth
@@ -26,8 +27,8 @@ class CellSet {
   /// The Morton keys of all cells, ascending. O(n log n), 8 bytes a cell
   [[nodiscard]] std::vector<std::uint64_t> keys() const;
 
-  /// All cells of the cube that are at most `reach` cells along each axis from a cell of the set. Time grows with the columns of the
-  /// result times `reach`, not with its cells.
+  /// All cells of the cube that are at most `reach` cells along each axis from a cell of the set. Time grows with the
+  /// columns of the result times `reach`, not with its cells.
   [[nodiscard]] CellSet grown(int reach) const;
 
  private:

@@ -15,12 +15,13 @@
 
 namespace pointskin::scale {
 
-/// Sorts records of one size by their first 16 bytes: a key and, of equal keys, a second one. Records that are the same in both keep
-/// the order that they were added in.
+/// Sorts records of one size by their first 16 bytes: a key and, of equal keys, a second one. Records that are the same
+/// in both keep the order that they were added in.
 ///
-/// As many records as memory holds are sorted and written, run after run; at the end all runs are merged, each thread a part of the
-/// keys. The disk has twice the records meanwhile, and reads and writes them once more than they are written first. The result is the
-/// same for any memory and threads. Source: Knuth, The Art of Computer Programming 3, section 5.4 (external merge sort).
+/// As many records as memory holds are sorted and written, run after run; at the end all runs are merged, each thread a
+/// part of the keys. The disk has twice the records meanwhile, and reads and writes them once more than they are
+/// written first. The result is the same for any memory and threads. Source: Knuth, The Art of Computer Programming 3,
+/// section 5.4 (external merge sort).
 class DiskSort {
  public:
   struct Setup {
@@ -37,7 +38,8 @@ class DiskSort {
   /// @throws Error output_not_written, interrupted
   void add(const std::byte* records, std::int64_t count);
 
-  /// All records that were added, in order, from the first byte of a spool that may have room for more. To be called once.
+  /// All records that were added, in order, from the first byte of a spool that may have room for more. To be called
+  /// once.
   /// @throws Error output_not_written, interrupted
   std::unique_ptr<Spool> finish();
 

@@ -65,30 +65,28 @@ void Spool::reserve() const {
   }
 }
 
-void Spool::write(std::int64_t at, const void* data, std::int64_t count) const {
-  const char* from = static_cast<const char*>(data);
-  while (count > 0) {
+template <class Move>
+void Spool::move_all(std::int64_t count, const char* what, const Move& move) const {
+  std::int64_t moved = 0;
+  while (moved < count) {
     exec::throw_if_cancelled();
-    const ssize_t done = ::pwrite(file_.get(), from, static_cast<std::size_t>(std::min(count, kAtOnce)), at);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) fail("temporary data cannot be written", done < 0 ? errno : EIO);
-    from += done;
-    at += done;
-    count -= done;
+    const ssize_t now = move(moved, static_cast<std::size_t>(std::min(count - moved, kAtOnce)));
+    if (now < 0 && errno == EINTR) continue;
+    if (now <= 0) fail(what, now < 0 ? errno : EIO);
+    moved += now;
   }
 }
 
+void Spool::write(std::int64_t at, const void* data, std::int64_t count) const {
+  move_all(count, "temporary data cannot be written", [&](std::int64_t done, std::size_t bytes) {
+    return ::pwrite(file_.get(), static_cast<const char*>(data) + done, bytes, at + done);
+  });
+}
+
 void Spool::read(std::int64_t at, void* data, std::int64_t count) const {
-  char* to = static_cast<char*>(data);
-  while (count > 0) {
-    exec::throw_if_cancelled();
-    const ssize_t done = ::pread(file_.get(), to, static_cast<std::size_t>(std::min(count, kAtOnce)), at);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) fail("temporary data cannot be read", done < 0 ? errno : EIO);
-    to += done;
-    at += done;
-    count -= done;
-  }
+  move_all(count, "temporary data cannot be read", [&](std::int64_t done, std::size_t bytes) {
+    return ::pread(file_.get(), static_cast<char*>(data) + done, bytes, at + done);
+  });
 }
 
 }  // namespace pointskin::scale

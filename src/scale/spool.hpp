@@ -8,8 +8,8 @@
 
 namespace pointskin::scale {
 
-/// Bytes on a disk that vanish with their owner, however that ends: the file has no name from the start, or none as soon as it is
-/// there. Its space is reserved first, so that a disk that is too small is known before work begins.
+/// Bytes on a disk that vanish with their owner, however that ends: the file has no name from the start, or none as
+/// soon as it is there. Its space is reserved first, so that a disk that is too small is known before work begins.
 class Spool {
  public:
   /// @param folder  where the file lies; it must exist
@@ -29,6 +29,9 @@ class Spool {
  private:
   [[noreturn]] void fail(const char* what, int error) const;
   void reserve() const;
+  /// Calls move(bytes done, bytes to do at most), which returns as pread() does, until `count` bytes are done.
+  template <class Move>
+  void move_all(std::int64_t count, const char* what, const Move& move) const;
 
   std::string folder_;
   std::int64_t bytes_;

@@ -173,6 +173,15 @@ TEST(AnOperationThatFails, LeavesTheSessionAsItWas) {
   EXPECT_TRUE(session.operations().empty());
 }
 
+/// Takes all points with x > 0 that the front camera shows.
+Remove removal_of_right_half() {
+  Remove right_half;
+  right_half.camera = front_camera();
+  right_half.area = {{pixel_at(0, -2), pixel_at(2, -2), pixel_at(2, 2), pixel_at(0, 2)}};
+  right_half.originals = true;
+  return right_half;
+}
+
 TEST(Removal, TakesAddedPointsOnlyUnlessToldOtherwise) {
   EditSession session = session_of(two_fingers_cloud(20'000, 6), 6);
   const std::int64_t added = session.apply(test::parting_strokes()[0]).added;
@@ -183,11 +192,7 @@ TEST(Removal, TakesAddedPointsOnlyUnlessToldOtherwise) {
   EXPECT_EQ(removed.removed, added);
   EXPECT_EQ(removed.points, 20'000);
 
-  Remove right_half;
-  right_half.camera = front_camera();
-  right_half.area = {{pixel_at(0, -2), pixel_at(2, -2), pixel_at(2, 2), pixel_at(0, 2)}};
-  right_half.originals = true;
-  session.apply(right_half);
+  session.apply(removal_of_right_half());
   EXPECT_EQ(measure(session.mesh()).components, 1);
   for (const Vec3f& p : session.cloud().positions) EXPECT_LT(p.x, 0);
 }
@@ -408,11 +413,7 @@ TEST(Attributes, EndWithTheLastPointThatHasThem) {
   options.reconstruction.attributes = true;
   EditSession session(cloud, options, Device::cpu(2));
   for (const float v : session.mesh().attributes.at(0).values.as<float>()) EXPECT_EQ(v, 20);
-  Remove right_half;
-  right_half.camera = front_camera();
-  right_half.area = {{pixel_at(0, -2), pixel_at(2, -2), pixel_at(2, 2), pixel_at(0, 2)}};
-  right_half.originals = true;
-  session.apply(right_half);
+  session.apply(removal_of_right_half());
   EXPECT_EQ(measure(session.mesh()).components, 1);
   EXPECT_TRUE(session.mesh().attributes.empty());
   session.undo();

@@ -1,0 +1,57 @@
+// A cloud in a file, read in parts: for clouds that memory does not hold.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <pointskin/cloud.hpp>
+
+#include "exec/cpu.hpp"
+#include "io/input.hpp"
+#include "io/table_parts.hpp"
+
+namespace pointskin::io {
+
+/// The points that read_cloud() reads, in its order and with its origin, part by part.
+class CloudParts {
+ public:
+  using Bytes = TableParts::Bytes;
+
+  /// @returns null if the points do not lie at equal distances in a file, or it cannot be known that the file is whole:
+  ///          text, compressed data, streams, PLY with lists, formats other than PLY and NPY
+  /// @throws Error invalid_input if it cannot be read, or its header is garbled
+  static std::unique_ptr<CloudParts> open(const std::string& path);
+
+  /// Rows of the file; some may hold no point.
+  [[nodiscard]] std::int64_t rows() const { return rows_->rows(); }
+  /// Of a row in the file.
+  [[nodiscard]] std::int64_t row_bytes() const { return rows_->row_bytes(); }
+
+  /// Chooses the origin, as ReadOptions::shift says: where that is unset one pass over the coordinates, or two; 48
+  /// bytes for 64 rows, and kBufferBytes.
+  /// @throws Error invalid_input without x, y, z, or if the file has become shorter; usage if `shift` is not finite
+  void choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift);
+
+  /// The points of rows first .. first + count - 1, in parallel. The origin must have been chosen. Where rows have no
+  /// finite coordinates there are fewer, and Cloud::dropped says how many.
+  /// @throws Error invalid_input if the file has become shorter, or cannot be read
+  Cloud read(exec::Cpu& ex, std::int64_t first, std::int64_t count, Bytes& buffer) const;
+
+  /// Reads all rows, kBufferBytes at a time, and hands their points on, in order.
+  /// @throws Error as read, or whatever `use` throws
+  void for_parts(exec::Cpu& ex, const std::function<void(const Cloud&)>& use) const;
+
+  static constexpr std::int64_t kBufferBytes = std::int64_t{4} << 20;
+
+ private:
+  explicit CloudParts(const std::string& path) : input_(path) {}
+
+  Input input_;  // the header is read from the mapping, the rest is not
+  std::optional<TableParts> rows_, coordinates_;
+  Vec3d origin_{0, 0, 0};
+};
+
+}  // namespace pointskin::io

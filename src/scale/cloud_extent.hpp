@@ -1,0 +1,26 @@
+// What all points of a cloud decide together before they are sorted, for clouds that memory does not hold.
+#pragma once
+
+#include <cstdint>
+
+#include "exec/cpu.hpp"
+#include "io/cloud_parts.hpp"
+#include "octree/strays.hpp"
+
+namespace pointskin::scale {
+
+struct CloudExtent {
+  std::int64_t points = 0;       ///< without strays
+  std::int64_t with_normal = 0;  ///< of them, that have a normal that is not zero
+  octree::StrayPoints strays;    ///< indices count the points of the file; the core is the box around all others
+};
+
+/// The strays and the box of all other points, as octree::find_strays() finds them: one pass over the points, and one
+/// more where some lie so far out that there may be strays. 100 KB, and 20 bytes for every point that may be one, which
+/// are few.
+/// @param parts        whose origin has been chosen
+/// @param keep_strays  all points count
+/// @throws Error empty_result if there are no points; as CloudParts::read
+CloudExtent find_extent(exec::Cpu& ex, const io::CloudParts& parts, bool keep_strays);
+
+}  // namespace pointskin::scale

@@ -69,9 +69,9 @@ std::unique_ptr<CloudParts> CloudParts::open(const std::string& path) {
 
 void CloudParts::choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift) {
   if (shift) {
-    origin_ = *shift;
     Bytes none;
-    read(ex, 0, 0, none);  // refuses what assemble() refuses
+    assemble(ex, input_.source(), rows_->read(0, 0, none), shift);  // refuses what cannot be
+    origin_ = *shift;
     return;
   }
   Bytes buffer;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "exec/cpu.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "io/cloud_parts.hpp"
+#include "io/npy.hpp"
 #include "octree/strays.hpp"
 #include "scale/cloud_extent.hpp"
 #include "support/io_files.hpp"
@@ -95,6 +97,30 @@ TEST(CloudExtent, KeepsStraysWhereTheyAreWanted) {
   EXPECT_EQ(found.with_normal, 19'999);
   EXPECT_TRUE(found.strays.indices.empty());
   EXPECT_GT(found.strays.core.upper.x, 400);
+}
+
+TEST(CloudExtent, CountsPointsAndNotTheRowsWithoutAny) {
+  constexpr std::int64_t kRows = 10'000;
+  const TemporaryFolder folder;
+  const Cloud sphere = sphere_cloud(kRows, 6);
+  std::string values;
+  for (std::int64_t row = 0; row < kRows; ++row) {
+    const Vec3f& p = sphere.positions[static_cast<std::size_t>(row)];
+    const bool is_point = row % 66 == 0;  // 152 of them
+    for (const float v : {p.x, p.y, p.z})
+      values += raw<float>(!is_point ? std::numeric_limits<float>::quiet_NaN() : row == 660 ? 1e4F : v);
+  }
+  make_file(folder.file("few.npy"), io::npy_header(AttributeType::float32, kRows, 3) + values);
+  const Cloud whole = read_cloud(folder.file("few.npy"));
+  exec::Cpu ex(2);
+  const octree::StrayPoints strays =
+      octree::find_strays(ex, ArrayView<const Vec3f>{whole.positions.data(), whole.size()});
+  ASSERT_EQ(strays.size(), 1);
+  const CloudExtent found = extent_of_file(folder.file("few.npy"), 2);
+  EXPECT_EQ(found.points, whole.size() - 1);
+  EXPECT_EQ(found.strays.indices, strays.indices);
+  EXPECT_EQ(found.strays.core.lower, strays.core.lower);
+  EXPECT_EQ(found.strays.core.upper, strays.core.upper);
 }
 
 TEST(CloudExtent, OfNoPointsIsAnError) {

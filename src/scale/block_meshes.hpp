@@ -1,0 +1,133 @@
+// The mesh of all blocks of a cloud, from the meshes of single ones: the vertices and triangles of the whole, in its order
+// and with its numbers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <pointskin/vector.hpp>
+
+#include "scale/spool.hpp"
+
+namespace pointskin::scale {
+
+/// What is extracted from a block and its ring. Keys are Morton keys of cells of the finest level.
+struct BlockMesh {
+  std::uint64_t begin = 0, end = 0;     ///< the block's own cells: keys begin..end - 1
+  std::span<const std::uint64_t> keys;  ///< (v) of vertices, ascending: the corner that a vertex starts at
+  /// Arrays over the vertices, positions or normals or values of an attribute, in the order of BlockMeshes' `columns`.
+  std::span<const std::byte* const> columns;
+  std::span<const Triangle> triangles;     ///< (t) numbers of the block's vertices
+  std::span<const std::uint64_t> cells;    ///< (t) the first of the finest cells in the cell that a triangle lies in
+  std::span<const std::uint8_t> segments;  ///< (t) ascending; in one segment, triangles are in the order of their cells
+
+  [[nodiscard]] bool owns(std::uint64_t cell) const { return cell >= begin && cell < end; }
+};
+
+/// Takes own vertices and triangles of block after block. What lies in the ring is not kept, but tells the numbers of
+/// vertices in other blocks: by the cell of a coarser level that they lie in, and their place among the vertices of this
+/// cell. So no block waits for another one.
+///
+/// In the order of the whole mesh, vertices are sorted by key, and those on the upper faces of the cube, which start at
+/// corners beyond the last cell of an axis, come last; triangles are sorted by segment and cell.
+class BlockMeshes {
+ public:
+  using Indices = std::array<std::uint32_t, 3>;
+
+  struct Setup {
+    std::string folder;                 ///< for temporary data: the mesh once
+    int depth = 0;                      ///< finest level
+    int cell_level = 0;                 ///< of the cells by which vertices of other blocks are found
+    std::vector<std::int64_t> columns;  ///< bytes that a vertex has in each
+  };
+
+  explicit BlockMeshes(Setup setup);
+
+  /// Blocks come in ascending order of their cells. Every vertex of a triangle that lies in an own cell must be there, and
+  /// all vertices of the cells of `cell_level` that hold one.
+  /// @throws Error output_not_written, interrupted
+  /// O(v + t), 4 bytes a vertex of scratch
+  void add(const BlockMesh& block);
+
+  /// When all blocks are there.
+  /// @throws Error over_limit if there are more than 2^32 vertices; internal if a vertex that a triangle needs is in no block
+  /// O(blocks + border vertices log cells)
+  void finish();
+
+  [[nodiscard]] std::int64_t vertices() const { return inner_ + outer_count(); }
+  [[nodiscard]] std::int64_t triangles() const { return triangles_; }
+
+  /// Column `column` of vertices first .. first + count - 1; for many threads at once, after finish().
+  /// @throws Error output_not_written if the disk fails, interrupted
+  void read_column(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) const;
+
+  /// Triangles first .. first + count - 1; for many threads at once, after finish().
+  /// @throws Error output_not_written if the disk fails, interrupted
+  void read_triangles(std::int64_t first, std::int64_t count, Indices* out) const;
+
+ private:
+  /// A vertex on an upper face of the cube, or in another block: by where it starts or by its cell, and its place among
+  /// those of equal keys or cells.
+  struct Reference {
+    std::uint64_t key = 0;  ///< with kOuter the key of its corner, else that of its cell
+    std::int64_t place = 0;
+  };
+  static constexpr std::uint64_t kOuter = std::uint64_t{1} << 63;
+
+  /// The vertices of a cell of `cell_level`.
+  struct Cell {
+    std::uint64_t key = 0;
+    std::int64_t first = 0, count = 0;
+  };
+  struct Outer {
+    std::uint64_t key = 0;
+    std::vector<std::byte> values;  ///< of all columns
+  };
+  /// Triangles that follow each other both in the whole mesh and in a block.
+  struct Chunk {
+    int segment = 0;
+    std::int64_t block = 0;
+    std::int64_t first = 0;   ///< in the block
+    std::int64_t before = 0;  ///< triangles of the whole before it
+    std::int64_t count = 0;
+  };
+  struct Block {
+    std::int64_t first = 0, count = 0;   ///< own inner vertices in the whole
+    std::unique_ptr<Spool> spool;        ///< own inner vertices column after column, then triangles
+    std::vector<Reference> others;       ///< vertices that triangles number after the own inner ones
+    std::vector<std::uint32_t> numbers;  ///< of these, after finish()
+  };
+
+  [[nodiscard]] bool is_outer(std::uint64_t key) const { return key >> 3 * setup_.depth != 0; }
+  [[nodiscard]] std::uint64_t cell_of(std::uint64_t key) const { return key >> 3 * (setup_.depth - setup_.cell_level); }
+  /// Key of the cell inside the cube beside which a corner on an upper face lies.
+  [[nodiscard]] std::uint64_t owner_of_outer(std::uint64_t key) const;
+  [[nodiscard]] std::int64_t outer_count() const { return static_cast<std::int64_t>(outer_.size()); }
+  /// @param keys  of all vertices of a block
+  [[nodiscard]] Reference reference_to(std::span<const std::uint64_t> keys, std::size_t vertex) const;
+  [[nodiscard]] std::uint32_t number_of(const Reference& vertex) const;
+
+  void count_vertices(const BlockMesh& from, std::size_t first, Block& block);
+  void add_outer(const BlockMesh& from);
+  /// @returns own triangles
+  std::int64_t count_triangles(const BlockMesh& from);
+  void write_vertices(const BlockMesh& from, std::size_t first, const Block& block) const;
+  void write_triangles(const BlockMesh& from, std::size_t first, Block& block) const;
+  void read_inner(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) const;
+
+  Setup setup_;
+  std::vector<std::int64_t> column_begins_;  ///< bytes of the columns before each
+  std::vector<Block> blocks_;
+  std::vector<Cell> cells_;    ///< ascending
+  std::vector<Outer> outer_;   ///< by key after finish()
+  std::vector<Chunk> chunks_;  ///< in the order of the whole after finish()
+  std::int64_t inner_ = 0;
+  std::int64_t triangles_ = 0;
+};
+
+}  // namespace pointskin::scale

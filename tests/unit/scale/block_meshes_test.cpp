@@ -1,0 +1,232 @@
+// Meshes of blocks joined, against the mesh that they were cut from.
+#include <gtest/gtest.h>
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "octree/keys.hpp"
+#include "scale/block_meshes.hpp"
+#include "support/io_files.hpp"
+#include "support/shapes.hpp"
+
+namespace pointskin::test {
+namespace {
+
+using scale::BlockMesh;
+using scale::BlockMeshes;
+
+constexpr int kDepth = 6, kCellLevel = 3, kCutLevel = 2;
+constexpr std::int32_t kSide = 1 << kDepth;
+constexpr std::uint64_t kEnd = std::uint64_t{1} << 3 * kDepth;
+
+std::uint64_t finest_key(std::uint64_t cell, int level) { return cell << 3 * (kDepth - level); }
+
+/// A mesh as extraction makes it, but of random vertices and triangles: only keys, cells and segments matter.
+struct Whole {
+  std::vector<std::uint64_t> keys;
+  std::vector<Vec3f> positions;
+  std::vector<std::uint16_t> labels;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint64_t> cells;
+  std::vector<std::uint8_t> segments;
+};
+
+/// The cells of the finest level within half a cell's width of a sphere that the cube cuts off.
+std::vector<octree::Coordinates> cells_of_sphere() {
+  std::vector<octree::Coordinates> cells;
+  for (std::int32_t x = 0; x < kSide; ++x)
+    for (std::int32_t y = 0; y < kSide; ++y)
+      for (std::int32_t z = 0; z < kSide; ++z) {
+        const double radius = std::hypot(x - 40.0, y - 36.0, z - 30.0);
+        if (std::abs(radius - 28) < 0.7) cells.push_back({x, y, z});
+      }
+  return cells;
+}
+
+Whole make_whole(std::uint64_t seed) {
+  Random random(seed);
+  Whole whole;
+  std::map<std::uint64_t, std::vector<std::int32_t>> vertices_at;  // by corner
+  const std::vector<octree::Coordinates> cells = cells_of_sphere();
+  const auto coordinate = [&] { return static_cast<float>(random.unit()); };
+  const auto corner_of = [](const octree::Coordinates& cell, int slot) {
+    return octree::encode(
+        {cell.x + octree::slot_x(slot), cell.y + octree::slot_y(slot), cell.z + octree::slot_z(slot)});
+  };
+  for (const octree::Coordinates& cell : cells)
+    for (int slot = 0; slot < 8; ++slot) vertices_at[corner_of(cell, slot)];
+  for (auto& [key, vertices] : vertices_at)
+    for (int i = random.below(4); i >= 0; --i) {
+      vertices.push_back(static_cast<std::int32_t>(whole.keys.size()));
+      whole.keys.push_back(key);
+      whole.positions.push_back({coordinate(), coordinate(), coordinate()});
+      whole.labels.push_back(static_cast<std::uint16_t>(random.below(1 << 16)));
+    }
+  for (const std::uint8_t segment : {5, 6, 69, 70}) {
+    std::vector<std::pair<std::uint64_t, octree::Coordinates>> in_order;
+    for (const octree::Coordinates& cell : cells)
+      if (random.below(3) > 0) in_order.emplace_back(octree::encode(cell), cell);
+    std::sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [key, cell] : in_order)
+      for (int i = random.below(3); i >= 0; --i) {
+        Triangle triangle;
+        for (std::int32_t& corner : triangle) {
+          const std::vector<std::int32_t>& there = vertices_at[corner_of(cell, random.below(8))];
+          corner = there[static_cast<std::size_t>(random.below(static_cast<int>(there.size())))];
+        }
+        whole.triangles.push_back(triangle);
+        whole.cells.push_back(key);
+        whole.segments.push_back(segment);
+      }
+  }
+  return whole;
+}
+
+/// What a block has: own cells, all around that share a cell of `kCellLevel` with a corner of one, and of the rest what
+/// chance gives. Values beyond its own vertices are wrong.
+Whole part_of(const Whole& whole, std::uint64_t begin, std::uint64_t end, Random& random) {
+  const auto owns = [&](std::uint64_t key) { return key >= begin && key < end; };
+  const auto inner_of = [](std::uint64_t key) {
+    const octree::Coordinates c = octree::decode(key);
+    return octree::Coordinates{std::min(c.x, kSide - 1), std::min(c.y, kSide - 1), std::min(c.z, kSide - 1)};
+  };
+  const auto cell_of = [](std::uint64_t key) { return key >> 3 * (kDepth - kCellLevel); };
+  std::vector<char> needed(whole.keys.size(), 0);
+  std::map<std::uint64_t, bool> cell_needed;
+  for (std::size_t t = 0; t < whole.triangles.size(); ++t)
+    if (owns(whole.cells[t]))
+      for (const std::int32_t v : whole.triangles[t])
+        cell_needed[cell_of(whole.keys[static_cast<std::size_t>(v)])] = true;
+  Whole part;
+  std::vector<std::int32_t> number(whole.keys.size(), -1);
+  std::map<std::uint64_t, bool> cell_taken;  // cells of the ring come whole or not at all
+  for (std::size_t v = 0; v < whole.keys.size(); ++v) {
+    const std::uint64_t cell = cell_of(whole.keys[v]);
+    if (!cell_taken.contains(cell)) cell_taken[cell] = cell_needed.contains(cell) || random.below(3) == 0;
+    const bool is_own = owns(octree::encode(inner_of(whole.keys[v])));
+    if (!is_own && !cell_taken[cell]) continue;
+    number[v] = static_cast<std::int32_t>(part.keys.size());
+    part.keys.push_back(whole.keys[v]);
+    part.positions.push_back(is_own ? whole.positions[v] : Vec3f{-1, -1, -1});
+    part.labels.push_back(is_own ? whole.labels[v] : std::uint16_t{0});
+  }
+  for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
+    Triangle triangle = whole.triangles[t];
+    bool all_there = true;
+    for (std::int32_t& v : triangle) {
+      v = number[static_cast<std::size_t>(v)];
+      all_there = all_there && v >= 0;
+    }
+    if (!all_there) continue;
+    part.triangles.push_back(triangle);
+    part.cells.push_back(whole.cells[t]);
+    part.segments.push_back(whole.segments[t]);
+  }
+  return part;
+}
+
+BlockMeshes::Setup setup_in(const TemporaryFolder& folder) {
+  return {std::filesystem::path(folder.file("any")).parent_path().string(),
+          kDepth,
+          kCellLevel,
+          {sizeof(Vec3f), sizeof(std::uint16_t)}};
+}
+
+void add(BlockMeshes& meshes, const Whole& part, std::uint64_t begin, std::uint64_t end) {
+  const std::array columns{reinterpret_cast<const std::byte*>(part.positions.data()),
+                           reinterpret_cast<const std::byte*>(part.labels.data())};
+  meshes.add({begin, end, part.keys, columns, part.triangles, part.cells, part.segments});
+}
+
+/// @param cuts  ascending keys of finest cells
+void cut_and_join(const Whole& whole, std::vector<std::uint64_t> cuts, std::uint64_t seed, BlockMeshes& meshes) {
+  Random random(seed);
+  cuts.insert(cuts.begin(), 0);
+  cuts.push_back(kEnd);
+  for (std::size_t b = 0; b + 1 < cuts.size(); ++b)
+    add(meshes, part_of(whole, cuts[b], cuts[b + 1], random), cuts[b], cuts[b + 1]);
+  meshes.finish();
+}
+
+void expect_same(const BlockMeshes& meshes, const Whole& whole) {
+  const auto n = static_cast<std::int64_t>(whole.keys.size());
+  const auto t = static_cast<std::int64_t>(whole.triangles.size());
+  ASSERT_EQ(meshes.vertices(), n);
+  ASSERT_EQ(meshes.triangles(), t);
+  for (const std::int64_t at_once : {n, std::int64_t{997}}) {
+    std::vector<Vec3f> positions(whole.positions.size());
+    std::vector<std::uint16_t> labels(whole.labels.size());
+    for (std::int64_t first = 0; first < n; first += at_once) {
+      const std::int64_t count = std::min(at_once, n - first);
+      meshes.read_column(0, first, count, reinterpret_cast<std::byte*>(positions.data() + first));
+      meshes.read_column(1, first, count, reinterpret_cast<std::byte*>(labels.data() + first));
+    }
+    EXPECT_EQ(positions, whole.positions);
+    EXPECT_EQ(labels, whole.labels);
+  }
+  for (const std::int64_t at_once : {t, std::int64_t{1009}}) {
+    std::vector<BlockMeshes::Indices> triangles(whole.triangles.size());
+    for (std::int64_t first = 0; first < t; first += at_once)
+      meshes.read_triangles(first, std::min(at_once, t - first), triangles.data() + first);
+    EXPECT_EQ(std::memcmp(triangles.data(), whole.triangles.data(), sizeof(Triangle) * whole.triangles.size()), 0);
+  }
+}
+
+TEST(BlockMeshes, JoinedAreTheMeshThatTheyWereCutFrom) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Whole whole = make_whole(seed);
+    ASSERT_GT(std::count_if(whole.keys.begin(), whole.keys.end(), [](std::uint64_t key) { return key >= kEnd; }), 50);
+    Random random(seed + 10);
+    for (const int blocks : {1, 2, 3, 4, 7, 64}) {
+      SCOPED_TRACE(std::to_string(blocks) + " blocks, seed " + std::to_string(seed));
+      std::vector<std::uint64_t> cuts;
+      for (int b = 1; b < blocks; ++b)  // they may repeat: blocks without cells
+        cuts.push_back(finest_key(static_cast<std::uint64_t>(random.below(1 << 3 * kCutLevel)), kCutLevel));
+      std::sort(cuts.begin(), cuts.end());
+      const TemporaryFolder folder;
+      BlockMeshes meshes(setup_in(folder));
+      cut_and_join(whole, cuts, seed, meshes);
+      expect_same(meshes, whole);
+      EXPECT_EQ(folder.file_count(), 0U);
+    }
+  }
+}
+
+TEST(BlockMeshes, OfNothingAreAnEmptyMesh) {
+  const TemporaryFolder folder;
+  BlockMeshes meshes(setup_in(folder));
+  cut_and_join({}, {finest_key(7, kCutLevel)}, 1, meshes);
+  EXPECT_EQ(meshes.vertices(), 0);
+  EXPECT_EQ(meshes.triangles(), 0);
+  meshes.read_triangles(0, 0, nullptr);
+  meshes.read_column(0, 0, 0, nullptr);
+}
+
+TEST(BlockMeshes, ThatLackAVertexOfATriangleAreAnError) {
+  const Whole whole = make_whole(4);
+  const std::uint64_t cut = finest_key(20, kCutLevel);
+  Random random(1);
+  const TemporaryFolder folder;
+  BlockMeshes meshes(setup_in(folder));
+  add(meshes, part_of(whole, 0, cut, random), 0, cut);
+  try {
+    meshes.finish();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::internal);
+  }
+}
+
+}  // namespace
+}  // namespace pointskin::test

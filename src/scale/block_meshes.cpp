@@ -14,7 +14,7 @@ namespace pointskin::scale {
 namespace {
 
 constexpr std::int64_t kIndexBytes = sizeof(BlockMeshes::Indices);
-constexpr std::int64_t kAtOnce = 64 << 10;  // triangles
+constexpr std::int64_t kTrianglesAtOnce = 64 << 10;
 constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Place of an element among those before it that are equal under `what`, in a sorted array.
@@ -120,7 +120,7 @@ void BlockMeshes::write_triangles(const BlockMesh& from, std::size_t first, Bloc
     if (!from.owns(from.cells[t])) continue;
     const Triangle& corners = from.triangles[t];
     some.push_back({local(corners[0]), local(corners[1]), local(corners[2])});
-    if (std::ssize(some) == kAtOnce) flush();
+    if (std::ssize(some) == kTrianglesAtOnce) flush();
   }
   flush();
 }
@@ -152,8 +152,10 @@ void BlockMeshes::finish() {
 std::uint32_t BlockMeshes::number_of(const Reference& vertex) const {
   std::int64_t number = -1;
   if ((vertex.key & kOuter) != 0) {
-    const auto [first, last] = std::ranges::equal_range(outer_, vertex.key & ~kOuter, {}, &Outer::key);
-    if (vertex.place < last - first) number = inner_ + (first - outer_.begin()) + vertex.place;
+    const std::uint64_t key = vertex.key & ~kOuter;
+    const std::int64_t first = std::ranges::lower_bound(outer_, key, {}, &Outer::key) - outer_.begin();
+    const std::int64_t last = std::ranges::upper_bound(outer_, key, {}, &Outer::key) - outer_.begin();
+    if (vertex.place < last - first) number = inner_ + first + vertex.place;
   } else {
     const auto cell = std::ranges::lower_bound(cells_, vertex.key, {}, &Cell::key);
     if (cell != cells_.end() && cell->key == vertex.key && vertex.place < cell->count)

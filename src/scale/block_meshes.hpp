@@ -49,7 +49,7 @@ class BlockMeshes {
   explicit BlockMeshes(Setup setup);
 
   /// Blocks come in ascending order of their cells. Every vertex of a triangle that lies in an own cell must be there, and
-  /// all vertices of the cells of `cell_level` that hold one.
+  /// all vertices of the cells of `cell_level` that hold one; of those on the upper faces of the cube, all of its corner.
   /// @throws Error output_not_written, interrupted
   /// O(v + t), 4 bytes a vertex of scratch
   void add(const BlockMesh& block);

@@ -68,6 +68,13 @@ target_compile_options(pointskin_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wno-psabi -ffp-contract=off>
   # CMake 3.25 does not know nvcc 13's C++20 mode, so it is asked for by hand.
   $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --fmad=false --expt-relaxed-constexpr -Xcompiler=-Wall,-Wextra,-ffp-contract=off>)
+# GCC 12 forgets to round to float in between where it packs sums of a vector's coordinates, such as
+# float(double(float(a + b * c)) + d), into registers: other bytes than every other compiler and the GPU
+# (docs/decisions/0058-no-packing-by-gcc.md).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(pointskin_flags INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-fno-tree-slp-vectorize> $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-fno-tree-slp-vectorize>)
+endif()
 if(POINTSKIN_SANITIZE)
   target_compile_definitions(pointskin_flags INTERFACE POINTSKIN_PLAIN)  # scalar bodies only (src/core/float8.hpp)
   target_compile_options(pointskin_flags INTERFACE

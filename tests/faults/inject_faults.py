@@ -54,8 +54,7 @@ def main():
     if args.device:
         commands = runs.on_device(commands, args.device)
     kinds = args.kinds or (runs.DRIVER_KINDS if args.device else runs.KINDS)
-    findings = collections.defaultdict(list)
-    injected = 0
+    findings = injected = 0
     with tempfile.TemporaryDirectory(prefix="pointskin-faults-") as root:
         bench = runs.Bench(args.program, args.shim, root)
         if args.device and bench.run(commands[next(iter(commands))]).code == runs.NO_DEVICE:
@@ -70,19 +69,20 @@ def main():
             first = 1 if name == ARGUMENTS_ONLY else of_arguments
             faults = list(faults_of(good.counts, kinds, args.long, first))
             results = runs.in_parallel(faults, lambda fault: bench.run(one, fault))
-            codes = collections.Counter()
+            codes, wrongs = collections.Counter(), collections.defaultdict(list)
             for fault, result in zip(faults, results):
                 injected += result.failed > 0
                 codes[result.code] += 1
                 for wrong in bench.judge(one, result, good):
                     variables = " ".join(f"{key}={value}" for key, value in fault.items())
-                    findings[f"{name}: {wrong}"].append(f"{variables} {shlex.join(one.words)}")
+                    wrongs[wrong].append(f"{variables} {shlex.join(one.words)}")
             told = " ".join(f"{kind}:{good.counts[kind]}" for kind in kinds)
             ends = ", ".join(f"{code}: {number}" for code, number in sorted(codes.items(), key=str))
-            print(f"{name}: {len(faults)} runs with a fault; calls {told}; exit codes {ends}", flush=True)
-    for finding, examples in findings.items():
-        print(f"WRONG ({len(examples)} times) {finding}\n    first: {examples[0]}\n    last: {examples[-1]}")
-    print(f"{injected} faults injected, {len(findings)} findings")
+            print(f"{name}: {len(faults)} runs with a fault; calls {told}; exit codes {ends}; {len(wrongs)} findings", flush=True)
+            for wrong, examples in wrongs.items():
+                print(f"WRONG ({len(examples)} times) {name}: {wrong}\n    first: {examples[0]}\n    last: {examples[-1]}", flush=True)
+            findings += len(wrongs)
+    print(f"{injected} faults injected, {findings} findings")
     return 1 if findings or injected == 0 else 0
 
 

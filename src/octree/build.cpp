@@ -528,7 +528,36 @@ OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int
   return tree;
 }
 
+template <exec::Space Exec>
+OctreeData build_octree_below(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
+                              std::span<const ArrayView<const std::uint64_t>> bricks) {
+  const int level = static_cast<int>(bricks.size()) - 1;
+  OctreeData tree;
+  tree.depth = depth;
+  tree.levels.resize(static_cast<std::size_t>(depth) + 1);
+  BrickSets sets;
+  sets.keys.resize(static_cast<std::size_t>(depth) + 2);
+  sort_levels(ex, point_keys, depth, level, sets.keys);
+  build_complete_levels(ex, tree, kCompleteDepth);
+  for (int d = kCompleteDepth + 1; d <= level; ++d) {
+    const ArrayView<const std::uint64_t> from = bricks[static_cast<std::size_t>(d)];
+    auto& own = sets.keys[static_cast<std::size_t>(d)];
+    own = exec::make_buffer<std::uint64_t>(ex, from.size);
+    copy(ex, from, own.view());
+  }
+  for (int d = kCompleteDepth + 1; d <= depth; ++d) link_levels(ex, tree, d, d, sets);
+  assign_points(ex, tree, point_keys);
+  return tree;
+}
+
+template <exec::Space Exec>
+exec::Buffer<std::uint64_t> bricks_around(Exec& ex, ArrayView<const std::uint64_t> cells, int depth) {
+  return sort_bricks_around(ex, cells, depth);
+}
+
 PSK_INSTANTIATE(sort_points);
 PSK_INSTANTIATE(build_octree);
+PSK_INSTANTIATE(build_octree_below);
+PSK_INSTANTIATE(bricks_around);
 
 }  // namespace pointskin::octree

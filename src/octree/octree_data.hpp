@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "core/array_view.hpp"
@@ -71,5 +72,22 @@ SortedPoints sort_points(
 /// that has none. Integers only: the same on every device.
 template <exec::Space Exec>
 OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth);
+
+/// The octree of a cloud of which only some points are there: its levels up to K have the given bricks, finer ones those around
+/// `point_keys`. Bricks whose points are there, with those around them, are as in the octree of all points, and so are their
+/// neighbours. Levels up to K have the same numbers in every octree that is made here from the same bricks.
+/// @param bricks  (K + 1), kCompleteDepth <= K <= depth: the sorted keys of the cell bricks of every level, as build_octree()
+///                finds them for the whole cloud; those of the complete levels are not read
+/// @throws Error over_limit as build_octree()
+/// As build_octree(); two host round trips for every level.
+template <exec::Space Exec>
+OctreeData build_octree_below(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
+                              std::span<const ArrayView<const std::uint64_t>> bricks);
+
+/// Sorted keys of the cell bricks of one level, by cells of that level with points, or with children.
+/// @param cells  shape (n), ascending keys of cells of level `depth`
+/// O(n)
+template <exec::Space Exec>
+exec::Buffer<std::uint64_t> bricks_around(Exec& ex, ArrayView<const std::uint64_t> cells, int depth);
 
 }  // namespace pointskin::octree

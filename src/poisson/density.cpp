@@ -7,6 +7,7 @@
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
 #include "poisson/examine.hpp"
+#include "poisson/in_blocks.hpp"
 #include "poisson/mean_length.hpp"
 #include "poisson/own_side.hpp"
 #include "poisson/sum_hats.hpp"
@@ -38,15 +39,6 @@ struct RelativeLength {
   ArrayView<float> out;
   PSK_HD void operator()(std::int64_t i) const { out[i] = static_cast<float>(length_of(normals[i]) / mean); }
 };
-
-/// Coarsest depth to splat at. Threads gather whole cells there, so a cell of a surface should not hold more than some
-/// thousand samples, whatever a few outliers would need.
-int coarsest_splat_depth(std::int64_t points, int depth) {
-  constexpr double kMostPerCell = 4096;
-  int coarsest = 2;
-  while (coarsest<depth&& static_cast<double>(points)> kMostPerCell * std::pow(4.0, coarsest)) ++coarsest;
-  return std::min(coarsest, depth);
-}
 
 struct Normalise {
   ArrayView<Vec3f> normals;
@@ -157,6 +149,48 @@ Density splat_density(Exec& ex, const octree::OctreeData& tree, ArrayView<const 
 }
 
 template <exec::Space Exec>
+void normalise_normals(Exec& ex, ArrayView<Vec3f> normals) {
+  for_each(ex, "density.weigh", normals.size, Normalise{normals});
+}
+
+template <exec::Space Exec>
+exec::Buffer<Facing> sum_facing(Exec& ex, const octree::OctreeData& tree, const Samples& samples) {
+  return sum_hats(ex, tree.view(), counted_depth(tree.depth), samples.positions.cview(),
+                  FacingOf{samples.normals.cview()});
+}
+
+template <exec::Space Exec>
+Weighed weigh_by_facing(Exec& ex, const octree::OctreeData& tree, double samples_per_node, std::int64_t all_points,
+                        ArrayView<const Facing> facing, Samples& samples) {
+  const std::int64_t n = samples.positions.size();
+  Weighed weighed{{counted_depth(tree.depth), exec::make_buffer<float>(ex, facing.size)},
+                  exec::make_buffer<float>(ex, n),
+                  exec::make_buffer<float>(ex, n)};
+  samples.areas = exec::make_buffer<float>(ex, n);
+  samples.splat_depths = exec::make_buffer<float>(ex, n);
+  const Density& density = weighed.density;
+  for_each(ex, "density.splat", facing.size, TakeCount{facing, weighed.density.counts.view()});
+  const FacingView sums{tree.view(), density.depth, facing.data};
+  const octree::LevelView& counted = tree.view().levels[density.depth];
+  auto bend_of_cell = exec::make_buffer<float>(ex, counted.cells());
+  for_each(ex, "density.bend", counted.cells(), BendOfCell{counted, sums, bend_of_cell.view()});
+  for_each(ex, "density.weigh", n,
+           Weigh{tree.view(),
+                 {density.depth, density.counts.data()},
+                 sums,
+                 samples.positions.cview(),
+                 samples.normals.cview(),
+                 static_cast<float>(samples_per_node),
+                 coarsest_splat_depth(all_points, tree.depth),
+                 bend_of_cell.cview(),
+                 samples.areas.view(),
+                 weighed.own_side.view(),
+                 weighed.bends.view(),
+                 samples.splat_depths.view()});
+  return weighed;
+}
+
+template <exec::Space Exec>
 Density weigh_samples(Exec& ex, const octree::OctreeData& tree, const WeighOptions& options, Samples& samples) {
   const std::int64_t n = samples.positions.size();
   samples.areas = exec::make_buffer<float>(ex, n);
@@ -216,6 +250,9 @@ void evaluate_density(Exec& ex, const octree::OctreeData& tree, const Density& d
 }
 
 PSK_INSTANTIATE(splat_density);
+PSK_INSTANTIATE(normalise_normals);
+PSK_INSTANTIATE(sum_facing);
+PSK_INSTANTIATE(weigh_by_facing);
 PSK_INSTANTIATE(weigh_samples);
 PSK_INSTANTIATE(confidence_weights);
 PSK_INSTANTIATE(evaluate_density);

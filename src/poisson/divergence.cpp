@@ -9,6 +9,7 @@
 #include "octree/neighbourhood.hpp"
 #include "octree/placed.hpp"
 #include "poisson/divergence_of_bricks.hpp"
+#include "poisson/in_blocks.hpp"
 #include "poisson/splat_kernel.hpp"
 #include "poisson/splat_to_bricks.hpp"
 #include "poisson/stencil.hpp"
@@ -217,6 +218,64 @@ exec::Buffer<float> splat_divergence(Exec& ex, const octree::OctreeData& tree, c
   return b;
 }
 
+template <exec::Space Exec>
+exec::Buffer<float> splat_coarse_levels(Exec& ex, const octree::OctreeView& tree, int depth,
+                                        const SamplesView& samples) {
+  octree::OctreeView whole = tree;  // areas are in cells of the whole octree
+  whole.depth = depth;
+  FieldLevel field;
+  for (int d = samples.coarsest_splat_depth; d <= tree.depth; ++d) field = splat_level(ex, whole, samples, d, field);
+  return std::move(field.values);
+}
+
+template <exec::Space Exec>
+void find_coarse_divergence(Exec& ex, const octree::OctreeView& tree, int depth, const SamplesView& samples,
+                            const Resolution& resolution, ArrayView<float> b) {
+  octree::OctreeView whole = tree;
+  whole.depth = depth;
+  const auto own = [&](int d) { return b.part(tree.levels[d].first_node, tree.levels[d].nodes()); };
+  FieldLevel field;
+  for (int d = samples.coarsest_splat_depth; d < tree.depth; ++d) {
+    field = splat_level(ex, whole, samples, d, field);
+    const octree::LevelView& below = tree.levels[d + 1];
+    find_divergence(ex, Divergence{tree.levels[d], below.cell_bricks, field.view(), make_coefficients(), own(d),
+                                   resolution.counts(tree.levels[d]), resolution.counts(below)});
+  }
+  for (int d = tree.depth - 1; d >= 0; --d) {
+    const octree::LevelView& below = tree.levels[d + 1];
+    for_each(
+        ex, "splat.restrict", tree.levels[d].nodes(),
+        AddRestriction{tree.levels[d], below, b.data + below.first_node, d >= samples.coarsest_splat_depth, own(d)});
+  }
+}
+
+template <exec::Space Exec>
+exec::Buffer<float> splat_divergence_below(Exec& ex, const octree::OctreeData& tree, const SamplesView& samples,
+                                           const Resolution& resolution, int level, ArrayView<const float> given) {
+  const octree::OctreeView view = tree.view();
+  auto b = exec::make_buffer<float>(ex, view.nodes);
+  const auto own = [&](int d) { return b.view().part(view.levels[d].first_node, view.levels[d].nodes()); };
+  FieldLevel field{exec::make_buffer<float>(ex, given.size)};
+  copy(ex, given, field.values.view());
+  for (int d = std::max(level, samples.coarsest_splat_depth); d <= view.depth; ++d) {
+    if (d > level) field = splat_level(ex, view, samples, d, field);
+    const octree::LevelView* below = d < view.depth ? &view.levels[d + 1] : nullptr;
+    find_divergence(ex, Divergence{view.levels[d], below != nullptr ? below->cell_bricks : 0, field.view(),
+                                   make_coefficients(), own(d), resolution.counts(view.levels[d]),
+                                   below != nullptr ? resolution.counts(*below) : nullptr});
+  }
+  for (int d = view.depth - 1; d >= level; --d) {
+    const octree::LevelView& below = view.levels[d + 1];
+    for_each(
+        ex, "splat.restrict", view.levels[d].nodes(),
+        AddRestriction{view.levels[d], below, b.data() + below.first_node, d >= samples.coarsest_splat_depth, own(d)});
+  }
+  return b;
+}
+
 PSK_INSTANTIATE(splat_divergence);
+PSK_INSTANTIATE(splat_coarse_levels);
+PSK_INSTANTIATE(find_coarse_divergence);
+PSK_INSTANTIATE(splat_divergence_below);
 
 }  // namespace pointskin::poisson

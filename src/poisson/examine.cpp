@@ -8,6 +8,7 @@
 #include "exec/atomic.hpp"
 #include "exec/this_space.hpp"
 #include "poisson/examine_sample.hpp"
+#include "poisson/in_blocks.hpp"
 
 namespace pointskin::poisson {
 namespace {
@@ -52,6 +53,7 @@ struct LookAt {
   float cell_area;  // of a finest cell's face
   ArrayView<const float> own_side, areas;
   std::uint64_t* words;
+  std::int64_t all;  // samples of the cloud, of which `around` may have a part
 
   [[nodiscard]] PSK_HD LookedAt part(std::int64_t group, int lane) const {
     const std::int64_t s = group * kLanes + lane;
@@ -64,7 +66,7 @@ struct LookAt {
 
   [[nodiscard]] PSK_HD LookedAt look_at(std::int64_t i) const {
     const std::int64_t n = around.positions.size;
-    const float density = 1 / (std::abs(own_side[i]) * cell_area * static_cast<float>(n));
+    const float density = 1 / (std::abs(own_side[i]) * cell_area * static_cast<float>(all));
     const Seen seen = around.seen_from(i);
     Tally tally{seen.can_tell(), seen.can_tell() && seen.faces_like_others(), 0};
     if (i + Followed::kFourth < n) {
@@ -74,6 +76,29 @@ struct LookAt {
     }
     return {tally.word(), static_cast<std::uint64_t>(kFixed * (density < kDensest ? density : kDensest))};
   }
+};
+
+/// The same of a part of the cloud.
+struct LookAtPart {
+  static constexpr int kLanes = LookAt::kLanes;
+  using Sum = LookedAt;
+
+  LookAt look;  // of what is there
+  PartOfCloud own;
+
+  [[nodiscard]] PSK_HD LookedAt part(std::int64_t group, int lane) const {
+    const std::int64_t s = group * kLanes + lane;
+    const std::int64_t i = s * own.all / look.looked_at - own.first;
+    return s < look.looked_at && i >= 0 && i < own.count ? look.look_at(own.before + i) : LookedAt{};
+  }
+  PSK_HD void finish(std::int64_t group, const LookedAt& sum) const { look.finish(group, sum); }
+};
+
+/// A part's own samples.
+struct ExaminePart {
+  Examine examine;
+  std::int64_t before;
+  PSK_HD void operator()(std::int64_t i) const { examine(before + i); }
 };
 
 /// One thread.
@@ -113,7 +138,7 @@ void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_
   exec::fill(ex, samples.lonely.view(), std::uint64_t{0});
   for_each_by_lanes(
       ex, kLabel, (looked_at + LookAt::kLanes - 1) / LookAt::kLanes,
-      LookAt{around, looked_at, cell_area, own_side.cview(), samples.areas.cview(), samples.lonely.data()});
+      LookAt{around, looked_at, cell_area, own_side.cview(), samples.areas.cview(), samples.lonely.data(), n});
   auto found = exec::make_buffer<Cloudwide>(ex, 1);
   for_each(ex, kLabel, 1, Judge{samples.lonely.data(), n, looked_at, cell_area, found.view()});
   examine_each(ex, kLabel, n,
@@ -123,6 +148,42 @@ void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_
   samples.trust = std::move(bends);
 }
 
+template <exec::Space Exec>
+LookAtCloud look_at_part(Exec& ex, int depth, const PartOfCloud& part, ArrayView<const float> own_side,
+                         const Samples& samples) {
+  const std::int64_t looked_at = std::min(kLookedAt, part.all);
+  const float cell_area = 1 / static_cast<float>(std::int64_t{1} << 2 * depth);
+  const Around around{samples.positions.cview(), samples.normals.cview(), samples.splat_depths.cview()};
+  auto words = exec::make_buffer<std::uint64_t>(ex, kWords);
+  exec::fill(ex, words.view(), std::uint64_t{0});
+  const LookAt look{around, looked_at, cell_area, own_side, samples.areas.cview(), words.data(), part.all};
+  for_each_by_lanes(ex, kLabel, (looked_at + LookAt::kLanes - 1) / LookAt::kLanes, LookAtPart{look, part});
+  LookAtCloud result;
+  result.words.resize(kWords);
+  copy_to_host(ex, words.cview(), result.words.data());
+  return result;
+}
+
+template <exec::Space Exec>
+void examine_part(Exec& ex, int depth, int coarsest, const PartOfCloud& part, const LookAtCloud& look,
+                  exec::Buffer<float> own_side, exec::Buffer<float> bends, Samples& samples) {
+  const std::int64_t looked_at = std::min(kLookedAt, part.all);
+  const Around around{samples.positions.cview(), samples.normals.cview(), samples.splat_depths.cview()};
+  const float cell_area = 1 / static_cast<float>(std::int64_t{1} << 2 * depth);
+  samples.lonely = exec::make_buffer<std::uint64_t>(ex, kWords);
+  copy_to_device(ex, look.words.data(), samples.lonely.view());
+  auto found = exec::make_buffer<Cloudwide>(ex, 1);
+  for_each(ex, kLabel, 1, Judge{samples.lonely.data(), part.all, looked_at, cell_area, found.view()});
+  for_each(ex, kLabel, part.count,
+           ExaminePart{{around, found.cview(), cell_area, static_cast<float>(coarsest), static_cast<float>(depth),
+                        samples.areas.view(), bends.view(), own_side.view(), samples.lonely.data() + kLonelyOnes},
+                       part.before});
+  samples.splat_depths = std::move(own_side);
+  samples.trust = std::move(bends);
+}
+
 PSK_INSTANTIATE(examine_samples);
+PSK_INSTANTIATE(look_at_part);
+PSK_INSTANTIATE(examine_part);
 
 }  // namespace pointskin::poisson

@@ -6,6 +6,7 @@
 
 #include "exec/this_space.hpp"
 #include "octree/placed.hpp"
+#include "poisson/in_blocks.hpp"
 
 namespace pointskin::poisson {
 namespace {
@@ -169,6 +170,49 @@ Resolution find_resolution(Exec& ex, const octree::OctreeData& tree, Samples& sa
   return result;
 }
 
+template <exec::Space Exec>
+exec::Buffer<std::uint32_t> even_out_depths(Exec& ex, const octree::OctreeData& tree, Samples& samples) {
+  static_assert(kSparseSamples == EvenOut::kSparse);
+  const octree::OctreeView view = tree.view();
+  const octree::LevelView& pooled = view.levels[std::max(0, view.depth - 1)];
+  auto sums = exec::make_buffer<std::int64_t>(ex, pooled.cell_bricks);
+  for_each(ex, "splat.resolution", sums.size(), SumDepths{pooled, samples.splat_depths.cview(), sums.view()});
+  auto levels = exec::make_buffer<std::uint32_t>(ex, sums.size());
+  for_each(ex, "splat.resolution", sums.size(),
+           EvenOut{pooled, sums.cview(), view.depth, samples.splat_depths.view(), levels.view()});
+  return levels;
+}
+
+template <exec::Space Exec>
+exec::Buffer<std::uint8_t> resolved_around(Exec& ex, const octree::OctreeView& tree,
+                                           ArrayView<const std::uint8_t> own) {
+  auto bricks = exec::make_buffer<std::uint8_t>(ex, own.size);
+  for_each(ex, "splat.resolution", own.size, FlagAround{tree, own, bricks.view()});
+  return bricks;
+}
+
+template <exec::Space Exec>
+exec::Buffer<std::uint8_t> resolved_below(Exec& ex, const octree::OctreeView& tree, const Samples& samples,
+                                          ArrayView<const std::uint8_t> given) {
+  auto own = exec::make_buffer<std::uint8_t>(ex, tree.nodes / 8);
+  for_each(ex, "splat.resolution", own.size(), FlagOwn{tree, samples.splat_depths.cview(), own.view()});
+  exec::Buffer<std::uint8_t> bricks = resolved_around(ex, tree, own.cview());
+  copy(ex, given, bricks.view().part(0, given.size));
+  return bricks;
+}
+
+template <exec::Space Exec>
+Resolution resolution_of(Exec& ex, const octree::OctreeView& tree, exec::Buffer<std::uint8_t> bricks) {
+  Resolution result{std::move(bricks), exec::make_buffer<std::uint8_t>(ex, tree.nodes / 8)};
+  for_each(ex, "splat.resolution", result.unknowns.size(),
+           MarkUnknowns{tree, result.bricks.cview(), result.unknowns.view()});
+  return result;
+}
+
 PSK_INSTANTIATE(find_resolution);
+PSK_INSTANTIATE(even_out_depths);
+PSK_INSTANTIATE(resolved_around);
+PSK_INSTANTIATE(resolved_below);
+PSK_INSTANTIATE(resolution_of);
 
 }  // namespace pointskin::poisson

@@ -7,6 +7,7 @@
 #include "exec/this_space.hpp"
 #include "octree/access.hpp"
 #include "octree/placed.hpp"
+#include "poisson/in_blocks.hpp"
 #include "poisson/trust.hpp"
 
 namespace pointskin::poisson {
@@ -264,6 +265,29 @@ Screening collapse_samples(Exec& ex, const octree::OctreeData& tree, const Sampl
   return result;
 }
 
+template <exec::Space Exec>
+Screening place_collapsed(Exec& ex, const octree::OctreeData& tree) {
+  const octree::OctreeView view = tree.view();
+  Screening result;
+  for (int d = 0; d <= view.depth; ++d) result.first_brick.push_back(view.levels[d].first_node / 8);
+  place_samples(ex, view, result);
+  return result;
+}
+
+template <exec::Space Exec>
+void collapse_above(Exec& ex, const octree::OctreeData& tree, int level, Screening& screening) {
+  const octree::OctreeView view = tree.view();
+  for (int d = level - 1; d >= 0; --d)
+    for_each(ex, "screening.collapse", std::int64_t{8} * view.levels[d].cell_bricks,
+             CollapseChildren{view.levels[d], screening.view(d).brick_index, screening.view(d + 1).brick_index,
+                              screening.samples.data()});
+  screening.corners = exec::make_buffer<std::uint8_t>(ex, view.nodes / 8);
+  for_each(ex, "screening.corners", view.nodes / 8,
+           MarkCorners{view, screening.brick_index.data(), screening.samples.data(), screening.corners.view()});
+}
+
 PSK_INSTANTIATE(collapse_samples);
+PSK_INSTANTIATE(place_collapsed);
+PSK_INSTANTIATE(collapse_above);
 
 }  // namespace pointskin::poisson

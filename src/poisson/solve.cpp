@@ -10,6 +10,7 @@
 #include "octree/access.hpp"
 #include "octree/placed.hpp"
 #include "poisson/complete_solve.hpp"
+#include "poisson/in_blocks.hpp"
 #include "poisson/operator.hpp"
 #include "poisson/previous_detail.hpp"
 #include "poisson/relax_bricks.hpp"
@@ -171,6 +172,29 @@ struct AddSums {
     return {exec::AddExactly{}(a.sum, b.sum), a.count + b.count};
   }
 };
+/// The same of a block's own cells alone.
+struct SumOfOwnValues {
+  struct Total {
+    ExactSumOfValues values;
+    std::int64_t cells = 0;
+  };
+  struct Add {
+    static constexpr bool kAnyOrder = true;
+    PSK_HD Total operator()(const Total& a, const Total& b) const {
+      return {AddSums{}(a.values, b.values), a.cells + b.cells};
+    }
+  };
+
+  octree::LevelView level;
+  ExactlyInCell values;
+  std::uint64_t begin, end;
+  PSK_HD Total operator()(std::int64_t cell) const {
+    const std::uint64_t key = level.node_key(static_cast<std::int32_t>(cell));
+    if (key < begin || key >= end) return {};
+    return {values(cell), 1};
+  }
+};
+
 /// The samples of one finest cell that stand for some area: all samples lie in finest cells.
 struct ValuesInCell {
   octree::LevelView level;
@@ -314,7 +338,34 @@ double mean_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const
   return sum / static_cast<double>(total.count);
 }
 
+template <exec::Space Exec>
+std::vector<LevelSolve> solve_below(Exec& ex, const octree::OctreeView& tree, ArrayView<const float> b,
+                                    const Screening& screening, const SolveOptions& options, int level,
+                                    ArrayView<float> u) {
+  std::vector<LevelSolve> done;
+  Levels<Exec> levels(ex, tree, b, screening, options, u);
+  for (int d = level + 1; d <= tree.depth; ++d) {
+    if (options.before_level) options.before_level(d);
+    levels.solve(d, done);
+  }
+  return done;
+}
+
+template <exec::Space Exec>
+ValuesOfSamples values_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> u,
+                                  const SamplesView& samples, std::uint64_t begin, std::uint64_t end) {
+  static_assert(ValuesOfSamples::kFraction == kValueFraction);
+  const octree::LevelView level = tree.view().finest();
+  auto cells = exec::make_buffer<SumOfValues>(ex, level.cells());
+  for_each(ex, "solve.isovalue", level.cells(), ValuesInCell{level, u.data + level.first_node, samples, cells.view()});
+  const auto total = exec::reduce<SumOfOwnValues::Total>(
+      ex, "solve.isovalue", cells.size(), SumOfOwnValues{level, {cells.cview()}, begin, end}, SumOfOwnValues::Add{});
+  return {total.values.sum, total.values.count, total.cells};
+}
+
 PSK_INSTANTIATE(solve_poisson);
+PSK_INSTANTIATE(solve_below);
+PSK_INSTANTIATE(values_at_samples);
 PSK_INSTANTIATE(mean_at_samples);
 
 }  // namespace pointskin::poisson

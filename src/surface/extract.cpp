@@ -91,6 +91,37 @@ PSK_HD std::uint64_t vertex_key(const octree::OctreeView& tree, const Place& pla
   return octree::encode({c.x << shift, c.y << shift, c.z << shift});
 }
 
+/// Notes which cell the triangles of the table lie in, once ListItems has noted their nodes.
+struct PlaceFromTable {
+  octree::OctreeView tree;
+  ArrayView<const Triangle> items;
+  ArrayView<std::uint64_t> cells;
+  ArrayView<std::uint8_t> segments;
+  PSK_HD void operator()(std::int64_t t) const {
+    const Place place = place_of(tree, items[t][0]);
+    cells[t] = vertex_key(tree, place);
+    segments[t] = static_cast<std::uint8_t>(place.level);
+  }
+};
+
+/// The same for those of cells next to finer ones, which follow.
+struct PlaceTraced {
+  octree::OctreeView tree;
+  std::int32_t table_triangles;
+  ArrayView<const std::int32_t> traced;
+  ArrayView<const std::uint64_t> first_traced;  // packed
+  ArrayView<std::uint64_t> cells;
+  ArrayView<std::uint8_t> segments;
+  PSK_HD void operator()(std::int64_t i) const {
+    const Place place = place_of(tree, traced[i]);
+    const std::int32_t end = table_triangles + low_count(first_traced[i + 1]);
+    for (std::int32_t t = table_triangles + low_count(first_traced[i]); t < end; ++t) {
+      cells[t] = vertex_key(tree, place);
+      segments[t] = static_cast<std::uint8_t>(SurfacePlaces::kTraced + place.level);
+    }
+  }
+};
+
 /// The mesh while it is made: vertices unsorted, edges' first and then the loops' centres.
 struct MeshView {
   ArrayView<Vec3f> positions, normals;  // normals may be empty
@@ -362,11 +393,13 @@ struct CollectTotals {
 };
 
 /// Vertices in the order of their keys, triangles renumbered.
+/// @param places  receives the keys, unless it is null
 template <exec::Space Exec>
-Surface sort_vertices(Exec& ex, Surface unsorted, exec::Buffer<std::uint64_t> keys, int depth) {
+Surface sort_vertices(Exec& ex, Surface unsorted, exec::Buffer<std::uint64_t> keys, int depth, SurfacePlaces* places) {
   const std::int64_t n = keys.size();
   exec::Buffer<std::int32_t> order = exec::iota(ex, n);
   sort_pairs(ex, "extract.sort", keys, order, 3 * (depth + 1));
+  if (places != nullptr) places->keys = std::move(keys);
   keys.reset();
   auto rank = exec::make_buffer<std::int32_t>(ex, n);
   for_each(ex, "extract.renumber", n, Invert{order.cview(), rank.view()});
@@ -444,6 +477,17 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
     for_each(ex, "extract.list", f.tree.nodes, ListItems{numbering, signs.cview(), mesh});
   }
   signs.reset();
+  if (options.places != nullptr) {
+    options.places->cells = exec::make_buffer<std::uint64_t>(ex, triangles);
+    options.places->segments = exec::make_buffer<std::uint8_t>(ex, triangles);
+    const ArrayView<std::uint64_t> cells = options.places->cells.view();
+    const ArrayView<std::uint8_t> segments = options.places->segments.view();
+    const std::int32_t from_table = high_count(totals.table);
+    for_each(ex, "extract.list", from_table,
+             PlaceFromTable{f.tree, surface.triangles.cview().part(0, from_table), cells, segments});
+    for_each(ex, "extract.list", traced.size(),
+             PlaceTraced{f.tree, from_table, traced.cview(), first_traced.cview(), cells, segments});
+  }
   const std::int32_t on_edges = low_count(totals.table);
   exec::Buffer<Vec3f> inside_ends;
   if (options.move_vertices) {
@@ -457,7 +501,7 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
                                    first_traced.cview()});
   marks.reset();
   first.reset();
-  surface = sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth);
+  surface = sort_vertices(ex, std::move(surface), std::move(keys), f.tree.depth, options.places);
   surface.lone_corners = static_cast<std::int64_t>(totals.lone_corners);
   return surface;
 }

@@ -16,12 +16,23 @@
 
 namespace pointskin::surface {
 
+/// Where the vertices and triangles of a surface come from, for meshes of blocks. Keys are Morton keys in units of the
+/// finest cells.
+struct SurfacePlaces {
+  exec::Buffer<std::uint64_t> keys;   ///< (v) of the corners that vertices start at, ascending
+  exec::Buffer<std::uint64_t> cells;  ///< (t) of the cells that triangles lie in
+  exec::Buffer<std::uint8_t>
+      segments;  ///< (t) ascending: the level of the cell, and kTraced more where it is next to finer ones
+  static constexpr int kTraced = 64;
+};
+
 struct ExtractOptions {
   float curvature = 1;  ///< crossings by the rescaled quadratic with this share of its curvature; 0: linear
   bool normals = true;  ///< vertex normals from the field's gradient
   /// Called with the vertices on edges, in no order, and the inside ends of their edges, both shape (v) in the space,
   /// before triangles and centres of loops are made; may move the vertices along their edges towards the inside ends.
   std::function<void(ArrayView<Vec3f> vertices, ArrayView<const Vec3f> inside_ends)> move_vertices{};
+  SurfacePlaces* places = nullptr;  ///< receives where all comes from, if not null
 };
 
 /// A mesh in the space it was made in.

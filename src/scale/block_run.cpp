@@ -1,0 +1,660 @@
+#include "scale/block_run.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "exec/cpu_primitives.hpp"
+#include "octree/octree_data.hpp"
+#include "poisson/in_blocks.hpp"
+#include "poisson/sum_hats.hpp"
+#include "poisson/trust.hpp"
+#include "scale/block_cuts.hpp"
+#include "scale/cell_set.hpp"
+#include "scale/sample_runs.hpp"
+#include "scale/spool.hpp"
+#include "surface/extract.hpp"
+
+namespace pointskin::scale {
+namespace {
+
+using octree::OctreeData;
+using octree::OctreeView;
+using poisson::Facing;
+using poisson::Samples;
+
+/// Keys of points have more bits than those of finest cells.
+constexpr int shift_to(int depth) { return 3 * (octree::kPointBits - depth); }
+
+/// Makes ascending keys single.
+void keep_single(std::vector<std::uint64_t>& keys) { keys.erase(std::unique(keys.begin(), keys.end()), keys.end()); }
+
+/// What is found of every sample, on the disk.
+class SampleValues {
+ public:
+  enum Column : std::uint8_t { area, depth, trust, own_side, examined_depth };
+  static constexpr std::int64_t kColumns = 5;
+
+  SampleValues(const std::string& folder, std::int64_t samples)
+      : samples_(samples), spool_(folder, kColumns * samples * std::int64_t{sizeof(float)}) {}
+
+  void read(Column column, std::int64_t first, ArrayView<float> out) const {
+    spool_.read(at(column, first), out.data, out.size * std::int64_t{sizeof(float)});
+  }
+  void write(Column column, std::int64_t first, ArrayView<const float> values) const {
+    spool_.write(at(column, first), values.data, values.size * std::int64_t{sizeof(float)});
+  }
+
+ private:
+  [[nodiscard]] std::int64_t at(Column column, std::int64_t first) const {
+    return (column * samples_ + first) * std::int64_t{sizeof(float)};
+  }
+  std::int64_t samples_;
+  Spool spool_;
+};
+
+/// Cells of the finest level that a block owns, by key, and its own samples.
+struct Range {
+  std::uint64_t begin = 0, end = 0;
+  SampleRun samples;
+};
+
+/// The samples of a block and its ring.
+struct BlockSamples {
+  Samples samples;
+  exec::Buffer<std::uint64_t> keys;
+  std::int64_t first_own = 0, own = 0;  ///< where its own are
+};
+
+/// What all blocks share: levels 0..K.
+struct Coarse {
+  std::vector<exec::Buffer<std::uint64_t>> bricks;  ///< (K + 1) cell bricks
+  std::vector<std::uint64_t> split;                 ///< cells of level K that have children, ascending
+  OctreeData tree;                                  ///< with a point for every cell of level K that holds samples
+  std::vector<std::uint64_t> cells;                 ///< of level K that hold samples, ascending
+  std::vector<std::int64_t> first;                  ///< first sample of each, and the number of all
+
+  exec::Buffer<Facing> facing;
+  std::uint32_t depths = 0;                    ///< that samples are splatted at, with poisson::kSparseSamples
+  std::vector<std::int8_t> resolved;           ///< finest level up to K that a sample of each of `cells` resolves
+  exec::Buffer<std::uint8_t> resolved_bricks;  ///< Resolution::bricks, or empty if all are
+  Samples sparse;                              ///< splatted at levels up to K
+  exec::Buffer<std::uint64_t> sparse_keys;
+  exec::Buffer<float> field;                                     ///< V of level K, or empty
+  exec::Buffer<float> b, u;                                      ///< over the nodes of these levels
+  std::vector<std::vector<poisson::CollapsedSample>> collapsed;  ///< (K + 1) of the cells with samples
+
+  [[nodiscard]] std::vector<ArrayView<const std::uint64_t>> brick_views() const {
+    std::vector<ArrayView<const std::uint64_t>> views;
+    for (const auto& level : bricks) views.push_back(level.cview());
+    return views;
+  }
+  [[nodiscard]] bool is_sparse() const { return (depths & poisson::kSparseSamples) != 0; }
+};
+
+/// Copies values at own nodes of a level that has the same numbers in both arrays.
+template <class T>
+struct TakeOwn {
+  octree::LevelView level;
+  std::uint64_t begin, end;
+  int finer;  // levels from this one to the finest
+  ArrayView<const T> from;
+  ArrayView<T> to;
+
+  void operator()(std::int64_t n) const {
+    if (is_own(level.node_key(static_cast<std::int32_t>(n)))) to[level.first_node + n] = from[level.first_node + n];
+  }
+  /// Corners on the upper faces of the cube belong to the last cell before them.
+  [[nodiscard]] bool is_own(std::uint64_t node) const {
+    octree::Coordinates c = octree::decode(node);
+    const std::int32_t last = (1 << level.depth) - 1;
+    c = {std::min(c.x, last), std::min(c.y, last), std::min(c.z, last)};
+    const std::uint64_t cell = octree::encode(c) << 3 * finer;
+    return cell >= begin && cell < end;
+  }
+};
+
+class BlockRun {
+ public:
+  BlockRun(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options, BlockReport& report)
+      : ex_(ex),
+        cloud_(cloud),
+        options_(options),
+        report_(report),
+        depth_(options.depth),
+        level_(options.coarse_level),
+        lowest_splat_depth_(poisson::coarsest_splat_depth(cloud.size(), options.depth)),
+        cut_level_(std::max(0, std::min({options.coarse_level, options.depth - 4, lowest_splat_depth_}))),
+        values_(options.folder, cloud.size()) {}
+
+  BlockMeshes run() {
+    find_cells();
+    cut(find_bricks());
+    for (const Range& own : ranges_) sum_facing(own);
+    finish_facing();
+    for (const Range& own : ranges_) weigh(own);
+    examine();
+    for (const Range& own : ranges_) even_out(own);
+    finish_resolution();
+    for (const Range& own : ranges_) splat(own);
+    solve_coarse();
+    poisson::ValuesOfSamples values;
+    std::vector<std::unique_ptr<Spool>> fields;
+    for (const Range& own : ranges_) fields.push_back(solve(own, values));
+    if (!values.reliable())
+      throw Error(ErrorCode::empty_result, "the field at the points is too far from 1/2 to be summed up in blocks");
+    report_.isovalue = values.mean();
+    report_.blocks = static_cast<int>(ranges_.size());
+    BlockMeshes meshes({options_.folder, depth_, level_, columns()});
+    for (std::size_t i = 0; i < ranges_.size(); ++i) {
+      extract(ranges_[i], *fields[i], meshes);
+      fields[i].reset();
+    }
+    meshes.finish();
+    return meshes;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::int64_t> columns() const {
+    std::vector<std::int64_t> columns{sizeof(Vec3f)};
+    if (options_.normals) columns.push_back(sizeof(Vec3f));
+    return columns;
+  }
+  [[nodiscard]] int finer() const { return depth_ - level_; }
+
+  /// Calls visit(first, keys) with all keys, part by part.
+  template <class Visit>
+  void for_keys(const Visit& visit) const {
+    std::vector<std::uint64_t> keys;
+    for (std::int64_t first = 0; first < cloud_.size(); first += std::ssize(keys)) {
+      keys.resize(static_cast<std::size_t>(std::min(options_.part_samples, cloud_.size() - first)));
+      cloud_.read(first, std::ssize(keys), {.keys = keys.data()});
+      visit(first, keys);
+    }
+  }
+
+  void find_cells() {
+    for_keys([&](std::int64_t first, const std::vector<std::uint64_t>& keys) {
+      for (std::size_t i = 0; i < keys.size(); ++i) {
+        const std::uint64_t cell = keys[i] >> shift_to(level_);
+        if (!coarse_.cells.empty() && coarse_.cells.back() == cell) continue;
+        coarse_.cells.push_back(cell);
+        coarse_.first.push_back(first + static_cast<std::int64_t>(i));
+      }
+    });
+    coarse_.first.push_back(cloud_.size());
+    coarse_.resolved.assign(coarse_.cells.size(), 0);
+  }
+
+  /// Which bricks the levels up to K have, and how many finer ones lie in each cell that blocks are cut between. The bricks that
+  /// parts of the points need are, together, those that all points need.
+  std::map<std::uint64_t, std::int64_t> find_bricks() {
+    std::map<std::uint64_t, std::int64_t> loads;
+    const auto add = [&](std::span<const std::uint64_t> bricks, int d) {
+      for (const std::uint64_t brick : bricks) ++loads[brick >> 3 * (d - 1 - cut_level_)];
+    };
+    for_keys([&](std::int64_t /*first*/, std::vector<std::uint64_t> keys) {
+      for (std::uint64_t& key : keys) key >>= shift_to(depth_);
+      keep_single(keys);
+      auto cells = exec::make_buffer<std::uint64_t>(ex_, std::ssize(keys));
+      std::copy(keys.begin(), keys.end(), cells.data());
+      for (int d = depth_; d > level_; --d) {
+        cells = octree::bricks_around(ex_, cells.cview(), d);
+        add({cells.data(), static_cast<std::size_t>(cells.size())}, d);
+      }
+      coarse_.split.insert(coarse_.split.end(), cells.data(), cells.data() + cells.size());
+      if (coarse_.split.size() > 2 * split_before_) make_split_single();
+    });
+    make_split_single();
+    coarse_.bricks.resize(static_cast<std::size_t>(level_) + 1);
+    ArrayView<const std::uint64_t> cells{coarse_.split.data(), std::ssize(coarse_.split)};
+    for (int d = level_; d > octree::kCompleteDepth; --d) {
+      coarse_.bricks[static_cast<std::size_t>(d)] = octree::bricks_around(ex_, cells, d);
+      cells = coarse_.bricks[static_cast<std::size_t>(d)].cview();
+    }
+    return loads;
+  }
+
+  void make_split_single() {
+    std::sort(coarse_.split.begin(), coarse_.split.end());
+    keep_single(coarse_.split);
+    split_before_ = std::max<std::size_t>(coarse_.split.size(), 1 << 16);
+  }
+
+  void cut(const std::map<std::uint64_t, std::int64_t>& cells) {
+    std::vector<std::uint64_t> keys;
+    std::vector<std::int64_t> loads;
+    for (const auto& [key, load] : cells) {
+      keys.push_back(key);
+      loads.push_back(load);
+    }
+    const std::vector<std::int64_t> begins = cut_evenly(loads, options_.blocks);
+    const auto first_in = [&](std::uint64_t key) {  // sample
+      const auto cell = std::lower_bound(coarse_.cells.begin(), coarse_.cells.end(), key >> 3 * finer());
+      return coarse_.first[static_cast<std::size_t>(cell - coarse_.cells.begin())];
+    };
+    const std::uint64_t end = std::uint64_t{1} << 3 * depth_;
+    for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+      if (begins[i] == begins[i + 1]) continue;
+      const std::uint64_t begin =
+          ranges_.empty() ? 0 : keys[static_cast<std::size_t>(begins[i])] << 3 * (depth_ - cut_level_);
+      if (!ranges_.empty()) {
+        ranges_.back().end = begin;
+        ranges_.back().samples.end = first_in(begin);
+      }
+      ranges_.push_back({begin, end, {first_in(begin), cloud_.size()}});
+    }
+    auto points = exec::make_buffer<std::uint64_t>(ex_, std::ssize(coarse_.cells));
+    std::transform(coarse_.cells.begin(), coarse_.cells.end(), points.data(),
+                   [&](std::uint64_t cell) { return cell << shift_to(level_); });
+    coarse_.tree = octree::build_octree_below(ex_, points.cview(), level_, coarse_.brick_views());
+  }
+
+  [[nodiscard]] octree::LevelView coarse_level() const { return coarse_.tree.view().levels[level_]; }
+
+  /// Cells of level K around the block's nodes of that level.
+  [[nodiscard]] CellSet around_nodes(const Range& own) const {
+    const octree::LevelView level = coarse_level();
+    const TakeOwn<char> take{level, own.begin, own.end, finer(), {}, {}};
+    std::vector<std::uint64_t> cells;
+    const std::int32_t last = (1 << level_) - 1;
+    for (std::int64_t n = 0; n < level.nodes(); ++n) {
+      const std::uint64_t node = level.node_key(static_cast<std::int32_t>(n));
+      if (!take.is_own(node)) continue;
+      const octree::Coordinates c = octree::decode(node);
+      cells.push_back(octree::encode({std::min(c.x, last), std::min(c.y, last), std::min(c.z, last)}));
+    }
+    return CellSet(level_, cells).grown(kSumRing);
+  }
+
+  /// Cells of level K around those of the block that hold finer nodes: they have children, or lie at upper ends of cells that do.
+  [[nodiscard]] CellSet around_finer_nodes(const Range& own) const {
+    std::vector<std::uint64_t> cells;
+    const std::int32_t last = (1 << level_) - 1;
+    for (const std::uint64_t key : coarse_.split) {
+      const octree::Coordinates c = octree::decode(key);
+      for (int s = 0; s < 8; ++s) {
+        const std::uint64_t cell =
+            octree::encode({std::min(c.x + octree::slot_x(s), last), std::min(c.y + octree::slot_y(s), last),
+                            std::min(c.z + octree::slot_z(s), last)});
+        const std::uint64_t finest = cell << 3 * finer();
+        if (finest >= own.begin && finest < own.end) cells.push_back(cell);
+      }
+    }
+    return CellSet(level_, cells).grown(solve_ring(options_.iterations));
+  }
+
+  /// Positions, unit normals and keys of the samples in cells of level K, and columns of values.
+  BlockSamples read(const Range& own, const CellSet& cells, bool normals,
+                    std::initializer_list<std::pair<SampleValues::Column, exec::Buffer<float> Samples::*>> columns) {
+    const std::vector<SampleRun> runs = runs_in(cells, coarse_.cells, coarse_.first);
+    std::int64_t n = 0;
+    for (const SampleRun& run : runs) n += run.end - run.begin;
+    BlockSamples block{{}, exec::make_buffer<std::uint64_t>(ex_, n), 0, own.samples.end - own.samples.begin};
+    block.samples.positions = exec::make_buffer<Vec3f>(ex_, n);
+    if (normals) block.samples.normals = exec::make_buffer<Vec3f>(ex_, n);
+    for (const auto& [column, member] : columns) block.samples.*member = exec::make_buffer<float>(ex_, n);
+    std::int64_t at = 0;
+    for (const SampleRun& run : runs) {
+      const std::int64_t count = run.end - run.begin;
+      cloud_.read(run.begin, count,
+                  {block.samples.positions.data() + at, normals ? block.samples.normals.data() + at : nullptr,
+                   block.keys.data() + at});
+      for (const auto& [column, member] : columns)
+        values_.read(column, run.begin, (block.samples.*member).view().part(at, count));
+      if (run.begin <= own.samples.begin && own.samples.begin < run.end)
+        block.first_own = at + own.samples.begin - run.begin;
+      at += count;
+    }
+    poisson::normalise_normals(ex_, block.samples.normals.view());
+    report_.most_samples = std::max(report_.most_samples, n);
+    return block;
+  }
+
+  OctreeData build(BlockSamples& block) {
+    OctreeData tree = octree::build_octree_below(ex_, block.keys.cview(), depth_, coarse_.brick_views());
+    block.keys.reset();
+    report_.most_nodes = std::max(report_.most_nodes, tree.nodes());
+    return tree;
+  }
+
+  template <class T>
+  void take_own(const Range& own, ArrayView<const T> from, ArrayView<T> to) {
+    const octree::LevelView level = coarse_level();
+    for_each(ex_, "scale.take", level.nodes(), TakeOwn<T>{level, own.begin, own.end, finer(), from, to});
+  }
+
+  [[nodiscard]] std::int64_t coarse_nodes() const { return coarse_level().first_node + coarse_level().nodes(); }
+
+  void sum_facing(const Range& own) {
+    BlockSamples block = read(own, around_nodes(own), true, {});
+    const OctreeData tree = build(block);
+    if (coarse_.facing.empty()) coarse_.facing = exec::make_buffer<Facing>(ex_, coarse_nodes());
+    const exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, block.samples);
+    take_own<Facing>(own, facing.cview(), coarse_.facing.view());
+  }
+
+  void finish_facing() {
+    const OctreeView view = coarse_.tree.view();
+    for (int d = level_ - 1; d >= 0; --d) {
+      const octree::LevelView& level = view.levels[d];
+      const octree::LevelView& below = view.levels[d + 1];
+      for_each(ex_, "density.restrict", level.nodes(),
+               poisson::hats::Restrict<Facing>{level, below, coarse_.facing.data() + below.first_node,
+                                               coarse_.facing.view().part(level.first_node, level.nodes())});
+    }
+  }
+
+  void weigh(const Range& own) {
+    BlockSamples block = read(own, around_nodes(own), true, {});
+    const OctreeData tree = build(block);
+    exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, block.samples);
+    copy(ex_, coarse_.facing.cview(), facing.view().part(0, coarse_.facing.size()));
+    const poisson::Weighed weighed =
+        poisson::weigh_by_facing(ex_, tree, options_.samples_per_node, cloud_.size(), facing.cview(), block.samples);
+    write_own(own, block, SampleValues::area, block.samples.areas);
+    write_own(own, block, SampleValues::depth, block.samples.splat_depths);
+    write_own(own, block, SampleValues::own_side, weighed.own_side);
+    write_own(own, block, SampleValues::trust, weighed.bends);
+  }
+
+  void write_own(const Range& own, const BlockSamples& block, SampleValues::Column column,
+                 const exec::Buffer<float>& values) const {
+    values_.write(column, own.samples.begin, values.cview().part(block.first_own, block.own));
+  }
+
+  /// Calls step(part, samples, own_side) for parts of the samples in their order, with those before and after.
+  template <class Step>
+  void for_parts(const Step& step) {
+    const std::int64_t n = cloud_.size();
+    for (std::int64_t first = 0; first < n; first += options_.part_samples) {
+      const std::int64_t begin = std::max<std::int64_t>(0, first - poisson::kExamineReach);
+      const std::int64_t end = std::min(n, first + options_.part_samples + poisson::kExamineReach);
+      const poisson::PartOfCloud part{first, std::min(options_.part_samples, n - first), first - begin, n};
+      const auto column = [&](SampleValues::Column which) {
+        auto values = exec::make_buffer<float>(ex_, end - begin);
+        values_.read(which, begin, values.view());
+        return values;
+      };
+      Samples samples;
+      samples.positions = exec::make_buffer<Vec3f>(ex_, end - begin);
+      samples.normals = exec::make_buffer<Vec3f>(ex_, end - begin);
+      cloud_.read(begin, end - begin, {samples.positions.data(), samples.normals.data()});
+      poisson::normalise_normals(ex_, samples.normals.view());
+      samples.areas = column(SampleValues::area);
+      samples.splat_depths = column(SampleValues::depth);
+      step(part, samples, column(SampleValues::own_side));
+    }
+  }
+
+  void examine() {
+    poisson::LookAtCloud look;
+    for_parts([&](const poisson::PartOfCloud& part, const Samples& samples, const exec::Buffer<float>& own_side) {
+      look.add(poisson::look_at_part(ex_, depth_, part, own_side.cview(), samples));
+    });
+    for_parts([&](const poisson::PartOfCloud& part, Samples& samples, exec::Buffer<float> own_side) {
+      auto bends = exec::make_buffer<float>(ex_, samples.areas.size());
+      values_.read(SampleValues::trust, part.first - part.before, bends.view());
+      poisson::examine_part(ex_, depth_, lowest_splat_depth_, part, look, std::move(own_side), std::move(bends),
+                            samples);
+      const auto own = [&](const exec::Buffer<float>& values) { return values.cview().part(part.before, part.count); };
+      values_.write(SampleValues::area, part.first, own(samples.areas));
+      values_.write(SampleValues::examined_depth, part.first, own(samples.splat_depths));
+      values_.write(SampleValues::trust, part.first, own(samples.trust));
+    });
+  }
+
+  /// Depths become final, and trust.
+  void even_out(const Range& own) {
+    BlockSamples block = read(own, around_nodes(own), true,
+                              {{SampleValues::area, &Samples::areas},
+                               {SampleValues::examined_depth, &Samples::splat_depths},
+                               {SampleValues::trust, &Samples::trust}});
+    std::vector<std::uint64_t> own_keys(block.keys.data() + block.first_own,
+                                        block.keys.data() + block.first_own + block.own);
+    const OctreeData tree = build(block);
+    Samples& samples = block.samples;
+    const exec::Buffer<std::uint32_t> levels = poisson::even_out_depths(ex_, tree, samples);
+    const octree::LevelView pooled = tree.view().levels[depth_ - 1];
+    for (std::int64_t brick = 0; brick < pooled.cell_bricks; ++brick) {
+      const std::uint64_t cell = pooled.brick_key[brick] << 6;  // in finest cells
+      if (cell >= own.begin && cell < own.end) coarse_.depths |= levels.data()[brick];
+    }
+    if (options_.screening > 0 && !options_.fixed_screening) poisson::weigh_trust(ex_, tree, samples);
+    write_own(own, block, SampleValues::depth, samples.splat_depths);
+    write_own(own, block, SampleValues::trust, samples.trust);
+    note_sparse(block, own_keys, own);
+  }
+
+  /// What the coarse levels need to know of own samples.
+  void note_sparse(const BlockSamples& block, const std::vector<std::uint64_t>& keys, const Range& own) {
+    std::size_t cell = 0;
+    if (block.own > 0)
+      cell = static_cast<std::size_t>(
+          std::lower_bound(coarse_.cells.begin(), coarse_.cells.end(), keys.front() >> shift_to(level_)) -
+          coarse_.cells.begin());
+    for (std::int64_t i = 0; i < block.own; ++i) {
+      const std::int64_t at = block.first_own + i;
+      const float depth = block.samples.splat_depths.data()[at];
+      while (coarse_.first[cell + 1] <= own.samples.begin + i) ++cell;
+      std::int8_t& finest = coarse_.resolved[cell];
+      while (finest < level_ && poisson::resolves(depth, finest + 1)) ++finest;
+      if (static_cast<int>(depth) > level_) continue;
+      sparse_.push_back({keys[static_cast<std::size_t>(i)], block.samples.positions.data()[at],
+                         block.samples.normals.data()[at], block.samples.areas.data()[at], depth});
+    }
+  }
+
+  [[nodiscard]] std::uint32_t depth_set() const { return coarse_.depths & ~poisson::kSparseSamples; }
+  void set_depths(Samples& samples) const {
+    samples.splat_depth_set = depth_set();
+    samples.coarsest_splat_depth = std::countr_zero(depth_set());
+  }
+
+  void finish_resolution() {
+    if (coarse_.is_sparse()) {
+      const OctreeView view = coarse_.tree.view();
+      auto own = exec::make_buffer<std::uint8_t>(ex_, view.nodes / 8);
+      exec::fill(ex_, own.view(), std::uint8_t{0});
+      for (std::size_t i = 0; i < coarse_.cells.size(); ++i)
+        for (int d = octree::kCompleteDepth + 1; d <= coarse_.resolved[i]; ++d) {
+          const octree::LevelView& level = view.levels[d];
+          const std::uint64_t brick = coarse_.cells[i] >> 3 * (level_ - d + 1);
+          const std::uint64_t* const found =
+              std::lower_bound(level.brick_key, level.brick_key + level.cell_bricks, brick);
+          own.data()[level.first_node / 8 + (found - level.brick_key)] = 1;
+        }
+      coarse_.resolved_bricks = poisson::resolved_around(ex_, view, own.cview());
+    }
+    splat_sparse();
+    coarse_.b = exec::make_buffer<float>(ex_, coarse_nodes());
+    exec::fill(ex_, coarse_.b.view(), 0.0F);
+    coarse_.collapsed.resize(static_cast<std::size_t>(level_) + 1);
+  }
+
+  void splat_sparse() {
+    const auto n = std::ssize(sparse_);
+    Samples& samples = coarse_.sparse;
+    samples.positions = exec::make_buffer<Vec3f>(ex_, n);
+    samples.normals = exec::make_buffer<Vec3f>(ex_, n);
+    samples.areas = exec::make_buffer<float>(ex_, n);
+    samples.splat_depths = exec::make_buffer<float>(ex_, n);
+    auto keys = exec::make_buffer<std::uint64_t>(ex_, n);
+    for (std::int64_t i = 0; i < n; ++i) {
+      const SparseSample& from = sparse_[static_cast<std::size_t>(i)];
+      keys.data()[i] = from.key;
+      samples.positions.data()[i] = from.position;
+      samples.normals.data()[i] = from.normal;
+      samples.areas.data()[i] = from.area;
+      samples.splat_depths.data()[i] = from.depth;
+    }
+    sparse_ = {};
+    set_depths(samples);
+    sparse_tree_ = octree::build_octree_below(ex_, keys.cview(), level_, coarse_.brick_views());
+    coarse_.field = poisson::splat_coarse_levels(ex_, sparse_tree_.view(), depth_, samples.view());
+  }
+
+  /// Samples of a block as the solver needs them.
+  BlockSamples read_weighed(const Range& own, const CellSet& cells) {
+    BlockSamples block = read(own, cells, true,
+                              {{SampleValues::area, &Samples::areas},
+                               {SampleValues::depth, &Samples::splat_depths},
+                               {SampleValues::trust, &Samples::trust}});
+    if (options_.screening <= 0 || options_.fixed_screening) block.samples.trust.reset();
+    set_depths(block.samples);
+    return block;
+  }
+
+  poisson::Resolution resolution_of(const OctreeData& tree, const Samples& samples) {
+    if (!coarse_.is_sparse()) return {};
+    return poisson::resolution_of(ex_, tree.view(),
+                                  poisson::resolved_below(ex_, tree.view(), samples, coarse_.resolved_bricks.cview()));
+  }
+
+  /// What a block adds to the systems of levels up to K.
+  void splat(const Range& own) {
+    BlockSamples block = read_weighed(own, around_nodes(own));
+    const OctreeData tree = build(block);
+    const poisson::Resolution resolution = resolution_of(tree, block.samples);
+    {
+      const exec::Buffer<float> b =
+          poisson::splat_divergence_below(ex_, tree, block.samples.view(), resolution, level_, coarse_.field.cview());
+      take_own<float>(own, b.cview(), coarse_.b.view());
+    }
+    if (options_.screening <= 0) return;
+    const poisson::Screening screening = poisson::collapse_samples(ex_, tree, block.samples.view());
+    for (int d = cut_level_; d <= level_; ++d) {
+      const octree::LevelView level = tree.view().levels[d];
+      const poisson::ScreeningView collapsed = screening.view(d);
+      for (std::int64_t cell = 0; cell < level.cells(); ++cell) {
+        const std::uint64_t finest = level.node_key(static_cast<std::int32_t>(cell)) << 3 * (depth_ - d);
+        if (level.point_begin[cell] == level.point_begin[cell + 1] || finest < own.begin || finest >= own.end) continue;
+        coarse_.collapsed[static_cast<std::size_t>(d)].push_back(
+            collapsed.samples[8 * std::int64_t{collapsed.brick_index[cell >> 3]} + (cell & 7)]);
+      }
+    }
+  }
+
+  void solve_coarse() {
+    poisson::Resolution resolution;
+    const OctreeView tree = coarse_.tree.view();
+    if (coarse_.is_sparse()) {
+      auto bricks = exec::make_buffer<std::uint8_t>(ex_, coarse_.resolved_bricks.size());
+      copy(ex_, coarse_.resolved_bricks.cview(), bricks.view());
+      resolution = poisson::resolution_of(ex_, tree, std::move(bricks));
+    }
+    poisson::find_coarse_divergence(ex_, sparse_tree_.view(), depth_, coarse_.sparse.view(), resolution,
+                                    coarse_.b.view());
+    sparse_tree_ = {};
+    coarse_.sparse = {};
+    poisson::Screening screening;
+    if (options_.screening > 0) {
+      screening = poisson::place_collapsed(ex_, coarse_.tree);
+      for (int d = cut_level_; d <= level_; ++d) {
+        const octree::LevelView& level = tree.levels[d];
+        const std::vector<poisson::CollapsedSample>& collapsed = coarse_.collapsed[static_cast<std::size_t>(d)];
+        std::size_t next = 0;
+        for (std::int64_t cell = 0; cell < level.cells(); ++cell) {
+          const std::int32_t place = screening.view(d).brick_index[cell >> 3];
+          if (place < 0) continue;
+          poisson::CollapsedSample& sample = screening.samples.data()[8 * std::int64_t{place} + (cell & 7)];
+          sample =
+              level.point_begin[cell] < level.point_begin[cell + 1] ? collapsed[next++] : poisson::CollapsedSample{};
+        }
+      }
+      poisson::collapse_above(ex_, coarse_.tree, cut_level_, screening);
+      coarse_.collapsed = {};
+    }
+    poisson::SolveOptions solving{std::ldexp(options_.screening, -2 * finer()), options_.iterations};
+    coarse_.u = poisson::solve_poisson(ex_, resolution.view(coarse_.tree), coarse_.b.cview(), screening, solving).u;
+  }
+
+  /// @returns the fields of the finer levels
+  std::unique_ptr<Spool> solve(const Range& own, poisson::ValuesOfSamples& values) {
+    BlockSamples block = read_weighed(own, around_finer_nodes(own));
+    const OctreeData tree = build(block);
+    const poisson::Resolution resolution = resolution_of(tree, block.samples);
+    const exec::Buffer<float> b =
+        poisson::splat_divergence_below(ex_, tree, block.samples.view(), resolution, level_, coarse_.field.cview());
+    poisson::Screening screening;
+    if (options_.screening > 0) screening = poisson::collapse_samples(ex_, tree, block.samples.view());
+    const OctreeView view = resolution.view(tree);
+    auto u = exec::make_buffer<float>(ex_, view.nodes);
+    copy(ex_, coarse_.u.cview(), u.view().part(0, coarse_.u.size()));
+    const poisson::SolveOptions solving{options_.screening, options_.iterations};
+    poisson::solve_below(ex_, view, b.cview(), screening, solving, level_, u.view());
+    const poisson::ValuesOfSamples found =
+        poisson::values_at_samples(ex_, tree, u.cview(), block.samples.view(), own.begin, own.end);
+    values.sum = exec::AddExactly{}(values.sum, found.sum);
+    values.count += found.count;
+    values.cells += found.cells;
+    const std::int64_t bytes = (u.size() - coarse_.u.size()) * std::int64_t{sizeof(float)};
+    auto field = std::make_unique<Spool>(options_.folder, bytes);
+    field->write(0, u.data() + coarse_.u.size(), bytes);
+    return field;
+  }
+
+  void extract(const Range& own, const Spool& field, BlockMeshes& meshes) {
+    BlockSamples block = read_weighed(own, around_finer_nodes(own));
+    const OctreeData tree = build(block);
+    const poisson::Resolution resolution = resolution_of(tree, block.samples);
+    block = {};
+    const OctreeView view = resolution.view(tree);
+    auto u = exec::make_buffer<float>(ex_, view.nodes);
+    copy(ex_, coarse_.u.cview(), u.view().part(0, coarse_.u.size()));
+    field.read(0, u.data() + coarse_.u.size(), field.size());
+    surface::SurfacePlaces places;
+    surface::ExtractOptions extraction{options_.curvature, options_.normals};
+    extraction.places = &places;
+    const surface::Surface surface =
+        surface::extract_surface(ex_,
+                                 {view, u.data(), static_cast<float>(report_.isovalue), true,
+                                  resolution.bricks.empty() ? nullptr : resolution.bricks.data()},
+                                 extraction);
+    std::vector<const std::byte*> columns{reinterpret_cast<const std::byte*>(surface.positions.data())};
+    if (options_.normals) columns.push_back(reinterpret_cast<const std::byte*>(surface.normals.data()));
+    const auto span = [](const auto& buffer) {
+      return std::span(buffer.data(), static_cast<std::size_t>(buffer.size()));
+    };
+    meshes.add({own.begin, own.end, span(places.keys), columns, span(surface.triangles), span(places.cells),
+                span(places.segments)});
+  }
+
+  /// A sample that is splatted at levels up to K.
+  struct SparseSample {
+    std::uint64_t key = 0;
+    Vec3f position, normal;
+    float area = 0, depth = 0;
+  };
+
+  exec::Cpu& ex_;
+  const SortedCloud& cloud_;
+  const BlockOptions& options_;
+  BlockReport& report_;
+  int depth_, level_;
+  int lowest_splat_depth_;
+  int cut_level_;  ///< blocks are cut between its cells
+  SampleValues values_;
+  Coarse coarse_;
+  std::size_t split_before_ = 1 << 16;
+  std::vector<Range> ranges_;
+  std::vector<SparseSample> sparse_;
+  OctreeData sparse_tree_;
+};
+
+}  // namespace
+
+BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
+                               BlockReport& report) {
+  return BlockRun(ex, cloud, options, report).run();
+}
+
+}  // namespace pointskin::scale

@@ -1,0 +1,48 @@
+// A cloud to its surface block by block: what memory holds at once is one block with its ring, and the coarse levels.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "exec/cpu.hpp"
+#include "scale/block_meshes.hpp"
+#include "scale/sorted_cloud.hpp"
+
+namespace pointskin::scale {
+
+/// How a cloud is divided, and the options of the run as Options has them.
+struct BlockOptions {
+  std::string folder;    ///< for temporary data: 20 bytes a sample, 4 a node, and the mesh
+  int depth = 8;         ///< of the octree
+  int coarse_level = 5;  ///< K in [octree::kCompleteDepth, depth - 2]: levels up to it are there as a whole
+  int blocks = 1;        ///< at least 1; fewer where there are fewer cells to cut between
+  std::int64_t part_samples = std::int64_t{1} << 20;  ///< that steps without an octree take at once, > 0
+  double samples_per_node = 1.5;
+  double screening = 2;
+  bool fixed_screening = false;
+  int iterations = 8;
+  float curvature = 0.5F;  ///< ExtractOptions::curvature
+  bool normals = true;
+};
+
+struct BlockReport {
+  int blocks = 0;
+  double isovalue = 0;
+  std::int64_t most_samples = 0, most_nodes = 0;  ///< of a block with its ring
+};
+
+/// Cells that a block needs around its own, of level K: to know what reaches its nodes of that level, and to solve the finer ones
+/// (docs/decisions/0057-blocks.md).
+inline constexpr int kSumRing = 5;
+[[nodiscard]] constexpr int solve_ring(int iterations) { return iterations + 5; }
+
+/// The surface that detail::fit_field() and detail::extract() make of the same samples, without trimming, attributes and
+/// pieces taken away, with the same bits for any number of blocks and any coarse level: positions in the unit cube and, if
+/// asked for, normals are the columns.
+/// @throws Error empty_result if the isovalue is no number; output_not_written, over_limit, interrupted
+/// Sweeps over all blocks six times, and builds the octree of a block in each.
+BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
+                               BlockReport& report);
+
+}  // namespace pointskin::scale

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -136,29 +137,31 @@ class BlockRun {
         values_(options.folder, cloud.size()) {}
 
   BlockMeshes run() {
-    find_cells();
-    cut(find_bricks());
-    for (const Range& own : ranges_) sum_facing(own);
+    sweep("cells", [&] { find_cells(); });
+    sweep("bricks", [&] { cut(find_bricks()); });
+    over_blocks("sums", [&](const Range& own) { sum_facing(own); });
     finish_facing();
-    for (const Range& own : ranges_) weigh(own);
-    examine();
-    for (const Range& own : ranges_) even_out(own);
-    finish_resolution();
-    for (const Range& own : ranges_) splat(own);
-    solve_coarse();
+    over_blocks("weights", [&](const Range& own) { weigh(own); });
+    sweep("examine", [&] { examine(); });
+    over_blocks("depths", [&](const Range& own) { even_out(own); });
+    sweep("coarse field", [&] { finish_resolution(); });
+    over_blocks("splat", [&](const Range& own) { splat(own); });
+    sweep("coarse solve", [&] { solve_coarse(); });
     poisson::ValuesOfSamples values;
     std::vector<std::unique_ptr<Spool>> fields;
-    for (const Range& own : ranges_) fields.push_back(solve(own, values));
+    over_blocks("solve", [&](const Range& own) { fields.push_back(solve(own, values)); });
     if (!values.reliable())
       throw Error(ErrorCode::empty_result, "the field at the points is too far from 1/2 to be summed up in blocks");
     report_.isovalue = values.mean();
     report_.blocks = static_cast<int>(ranges_.size());
+    report_.coarse_nodes = coarse_nodes();
     BlockMeshes meshes({options_.folder, depth_, level_, columns()});
-    for (std::size_t i = 0; i < ranges_.size(); ++i) {
-      extract(ranges_[i], *fields[i], meshes);
-      fields[i].reset();
-    }
-    meshes.finish();
+    std::size_t block = 0;
+    over_blocks("extract", [&](const Range& own) {
+      extract(own, *fields[block], meshes);
+      fields[block++].reset();
+    });
+    sweep("join", [&] { meshes.finish(); });
     return meshes;
   }
 
@@ -169,6 +172,17 @@ class BlockRun {
     return columns;
   }
   [[nodiscard]] int finer() const { return depth_ - level_; }
+
+  template <class Work>
+  void sweep(const char* name, const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    report_.sweeps.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
+  }
+  template <class Work>
+  void over_blocks(const char* name, const Work& work) {
+    sweep(name, [&] { std::for_each(ranges_.begin(), ranges_.end(), work); });
+  }
 
   /// Calls visit(first, keys) with all keys, part by part.
   template <class Visit>
@@ -289,7 +303,7 @@ class BlockRun {
         if (finest >= own.begin && finest < own.end) cells.push_back(cell);
       }
     }
-    return CellSet(level_, cells).grown(solve_ring(options_.iterations));
+    return CellSet(level_, cells).grown(options_.ring > 0 ? options_.ring : solve_ring(options_.iterations));
   }
 
   /// Positions, unit normals and keys of the samples in cells of level K, and columns of values.
@@ -316,6 +330,7 @@ class BlockRun {
     }
     poisson::normalise_normals(ex_, block.samples.normals.view());
     report_.most_samples = std::max(report_.most_samples, n);
+    report_.samples_read += n;
     return block;
   }
 
@@ -654,6 +669,11 @@ class BlockRun {
 
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                BlockReport& report) {
+  if (options.coarse_level < octree::kCompleteDepth || options.coarse_level > options.depth - 2 || options.blocks < 1 ||
+      options.part_samples < 1)
+    throw Error(ErrorCode::usage, "a run in blocks needs a coarse level from " +
+                                      std::to_string(octree::kCompleteDepth) +
+                                      " to two above the depth, at least one block, and parts that hold samples");
   return BlockRun(ex, cloud, options, report).run();
 }
 

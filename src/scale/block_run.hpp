@@ -22,6 +22,7 @@ struct BlockOptions {
   double screening = 2;
   bool fixed_screening = false;
   int iterations = 8;
+  int ring = 0;  ///< cells of level K around what is solved; 0: solve_ring(iterations), and fewer give other bytes
   float curvature = 0.5F;  ///< ExtractOptions::curvature
   bool normals = true;
 };
@@ -30,6 +31,15 @@ struct BlockReport {
   int blocks = 0;
   double isovalue = 0;
   std::int64_t most_samples = 0, most_nodes = 0;  ///< of a block with its ring
+  std::int64_t coarse_nodes = 0;                  ///< of levels up to K
+  std::int64_t samples_read = 0;                  ///< by all sweeps
+
+  /// A pass over all samples or blocks.
+  struct Sweep {
+    const char* name = "";
+    double seconds = 0;
+  };
+  std::vector<Sweep> sweeps;
 };
 
 /// Cells that a block needs around its own, of level K: to know what reaches its nodes of that level, and to solve the finer ones
@@ -40,7 +50,9 @@ inline constexpr int kSumRing = 5;
 /// The surface that detail::fit_field() and detail::extract() make of the same samples, without trimming, attributes and
 /// pieces taken away, with the same bits for any number of blocks and any coarse level: positions in the unit cube and, if
 /// asked for, normals are the columns.
-/// @throws Error empty_result if the isovalue is no number; output_not_written, over_limit, interrupted
+/// @param cloud  of at least one point
+/// @throws Error usage for levels and numbers beyond their ranges; empty_result if the isovalue cannot be summed up in parts;
+///         output_not_written, over_limit, interrupted
 /// Sweeps over all blocks six times, and builds the octree of a block in each.
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                BlockReport& report);

@@ -35,6 +35,9 @@ class CloudParts {
   /// @throws Error invalid_input without x, y, z, or if the file has become shorter; usage if `shift` is not finite
   void choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift);
 
+  /// What positions are relative to, once it has been chosen.
+  [[nodiscard]] const Vec3d& origin() const { return origin_; }
+
   /// The points of rows first .. first + count - 1, in parallel. The origin must have been chosen. Where rows have no
   /// finite coordinates there are fewer, and Cloud::dropped says how many.
   /// @throws Error invalid_input if the file has become shorter, or cannot be read

@@ -45,6 +45,18 @@ Blocks format_ply_mesh(const Mesh& mesh, const WriteOptions& options);
 /// @throws Error usage if an array has the wrong length or a name comes twice
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles);
 
+/// A mesh whose arrays are fetched part by part, by any thread. Each function fills `part` with elements [first, last).
+struct MeshParts {
+  Vec3d origin{0, 0, 0};
+  std::int64_t vertices = 0, triangles = 0;
+  std::function<void(std::size_t first, std::size_t last, std::vector<Vec3f>& part)> positions{};
+  std::function<void(std::size_t first, std::size_t last, std::vector<Vec3f>& part)> normals{};  ///< may be empty
+  std::function<void(std::size_t first, std::size_t last, std::vector<Triangle>& part)> corners{};
+};
+
+/// Binary little endian PLY of such a mesh, the same bytes as format_ply() makes. Where the data are wrong, making a block throws.
+Blocks format_ply_parts(const MeshParts& mesh, bool double_coordinates);
+
 /// The same of a mesh in the memory of a device, which is fetched block by block; its attributes are left out. Where
 /// the data are wrong, making a block throws.
 /// @throws Error usage if there are not as many normals as vertices

@@ -61,6 +61,7 @@ class BlockMeshes {
 
   [[nodiscard]] std::int64_t vertices() const { return inner_ + outer_count(); }
   [[nodiscard]] std::int64_t triangles() const { return triangles_; }
+  [[nodiscard]] std::int64_t columns() const { return std::ssize(setup_.columns); }
 
   /// Column `column` of vertices first .. first + count - 1; for many threads at once, after finish().
   /// @throws Error output_not_written if the disk fails, interrupted

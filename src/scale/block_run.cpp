@@ -8,11 +8,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <map>
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
+#include "core/format.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "octree/octree_data.hpp"
 #include "poisson/in_blocks.hpp"
@@ -37,6 +38,13 @@ constexpr int shift_to(int depth) { return 3 * (octree::kPointBits - depth); }
 
 /// Makes ascending keys single.
 void keep_single(std::vector<std::uint64_t>& keys) { keys.erase(std::unique(keys.begin(), keys.end()), keys.end()); }
+
+/// Bytes that are taken for a node of a block's octree and a sample, while it is solved, and for a node of the coarse levels
+/// from the first to the last block (docs/decisions/0057-blocks.md).
+constexpr std::int64_t kNodeBytes = 48, kSampleBytes = 60, kCoarseBytes = 75;
+
+/// The coarse levels get a third of the memory.
+constexpr std::int64_t kCoarseShare = 3;
 
 /// What is found of every sample, on the disk.
 class SampleValues {
@@ -78,7 +86,6 @@ struct BlockSamples {
 /// What all blocks share: levels 0..K.
 struct Coarse {
   std::vector<exec::Buffer<std::uint64_t>> bricks;  ///< (K + 1) cell bricks
-  std::vector<std::uint64_t> split;                 ///< cells of level K that have children, ascending
   OctreeData tree;                                  ///< with a point for every cell of level K that holds samples
   std::vector<std::uint64_t> cells;                 ///< of level K that hold samples, ascending
   std::vector<std::int64_t> first;                  ///< first sample of each, and the number of all
@@ -131,17 +138,21 @@ class BlockRun {
         options_(options),
         report_(report),
         depth_(options.depth),
-        level_(options.coarse_level),
         lowest_splat_depth_(poisson::coarsest_splat_depth(cloud.size(), options.depth)),
-        cut_level_(std::max(0, std::min({options.coarse_level, options.depth - 4, lowest_splat_depth_}))),
         values_(options.folder, cloud.size()) {}
 
   BlockMeshes run() {
-    sweep("cells", [&] { find_cells(); });
-    sweep("bricks", [&] { cut(find_bricks()); });
+    sweep("bricks", [&] { find_bricks(); });
+    sweep("plan", [&] {
+      choose_coarse_level();
+      find_cells();
+      choose_blocks();
+      build_coarse_tree();
+    });
     over_blocks("sums", [&](const Range& own) { sum_facing(own); });
     finish_facing();
     over_blocks("weights", [&](const Range& own) { weigh(own); });
+    coarse_.facing.reset();
     sweep("examine", [&] { examine(); });
     over_blocks("depths", [&](const Range& own) { even_out(own); });
     sweep("coarse field", [&] { finish_resolution(); });
@@ -153,8 +164,6 @@ class BlockRun {
     if (!values.reliable())
       throw Error(ErrorCode::empty_result, "the field at the points is too far from 1/2 to be summed up in blocks");
     report_.isovalue = values.mean();
-    report_.blocks = static_cast<int>(ranges_.size());
-    report_.coarse_nodes = coarse_nodes();
     BlockMeshes meshes({options_.folder, depth_, level_, columns()});
     std::size_t block = 0;
     over_blocks("extract", [&](const Range& own) {
@@ -208,54 +217,144 @@ class BlockRun {
     coarse_.resolved.assign(coarse_.cells.size(), 0);
   }
 
-  /// Which bricks the levels up to K have, and how many finer ones lie in each cell that blocks are cut between. The bricks that
-  /// parts of the points need are, together, those that all points need.
-  std::map<std::uint64_t, std::int64_t> find_bricks() {
-    std::map<std::uint64_t, std::int64_t> loads;
-    const auto add = [&](std::span<const std::uint64_t> bricks, int d) {
-      for (const std::uint64_t brick : bricks) ++loads[brick >> 3 * (d - 1 - cut_level_)];
-    };
+  /// A cell with children, and how many bricks lie below it.
+  struct SplitCell {
+    std::uint64_t key = 0;
+    std::int64_t bricks = 0;
+  };
+
+  /// The cells of level depth - 2 with children. The bricks that parts of the points need are, together, those that all points
+  /// need; of those that several parts need, the bricks of the finest level count several times.
+  void find_bricks() {
+    std::size_t most = std::size_t{1} << 17;
     for_keys([&](std::int64_t /*first*/, std::vector<std::uint64_t> keys) {
       for (std::uint64_t& key : keys) key >>= shift_to(depth_);
       keep_single(keys);
-      auto cells = exec::make_buffer<std::uint64_t>(ex_, std::ssize(keys));
-      std::copy(keys.begin(), keys.end(), cells.data());
-      for (int d = depth_; d > level_; --d) {
-        cells = octree::bricks_around(ex_, cells.cview(), d);
-        add({cells.data(), static_cast<std::size_t>(cells.size())}, d);
+      const ArrayView<const std::uint64_t> cells{keys.data(), std::ssize(keys)};
+      const exec::Buffer<std::uint64_t> finest = octree::bricks_around(ex_, cells, depth_);
+      const exec::Buffer<std::uint64_t> above = octree::bricks_around(ex_, finest.cview(), depth_ - 1);
+      std::int64_t next = 0;
+      for (std::int64_t i = 0; i < above.size(); ++i) {
+        SplitCell cell{above.data()[i], 0};
+        for (; next < finest.size() && finest.data()[next] >> 3 == cell.key; ++next) ++cell.bricks;
+        split_.push_back(cell);
       }
-      coarse_.split.insert(coarse_.split.end(), cells.data(), cells.data() + cells.size());
-      if (coarse_.split.size() > 2 * split_before_) make_split_single();
+      if (split_.size() < most) return;
+      join_split();
+      most = 2 * std::max(split_.size(), most / 2);
     });
-    make_split_single();
-    coarse_.bricks.resize(static_cast<std::size_t>(level_) + 1);
-    ArrayView<const std::uint64_t> cells{coarse_.split.data(), std::ssize(coarse_.split)};
-    for (int d = level_; d > octree::kCompleteDepth; --d) {
-      coarse_.bricks[static_cast<std::size_t>(d)] = octree::bricks_around(ex_, cells, d);
-      cells = coarse_.bricks[static_cast<std::size_t>(d)].cview();
+    join_split();
+    for (SplitCell& cell : split_) ++cell.bricks;  // its own children
+  }
+
+  void join_split() {
+    std::sort(split_.begin(), split_.end(), [](const SplitCell& a, const SplitCell& b) { return a.key < b.key; });
+    std::size_t joined = 0;
+    for (std::size_t i = 0; i < split_.size(); ++i) {
+      if (joined > 0 && split_[joined - 1].key == split_[i].key)
+        split_[joined - 1].bricks += split_[i].bricks;
+      else
+        split_[joined++] = split_[i];
     }
-    return loads;
+    split_.resize(joined);
   }
 
-  void make_split_single() {
-    std::sort(coarse_.split.begin(), coarse_.split.end());
-    keep_single(coarse_.split);
-    split_before_ = std::max<std::size_t>(coarse_.split.size(), 1 << 16);
+  /// Goes up from level depth - 2 to K, and on to the complete levels.
+  void choose_coarse_level() {
+    const int first = depth_ - 2;
+    coarse_.bricks.resize(static_cast<std::size_t>(first) + 1);
+    std::vector<std::vector<SplitCell>> split(static_cast<std::size_t>(first) + 1);
+    split[static_cast<std::size_t>(first)] = std::move(split_);
+    std::vector<std::int64_t> nodes(static_cast<std::size_t>(first) + 1);  // of each level and all above
+    for (int d = first; d > octree::kCompleteDepth; --d) {
+      const std::vector<SplitCell>& below = split[static_cast<std::size_t>(d)];
+      std::vector<std::uint64_t> keys(below.size());
+      std::transform(below.begin(), below.end(), keys.begin(), [](const SplitCell& cell) { return cell.key; });
+      auto& bricks = coarse_.bricks[static_cast<std::size_t>(d)];
+      bricks = octree::bricks_around(ex_, ArrayView<const std::uint64_t>{keys.data(), std::ssize(keys)}, d);
+      std::vector<SplitCell>& above = split[static_cast<std::size_t>(d) - 1];
+      std::size_t next = 0;
+      for (std::int64_t i = 0; i < bricks.size(); ++i) {
+        SplitCell cell{bricks.data()[i], 1};
+        for (; next < below.size() && below[next].key >> 3 == cell.key; ++next) cell.bricks += below[next].bricks;
+        above.push_back(cell);
+      }
+    }
+    for (int d = 0; d <= first; ++d) {
+      const std::int64_t own = d <= octree::kCompleteDepth ? (std::int64_t{1} << 3 * d)
+                                                           : 8 * coarse_.bricks[static_cast<std::size_t>(d)].size();
+      nodes[static_cast<std::size_t>(d)] = own + (d > 0 ? nodes[static_cast<std::size_t>(d) - 1] : 0);
+    }
+    level_ = options_.coarse_level > 0 ? options_.coarse_level : first;
+    if (options_.coarse_level <= 0)
+      while (level_ > octree::kCompleteDepth &&
+             with_ghosts(nodes[static_cast<std::size_t>(level_)]) * kCoarseBytes > options_.memory_bytes / kCoarseShare)
+        --level_;
+    coarse_.bricks.resize(static_cast<std::size_t>(level_) + 1);
+    split_ = std::move(split[static_cast<std::size_t>(level_)]);
+    planned_coarse_bytes_ = with_ghosts(nodes[static_cast<std::size_t>(level_)]) * kCoarseBytes;
+    report_.coarse_level = level_;
+    cut_level_ = std::max(0, std::min({level_, depth_ - 4, lowest_splat_depth_}));
   }
 
-  void cut(const std::map<std::uint64_t, std::int64_t>& cells) {
+  /// Upper ends of cells need nodes beside those of the cells' own bricks.
+  static std::int64_t with_ghosts(std::int64_t nodes) { return nodes + nodes / 4; }
+
+  /// As many as are asked for; or the fewest, as far as estimates tell, that memory holds one by one.
+  void choose_blocks() {
+    if (options_.blocks > 0) return cut(options_.blocks);
+    const double left = std::max(1.0, static_cast<double>(options_.memory_bytes - planned_coarse_bytes_));
+    std::int64_t bricks = 0;
+    for (const SplitCell& cell : split_) bricks += cell.bricks;
+    const double whole = 8 * static_cast<double>(with_ghosts(bricks)) * static_cast<double>(kNodeBytes);
+    for (int blocks = static_cast<int>(std::clamp(whole / left, 1.0, 1e6));;) {
+      cut(blocks);
+      std::int64_t most = 0;
+      for (const Range& own : ranges_) {
+        most = std::max(most, planned_bytes(own));
+        if (static_cast<double>(most) > left) break;
+      }
+      if (planned_coarse_bytes_ + most <= options_.memory_bytes) return;
+      if (std::ssize(ranges_) < blocks)
+        throw Error(ErrorCode::over_limit,
+                    fmt::format("blocks of this cloud need {} bytes; the smallest one with its ring takes {}, and the "
+                                "levels that all share {}",
+                                planned_coarse_bytes_ + most, most, planned_coarse_bytes_));
+      blocks = std::max(blocks + 1, static_cast<int>(std::min(4.0, 0.8 * static_cast<double>(most) / left) * blocks));
+    }
+  }
+
+  /// Of a block with the cells around it, and what working on it takes.
+  [[nodiscard]] std::int64_t planned_bytes(const Range& own) const {
+    const CellSet cells = around_finer_nodes(own);
+    std::int64_t nodes = 0;
+    for (const SplitCell& cell : split_)
+      if (cells.contains(octree::decode(cell.key))) nodes += 8 * cell.bricks;
+    std::int64_t samples = 0;
+    for (const SampleRun& run : runs_in(cells, coarse_.cells, coarse_.first)) samples += run.end - run.begin;
+    return with_ghosts(nodes) * kNodeBytes + samples * kSampleBytes +
+           planned_coarse_bytes_ / kCoarseBytes * kNodeBytes;  // every block's octree has the coarse levels
+  }
+
+  /// Sets `ranges_`, at most so many.
+  void cut(int blocks) {
     std::vector<std::uint64_t> keys;
     std::vector<std::int64_t> loads;
-    for (const auto& [key, load] : cells) {
-      keys.push_back(key);
-      loads.push_back(load);
+    for (const SplitCell& cell : split_) {
+      const std::uint64_t key = cell.key >> 3 * (level_ - cut_level_);
+      if (keys.empty() || keys.back() != key) {
+        keys.push_back(key);
+        loads.push_back(0);
+      }
+      loads.back() += cell.bricks;
     }
-    const std::vector<std::int64_t> begins = cut_evenly(loads, options_.blocks);
+    const std::vector<std::int64_t> begins = cut_evenly(loads, blocks);
     const auto first_in = [&](std::uint64_t key) {  // sample
       const auto cell = std::lower_bound(coarse_.cells.begin(), coarse_.cells.end(), key >> 3 * finer());
       return coarse_.first[static_cast<std::size_t>(cell - coarse_.cells.begin())];
     };
     const std::uint64_t end = std::uint64_t{1} << 3 * depth_;
+    ranges_.clear();
     for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
       if (begins[i] == begins[i + 1]) continue;
       const std::uint64_t begin =
@@ -266,10 +365,15 @@ class BlockRun {
       }
       ranges_.push_back({begin, end, {first_in(begin), cloud_.size()}});
     }
+  }
+
+  void build_coarse_tree() {
     auto points = exec::make_buffer<std::uint64_t>(ex_, std::ssize(coarse_.cells));
     std::transform(coarse_.cells.begin(), coarse_.cells.end(), points.data(),
                    [&](std::uint64_t cell) { return cell << shift_to(level_); });
     coarse_.tree = octree::build_octree_below(ex_, points.cview(), level_, coarse_.brick_views());
+    report_.blocks = static_cast<int>(ranges_.size());
+    report_.coarse_nodes = coarse_nodes();
   }
 
   [[nodiscard]] octree::LevelView coarse_level() const { return coarse_.tree.view().levels[level_]; }
@@ -293,8 +397,8 @@ class BlockRun {
   [[nodiscard]] CellSet around_finer_nodes(const Range& own) const {
     std::vector<std::uint64_t> cells;
     const std::int32_t last = (1 << level_) - 1;
-    for (const std::uint64_t key : coarse_.split) {
-      const octree::Coordinates c = octree::decode(key);
+    for (const SplitCell& split : split_) {
+      const octree::Coordinates c = octree::decode(split.key);
       for (int s = 0; s < 8; ++s) {
         const std::uint64_t cell =
             octree::encode({std::min(c.x + octree::slot_x(s), last), std::min(c.y + octree::slot_y(s), last),
@@ -590,6 +694,7 @@ class BlockRun {
     }
     poisson::SolveOptions solving{std::ldexp(options_.screening, -2 * finer()), options_.iterations};
     coarse_.u = poisson::solve_poisson(ex_, resolution.view(coarse_.tree), coarse_.b.cview(), screening, solving).u;
+    coarse_.b.reset();
   }
 
   /// @returns the fields of the finer levels
@@ -654,12 +759,14 @@ class BlockRun {
   const SortedCloud& cloud_;
   const BlockOptions& options_;
   BlockReport& report_;
-  int depth_, level_;
+  int depth_;
+  int level_ = 0;  ///< K
   int lowest_splat_depth_;
-  int cut_level_;  ///< blocks are cut between its cells
+  int cut_level_ = 0;             ///< blocks are cut between its cells
+  std::vector<SplitCell> split_;  ///< of level K, ascending
+  std::int64_t planned_coarse_bytes_ = 0;
   SampleValues values_;
   Coarse coarse_;
-  std::size_t split_before_ = 1 << 16;
   std::vector<Range> ranges_;
   std::vector<SparseSample> sparse_;
   OctreeData sparse_tree_;
@@ -669,11 +776,15 @@ class BlockRun {
 
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                BlockReport& report) {
-  if (options.coarse_level < octree::kCompleteDepth || options.coarse_level > options.depth - 2 || options.blocks < 1 ||
-      options.part_samples < 1)
-    throw Error(ErrorCode::usage, "a run in blocks needs a coarse level from " +
-                                      std::to_string(octree::kCompleteDepth) +
-                                      " to two above the depth, at least one block, and parts that hold samples");
+  const bool has_levels = options.coarse_level == 0 ||
+                          (options.coarse_level >= octree::kCompleteDepth && options.coarse_level <= options.depth - 2);
+  const bool plans = options.coarse_level == 0 || options.blocks == 0;
+  if (!has_levels || options.depth - 2 < octree::kCompleteDepth || options.blocks < 0 || options.part_samples < 1 ||
+      (plans && options.memory_bytes < 1))
+    throw Error(ErrorCode::usage,
+                fmt::format("a run in blocks needs a depth of at least {}, a coarse level from {} to two "
+                            "above the depth, blocks, and parts that hold samples",
+                            octree::kCompleteDepth + 2, octree::kCompleteDepth));
   return BlockRun(ex, cloud, options, report).run();
 }
 

@@ -15,8 +15,9 @@ namespace pointskin::scale {
 struct BlockOptions {
   std::string folder;    ///< for temporary data: 20 bytes a sample, 4 a node, and the mesh
   int depth = 8;         ///< of the octree
-  int coarse_level = 5;  ///< K in [octree::kCompleteDepth, depth - 2]: levels up to it are there as a whole
-  int blocks = 1;        ///< at least 1; fewer where there are fewer cells to cut between
+  int coarse_level = 0;  ///< K in [octree::kCompleteDepth, depth - 2]: levels up to it are there as a whole; 0: chosen
+  int blocks = 0;        ///< at most so many: cuts lie between cells; 0: as many as memory asks for
+  std::int64_t memory_bytes = 0;  ///< that a block and the coarse levels may take, where they are to be chosen
   std::int64_t part_samples = std::int64_t{1} << 20;  ///< that steps without an octree take at once, > 0
   double samples_per_node = 1.5;
   double screening = 2;
@@ -29,6 +30,7 @@ struct BlockOptions {
 
 struct BlockReport {
   int blocks = 0;
+  int coarse_level = 0;
   double isovalue = 0;
   std::int64_t most_samples = 0, most_nodes = 0;  ///< of a block with its ring
   std::int64_t coarse_nodes = 0;                  ///< of levels up to K
@@ -51,7 +53,8 @@ inline constexpr int kSumRing = 5;
 /// pieces taken away, with the same bits for any number of blocks and any coarse level: positions in the unit cube and, if
 /// asked for, normals are the columns.
 /// @param cloud  of at least one point
-/// @throws Error usage for levels and numbers beyond their ranges; empty_result if the isovalue cannot be summed up in parts;
+/// @throws Error usage for levels and numbers beyond their ranges; over_limit if no number of blocks does with the memory, which
+///         says how much the smallest takes; empty_result if the isovalue cannot be summed up in parts;
 ///         output_not_written, over_limit, interrupted
 /// Sweeps over all blocks six times, and builds the octree of a block in each.
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,

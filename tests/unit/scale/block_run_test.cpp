@@ -20,6 +20,7 @@
 #include "octree/frame.hpp"
 #include "scale/block_run.hpp"
 #include "scale/cloud_extent.hpp"
+#include "scale/write_blocks.hpp"
 #include "support/io_files.hpp"
 #include "support/shapes.hpp"
 
@@ -67,7 +68,10 @@ class BlockRun : public testing::Test {
   [[nodiscard]] std::int64_t differences(const scale::BlockOptions& options) {
     scale::BlockReport report;
     const scale::BlockMeshes meshes = scale::reconstruct_blocks(ex_, *sorted_, options, report);
-    EXPECT_EQ(report.blocks, options.blocks);
+    if (options.blocks > 0) {
+      EXPECT_EQ(report.blocks, options.blocks);
+    }
+    blocks_ = report.blocks;
     const std::int64_t more = std::abs(meshes.vertices() - std::ssize(whole_.vertices)) +
                               std::abs(meshes.triangles() - std::ssize(whole_.triangles));
     if (more > 0) return more;
@@ -79,6 +83,14 @@ class BlockRun : public testing::Test {
     for (Vec3f& position : positions) position = frame_.to_world(position);
     return differing(positions, whole_.vertices) + differing(normals, whole_.normals) +
            differing(triangles, whole_.triangles);
+  }
+
+  void expect_the_file_of_the_whole(const scale::BlockOptions& options) {
+    scale::BlockReport report;
+    const scale::BlockMeshes meshes = scale::reconstruct_blocks(ex_, *sorted_, options, report);
+    scale::write_ply(ex_, meshes, frame_, parts_->origin(), folder_.file("blocks.ply"));
+    write_mesh(folder_.file("whole.ply"), whole_);
+    EXPECT_EQ(bytes_of_file(folder_.file("blocks.ply")), bytes_of_file(folder_.file("whole.ply")));
   }
 
   template <class T>
@@ -97,6 +109,9 @@ class BlockRun : public testing::Test {
   octree::Frame frame_;
   Mesh whole_;
   Options options_;
+
+ protected:
+  int blocks_ = 0;  ///< of the last run
 };
 
 Options at_depth(int depth, int iterations = 8, double screening = 2) {
@@ -154,6 +169,32 @@ TEST_F(BlockRun, NeedsTheRingThatItTakes) {
   }
   options.ring = 0;
   EXPECT_EQ(differences(options), 0);
+}
+
+TEST_F(BlockRun, WritesTheFileOfTheWhole) {
+  for (const Vec3f& offset : {Vec3f{}, Vec3f{1000, 0, 0}}) {
+    start(translated(torus_cloud(4000, 11), offset), at_depth(7, 4));
+    expect_the_file_of_the_whole(block_options(5, 2));
+  }
+}
+
+TEST_F(BlockRun, TakesMoreBlocksWhereThereIsLessMemory) {
+  start(sphere_cloud(40000, 10), at_depth(8, 4));
+  scale::BlockOptions options = block_options(0, 0);
+  int before = 0;
+  for (const std::int64_t megabytes : {400, 40}) {
+    options.memory_bytes = megabytes * 1'000'000;
+    EXPECT_EQ(differences(options), 0);
+    EXPECT_GT(blocks_, before);
+    before = blocks_;
+  }
+  options.memory_bytes = 1'000'000;
+  try {
+    (void)differences(options);
+    FAIL() << "a megabyte holds no block";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::over_limit);
+  }
 }
 
 TEST_F(BlockRun, RefusesLevelsThatItCannotShare) {

@@ -1,0 +1,22 @@
+// The mesh of blocks, as a file.
+#pragma once
+
+#include <string>
+
+#include <pointskin/vector.hpp>
+
+#include "exec/cpu.hpp"
+#include "octree/frame.hpp"
+#include "scale/block_meshes.hpp"
+
+namespace pointskin::scale {
+
+/// Writes binary PLY, the same bytes as write_mesh() of the whole mesh: a few thousand vertices or triangles a thread are in memory.
+/// @param meshes  finished, with positions in the unit cube and, if there is a second column, normals
+/// @param frame   of the unit cube, relative to `origin`
+/// @throws Error output_not_written, interrupted; invalid_input if a position or a normal is not finite. The file is then what it
+///         was
+void write_ply(exec::Cpu& ex, const BlockMeshes& meshes, const octree::Frame& frame, const Vec3d& origin,
+               const std::string& path);
+
+}  // namespace pointskin::scale

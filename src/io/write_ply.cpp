@@ -253,13 +253,28 @@ Blocks format_device_ply(const Workspace& workspace, const DeviceMesh& mesh, boo
   if (!mesh.normals.empty() && mesh.normals.size != mesh.vertices.size)
     throw Error(ErrorCode::usage, fmt::format("{} normals for {} vertices", mesh.normals.size, mesh.vertices.size));
   const Parts parts(workspace);
-  const auto reading = [&parts](const auto& from) {
-    return [parts, from](std::size_t first, std::size_t last, auto& part) { parts.read(from, first, last, part); };
+  const VertexRow row{static_cast<std::size_t>(mesh.vertices.size), double_coordinates || !is_zero(mesh.origin),
+                      !mesh.normals.empty()};
+  const auto append_vertices = [parts, mesh, row](std::size_t first, std::size_t last, std::string& bytes) {
+    auto& [positions, normals, triangles] = fetched();
+    parts.read(mesh.vertices, first, last, positions);
+    check_finite("vertex", first, positions);
+    normals.clear();
+    if (row.normals) parts.read(mesh.normals, first, last, normals);
+    check_finite("the normal of vertex", first, normals);
+    const std::vector<Attribute> none;
+    store_rows({mesh.origin, positions, normals, none, row.wide}, {}, {0, last - first, row.bytes()},
+               append_rows(bytes, last - first, row.bytes()));
   };
-  MeshParts whole{mesh.origin, mesh.vertices.size,     mesh.triangles.size, reading(mesh.vertices),
-                  {},          reading(mesh.triangles)};
-  if (!mesh.normals.empty()) whole.normals = reading(mesh.normals);
-  return format_ply_parts(whole, double_coordinates);
+  const auto append_faces = [parts, mesh](std::size_t first, std::size_t last, std::string& bytes) {
+    std::vector<Triangle>& triangles = fetched().triangles;
+    parts.read(mesh.triangles, first, last, triangles);
+    check_corners(mesh.vertices.size, triangles);
+    store_faces(triangles, 0, triangles.size(), append_rows(bytes, triangles.size(), kFaceBytes));
+  };
+  const auto faces = static_cast<std::size_t>(mesh.triangles.size);
+  return cut_into_blocks(whole_header(row, faces, "binary_little_endian"),
+                         {{row.count, append_vertices}, {faces, append_faces}});
 }
 
 }  // namespace pointskin::io

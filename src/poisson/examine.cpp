@@ -53,7 +53,6 @@ struct LookAt {
   float cell_area;  // of a finest cell's face
   ArrayView<const float> own_side, areas;
   std::uint64_t* words;
-  std::int64_t all;  // samples of the cloud, of which `around` may have a part
 
   [[nodiscard]] PSK_HD LookedAt part(std::int64_t group, int lane) const {
     const std::int64_t s = group * kLanes + lane;
@@ -66,7 +65,7 @@ struct LookAt {
 
   [[nodiscard]] PSK_HD LookedAt look_at(std::int64_t i) const {
     const std::int64_t n = around.positions.size;
-    const float density = 1 / (std::abs(own_side[i]) * cell_area * static_cast<float>(all));
+    const float density = 1 / (std::abs(own_side[i]) * cell_area * static_cast<float>(n));
     const Seen seen = around.seen_from(i);
     Tally tally{seen.can_tell(), seen.can_tell() && seen.faces_like_others(), 0};
     if (i + Followed::kFourth < n) {
@@ -89,7 +88,12 @@ struct LookAtPart {
   [[nodiscard]] PSK_HD LookedAt part(std::int64_t group, int lane) const {
     const std::int64_t s = group * kLanes + lane;
     const std::int64_t i = s * own.all / look.looked_at - own.first;
-    return s < look.looked_at && i >= 0 && i < own.count ? look.look_at(own.before + i) : LookedAt{};
+    if (s >= look.looked_at || i < 0 || i >= own.count) return {};
+    LookedAt seen = look.look_at(own.before + i);
+    // LookAt knows no samples but those that are there.
+    const float density = 1 / (std::abs(look.own_side[own.before + i]) * look.cell_area * static_cast<float>(own.all));
+    seen.density = static_cast<std::uint64_t>(kFixed * (density < kDensest ? density : kDensest));
+    return seen;
   }
   PSK_HD void finish(std::int64_t group, const LookedAt& sum) const { look.finish(group, sum); }
 };
@@ -138,7 +142,7 @@ void examine_samples(Exec& ex, int depth, int coarsest, exec::Buffer<float> own_
   exec::fill(ex, samples.lonely.view(), std::uint64_t{0});
   for_each_by_lanes(
       ex, kLabel, (looked_at + LookAt::kLanes - 1) / LookAt::kLanes,
-      LookAt{around, looked_at, cell_area, own_side.cview(), samples.areas.cview(), samples.lonely.data(), n});
+      LookAt{around, looked_at, cell_area, own_side.cview(), samples.areas.cview(), samples.lonely.data()});
   auto found = exec::make_buffer<Cloudwide>(ex, 1);
   for_each(ex, kLabel, 1, Judge{samples.lonely.data(), n, looked_at, cell_area, found.view()});
   examine_each(ex, kLabel, n,
@@ -156,7 +160,7 @@ LookAtCloud look_at_part(Exec& ex, int depth, const PartOfCloud& part, ArrayView
   const Around around{samples.positions.cview(), samples.normals.cview(), samples.splat_depths.cview()};
   auto words = exec::make_buffer<std::uint64_t>(ex, kWords);
   exec::fill(ex, words.view(), std::uint64_t{0});
-  const LookAt look{around, looked_at, cell_area, own_side, samples.areas.cview(), words.data(), part.all};
+  const LookAt look{around, looked_at, cell_area, own_side, samples.areas.cview(), words.data()};
   for_each_by_lanes(ex, kLabel, (looked_at + LookAt::kLanes - 1) / LookAt::kLanes, LookAtPart{look, part});
   LookAtCloud result;
   result.words.resize(kWords);

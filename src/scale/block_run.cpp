@@ -317,8 +317,8 @@ class BlockRun {
       if (planned_coarse_bytes_ + most <= options_.memory_bytes) return;
       if (std::ssize(ranges_) < blocks)
         throw Error(ErrorCode::over_limit,
-                    fmt::format("blocks of this cloud need {} bytes; the smallest one with its ring takes {}, and the "
-                                "levels that all share {}",
+                    fmt::format("blocks of this cloud need {} bytes or more: one that cannot be cut takes {} with its "
+                                "ring, and the levels that all share {}",
                                 planned_coarse_bytes_ + most, most, planned_coarse_bytes_));
       blocks = std::max(blocks + 1, static_cast<int>(std::min(4.0, 0.8 * static_cast<double>(most) / left) * blocks));
     }

@@ -11,6 +11,8 @@ namespace pointskin::diagnose {
 struct Spread {
   std::int64_t some = 0, all = 0;
   PSK_HD std::int64_t operator()(std::int64_t i) const { return i * all / some; }
+  /// The first of the `some` that is not before thing `begin`.
+  [[nodiscard]] std::int64_t first_from(std::int64_t begin) const { return (begin * some + all - 1) / all; }
 };
 
 }  // namespace pointskin::diagnose

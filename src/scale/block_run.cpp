@@ -14,14 +14,22 @@
 #include <vector>
 
 #include "core/format.hpp"
+#include "diagnose/in_blocks.hpp"
+#include "diagnose/look.hpp"
+#include "diagnose/look_at.hpp"
+#include "diagnose/spread.hpp"
+#include "diagnose/verdict.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "octree/octree_data.hpp"
 #include "poisson/in_blocks.hpp"
 #include "poisson/sum_hats.hpp"
 #include "poisson/trust.hpp"
 #include "scale/block_cuts.hpp"
+#include "scale/block_looks.hpp"
 #include "scale/cell_set.hpp"
+#include "scale/key_index.hpp"
 #include "scale/sample_runs.hpp"
+#include "scale/sample_values.hpp"
 #include "scale/spool.hpp"
 #include "surface/extract.hpp"
 
@@ -45,30 +53,6 @@ constexpr std::int64_t kNodeBytes = 48, kSampleBytes = 60, kCoarseBytes = 75;
 
 /// The coarse levels get a third of the memory.
 constexpr std::int64_t kCoarseShare = 3;
-
-/// What is found of every sample, on the disk.
-class SampleValues {
- public:
-  enum Column : std::uint8_t { area, depth, trust, own_side, examined_depth };
-  static constexpr std::int64_t kColumns = 5;
-
-  SampleValues(const std::string& folder, std::int64_t samples)
-      : samples_(samples), spool_(folder, kColumns * samples * std::int64_t{sizeof(float)}) {}
-
-  void read(Column column, std::int64_t first, ArrayView<float> out) const {
-    spool_.read(at(column, first), out.data, out.size * std::int64_t{sizeof(float)});
-  }
-  void write(Column column, std::int64_t first, ArrayView<const float> values) const {
-    spool_.write(at(column, first), values.data, values.size * std::int64_t{sizeof(float)});
-  }
-
- private:
-  [[nodiscard]] std::int64_t at(Column column, std::int64_t first) const {
-    return (column * samples_ + first) * std::int64_t{sizeof(float)};
-  }
-  std::int64_t samples_;
-  Spool spool_;
-};
 
 /// Cells of the finest level that a block owns, by key, and its own samples.
 struct Range {
@@ -139,7 +123,8 @@ class BlockRun {
         report_(report),
         depth_(options.depth),
         lowest_splat_depth_(poisson::coarsest_splat_depth(cloud.size(), options.depth)),
-        values_(options.folder, cloud.size()) {}
+        values_(options.folder, cloud.size()),
+        counts_(diagnose::make_counts(ex)) {}
 
   BlockMeshes run() {
     sweep("bricks", [&] { find_bricks(); });
@@ -155,6 +140,8 @@ class BlockRun {
     coarse_.facing.reset();
     sweep("examine", [&] { examine(); });
     over_blocks("depths", [&](const Range& own) { even_out(own); });
+    const KeyIndex index(cloud_, level_, coarse_.cells, coarse_.first);
+    sweep("look at samples", [&] { look_at_pairs(ex_, cloud_, values_, index, depth_, *counts_.data()); });
     sweep("coarse field", [&] { finish_resolution(); });
     over_blocks("splat", [&](const Range& own) { splat(own); });
     sweep("coarse solve", [&] { solve_coarse(); });
@@ -171,6 +158,11 @@ class BlockRun {
       fields[block++].reset();
     });
     sweep("join", [&] { meshes.finish(); });
+    sweep("look at triangles", [&] {
+      const diagnose::Findings findings = diagnose::findings_of(*counts_.data());
+      look_at_triangles(meshes, index, diagnose::far_depth(findings, depth_), *counts_.data());
+    });
+    report_.looks = *counts_.data();
     return meshes;
   }
 
@@ -483,6 +475,29 @@ class BlockRun {
     write_own(own, block, SampleValues::depth, block.samples.splat_depths);
     write_own(own, block, SampleValues::own_side, weighed.own_side);
     write_own(own, block, SampleValues::trust, weighed.bends);
+    const std::vector<std::int64_t> chosen =
+        chosen_own(own, diagnose::kSamples, block.first_own, [](std::int64_t s) { return !diagnose::looks_across(s); });
+    diagnose::look_at_densities(ex_, tree.view(), weighed.density,
+                                choose(chosen, block.samples.positions.cview()).cview(), counts_);
+  }
+
+  /// Where samples of the whole cloud that are looked at, evenly spread, lie among those of a block.
+  /// @param first_own  place of the block's first own sample there
+  template <class Choose>
+  [[nodiscard]] std::vector<std::int64_t> chosen_own(const Range& own, std::int64_t some, std::int64_t first_own,
+                                                     const Choose& is_chosen) const {
+    const diagnose::Spread spread{std::min(cloud_.size(), some), cloud_.size()};
+    std::vector<std::int64_t> chosen;
+    for (std::int64_t s = spread.first_from(own.samples.begin); s < spread.some && spread(s) < own.samples.end; ++s)
+      if (is_chosen(s)) chosen.push_back(first_own + spread(s) - own.samples.begin);
+    return chosen;
+  }
+
+  template <class T>
+  exec::Buffer<T> choose(const std::vector<std::int64_t>& chosen, ArrayView<const T> from) {
+    auto to = exec::make_buffer<T>(ex_, std::ssize(chosen));
+    std::transform(chosen.begin(), chosen.end(), to.data(), [&](std::int64_t i) { return from[i]; });
+    return to;
   }
 
   void write_own(const Range& own, const BlockSamples& block, SampleValues::Column column,
@@ -524,6 +539,7 @@ class BlockRun {
       values_.read(SampleValues::trust, part.first - part.before, bends.view());
       poisson::examine_part(ex_, depth_, lowest_splat_depth_, part, look, std::move(own_side), std::move(bends),
                             samples);
+      counts_.data()->sums[diagnose::kLonely] += *samples.lonely.data();
       const auto own = [&](const exec::Buffer<float>& values) { return values.cview().part(part.before, part.count); };
       values_.write(SampleValues::area, part.first, own(samples.areas));
       values_.write(SampleValues::examined_depth, part.first, own(samples.splat_depths));
@@ -726,6 +742,11 @@ class BlockRun {
     BlockSamples block = read_weighed(own, around_finer_nodes(own));
     const OctreeData tree = build(block);
     const poisson::Resolution resolution = resolution_of(tree, block.samples);
+    const std::vector<std::int64_t> chosen =
+        chosen_own(own, diagnose::kSamples / diagnose::kSparse, block.first_own, [](std::int64_t) { return true; });
+    poisson::Samples looked_at;
+    looked_at.positions = choose(chosen, block.samples.positions.cview());
+    looked_at.splat_depths = choose(chosen, block.samples.splat_depths.cview());
     block = {};
     const OctreeView view = resolution.view(tree);
     auto u = exec::make_buffer<float>(ex_, view.nodes);
@@ -734,11 +755,10 @@ class BlockRun {
     surface::SurfacePlaces places;
     surface::ExtractOptions extraction{options_.curvature, options_.normals};
     extraction.places = &places;
-    const surface::Surface surface =
-        surface::extract_surface(ex_,
-                                 {view, u.data(), static_cast<float>(report_.isovalue), true,
-                                  resolution.bricks.empty() ? nullptr : resolution.bricks.data()},
-                                 extraction);
+    const field::FieldView function{view, u.data(), static_cast<float>(report_.isovalue), true,
+                                    resolution.bricks.empty() ? nullptr : resolution.bricks.data()};
+    diagnose::look_at_field_of_block(ex_, function, looked_at.view(), own.begin, own.end, counts_);
+    const surface::Surface surface = surface::extract_surface(ex_, function, extraction);
     std::vector<const std::byte*> columns{reinterpret_cast<const std::byte*>(surface.positions.data())};
     if (options_.normals) columns.push_back(reinterpret_cast<const std::byte*>(surface.normals.data()));
     const auto span = [](const auto& buffer) {
@@ -766,6 +786,7 @@ class BlockRun {
   std::vector<SplitCell> split_;  ///< of level K, ascending
   std::int64_t planned_coarse_bytes_ = 0;
   SampleValues values_;
+  exec::Buffer<diagnose::Counts> counts_;
   Coarse coarse_;
   std::vector<Range> ranges_;
   std::vector<SparseSample> sparse_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/counts.hpp"
 #include "exec/cpu.hpp"
 #include "scale/block_meshes.hpp"
 #include "scale/sorted_cloud.hpp"
@@ -32,6 +33,7 @@ struct BlockReport {
   int blocks = 0;
   int coarse_level = 0;
   double isovalue = 0;
+  diagnose::Counts looks{};                       ///< what the fit of the whole counts, and its surface
   std::int64_t most_samples = 0, most_nodes = 0;  ///< of a block with its ring
   std::int64_t coarse_nodes = 0;                  ///< of levels up to K
   std::int64_t samples_read = 0;                  ///< by all sweeps

@@ -33,7 +33,7 @@ LAYERS = {
     "render": {"core", "exec", "octree", "mesh", "render"},
     "problems": {"core", "exec", "mesh", "render", "problems"},
     # Files larger than memory: what the rooms below do for arrays, in parts.
-    "scale": {"core", "exec", "octree", "poisson", "field", "surface", "mesh", "io", "reconstruct", "scale"},
+    "scale": {"core", "exec", "octree", "poisson", "field", "surface", "mesh", "io", "diagnose", "reconstruct", "scale"},
     "c": {"c"},  # calls what every program may call
 }
 # The rooms of the program: what the files of apps/<room> may include with quotes, by its path from apps/. A file may

@@ -4,6 +4,7 @@
 #include <pointskin/error.hpp>
 #include <pointskin/io.hpp>
 #include <pointskin/reconstruct.hpp>
+#include <pointskin/workspace.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -11,13 +12,16 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "diagnose/counts.hpp"
 #include "exec/cpu.hpp"
 #include "io/cloud_parts.hpp"
 #include "octree/frame.hpp"
+#include "reconstruct/engine.hpp"
 #include "scale/block_run.hpp"
 #include "scale/cloud_extent.hpp"
 #include "scale/write_blocks.hpp"
@@ -44,6 +48,7 @@ class BlockRun : public testing::Test {
         ex_, *parts_, scale::SortedCloud::Setup{place_, 1 << 20, frame_, extent.strays.indices});
     whole_ = Reconstructor(Device::cpu(2)).reconstruct(read_cloud(path), options);
     options_ = options;
+    look_at_whole(read_cloud(path));
     ASSERT_GT(whole_.triangles.size(), 0U);
   }
 
@@ -72,6 +77,7 @@ class BlockRun : public testing::Test {
       EXPECT_EQ(report.blocks, options.blocks);
     }
     blocks_ = report.blocks;
+    if (options.ring == 0) expect_looks(report.looks);
     const std::int64_t more = std::abs(meshes.vertices() - std::ssize(whole_.vertices)) +
                               std::abs(meshes.triangles() - std::ssize(whole_.triangles));
     if (more > 0) return more;
@@ -83,6 +89,21 @@ class BlockRun : public testing::Test {
     for (Vec3f& position : positions) position = frame_.to_world(position);
     return differing(positions, whole_.vertices) + differing(normals, whole_.normals) +
            differing(triangles, whole_.triangles);
+  }
+
+  /// What the first fit of the whole counts, and its surface.
+  void look_at_whole(const Cloud& cloud) {
+    RunReport report;
+    const std::shared_ptr<detail::FieldImpl> field =
+        detail::Engine(Workspace(Device::cpu(2))).solve(cloud, options_, false, report);
+    Mesh mesh;
+    field->extract_and_release(mesh, report);
+    looks_ = field->seen();
+  }
+
+  void expect_looks(const diagnose::Counts& found) const {
+    for (int sum = 0; sum < diagnose::kSums; ++sum) EXPECT_EQ(found.sums[sum], looks_.sums[sum]) << "sum " << sum;
+    EXPECT_TRUE(std::equal(std::begin(found.densities), std::end(found.densities), looks_.densities));
   }
 
   void expect_the_file_of_the_whole(const scale::BlockOptions& options) {
@@ -108,6 +129,7 @@ class BlockRun : public testing::Test {
   std::unique_ptr<scale::SortedCloud> sorted_;
   octree::Frame frame_;
   Mesh whole_;
+  diagnose::Counts looks_{};
   Options options_;
 
  protected:

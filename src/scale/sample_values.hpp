@@ -1,0 +1,39 @@
+// What a run in blocks finds of every sample.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/array_view.hpp"
+#include "scale/spool.hpp"
+
+namespace pointskin::scale {
+
+/// Columns of a float a sample, on the disk, in the order of the samples.
+class SampleValues {
+ public:
+  enum Column : std::uint8_t { area, depth, trust, own_side, examined_depth };
+  static constexpr std::int64_t kColumns = 5;
+
+  /// @throws Error as Spool
+  SampleValues(const std::string& folder, std::int64_t samples)
+      : samples_(samples), spool_(folder, kColumns * samples * std::int64_t{sizeof(float)}) {}
+
+  /// Of samples first .. first + size - 1; for many threads at once.
+  /// @throws Error as Spool
+  void read(Column column, std::int64_t first, ArrayView<float> out) const {
+    spool_.read(at(column, first), out.data, out.size * std::int64_t{sizeof(float)});
+  }
+  void write(Column column, std::int64_t first, ArrayView<const float> values) const {
+    spool_.write(at(column, first), values.data, values.size * std::int64_t{sizeof(float)});
+  }
+
+ private:
+  [[nodiscard]] std::int64_t at(Column column, std::int64_t first) const {
+    return (column * samples_ + first) * std::int64_t{sizeof(float)};
+  }
+  std::int64_t samples_;
+  Spool spool_;
+};
+
+}  // namespace pointskin::scale

@@ -83,7 +83,7 @@ def main():
                 print(f"| {shape} | {points} | {depth} | {nodes} | {row['cpu']:.3f} | {row['cuda']:.3f} | {row['auto']:.3f} "
                       f"| {taken} | {row['over']:.2f} |", flush=True)
     for device in ("cpu", "cuda"):
-        start, per_point, per_node = fit(rows, device) if len(rows) > 3 else (math.nan,) * 3
+        start, per_point, per_node = fit(rows, device) if len(rows) > 3 and len({row["points"] for row in rows}) > 1 else (math.nan,) * 3
         print(f"{device}: {start:.3f} s, {1e6 * per_point:.4f} us a point, {1e6 * per_node:.4f} us a node")
     worst = max(rows, key=lambda row: row["over"])
     print(f"largest: {worst['over']:.2f} ({worst['shape']}, {worst['points']} points, depth {worst['depth']})")

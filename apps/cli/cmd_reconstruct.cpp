@@ -1,7 +1,10 @@
 // pointskin reconstruct: oriented clouds in, mesh out. pointskin problems: the same, and where to look.
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include <pointskin/reconstruct.hpp>
 
@@ -32,12 +35,15 @@ void check_files(const ReconstructArgs& args) {
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
   check_problem_pictures(args.pictures);
+  if (!args.temp.empty() && !std::filesystem::is_directory(args.temp))
+    throw_usage(fmt::format("--temp {}: is no folder", args.temp));
 }
 
 void warn_about_options(const ReconstructArgs& args, const Options& options) {
   if (args.given.has("--depth") && args.given.has("--width"))
     print_warning("--depth is ignored because --width chooses the depth");
   warn_about_unused(args.given, options, mesh_file(args), !args.report.empty());
+  if (options.max_memory_bytes == 0) warn_unused(args.given, {"--temp"}, "without --max-memory");
   warn_about_ascii(args.given, args.output);
   if (mesh_file(args).empty())
     warn_unused(args.given, {"--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"},

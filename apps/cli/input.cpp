@@ -25,12 +25,15 @@ void warn_about_dropped(std::int64_t count, const std::string& prefix) {
     print_warning(fmt::format("{}{} points were dropped: a coordinate is not finite, or beyond 1e38", prefix, count));
 }
 
+void warn_about_zero_normals(std::int64_t count, const std::string& prefix) {
+  if (count > 0) print_warning(fmt::format("{}{} points were dropped: their normal has zero length", prefix, count));
+}
+
 void drop_unusable(Cloud& cloud, const std::string& prefix) {
   const std::int64_t not_finite = cloud.dropped;
   const std::int64_t no_normal = scene::drop_zero_normals(cloud);
   warn_about_dropped(not_finite, prefix);
-  if (no_normal > 0)
-    print_warning(fmt::format("{}{} points were dropped: their normal has zero length", prefix, no_normal));
+  warn_about_zero_normals(no_normal, prefix);
 }
 
 std::shared_ptr<const Mesh> read_envelope(const std::string& path, int threads) {

@@ -25,6 +25,9 @@ Cloud read_clouds(const std::vector<std::string>& paths, const ReadOptions& opti
 /// Warns of points that were left out on reading, if there are any. @param prefix  of the warning
 void warn_about_dropped(std::int64_t count, const std::string& prefix = "");
 
+/// Warns of points that were left out because their normal is zero, if there are any.
+void warn_about_zero_normals(std::int64_t count, const std::string& prefix = "");
+
 /// scene::drop_zero_normals, with a warning for what was left out on reading and one for what is now.
 /// @param prefix  of the warnings
 void drop_unusable(Cloud& cloud, const std::string& prefix = "");

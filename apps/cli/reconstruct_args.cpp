@@ -60,8 +60,10 @@ OptionGroup normals_policy(ReconstructArgs& args) {
 
 OptionGroup limits(ReconstructArgs& args) {
   return {kDeviceGroup,
-          {option("--max-memory BYTES", "refuse to start above this estimate, e.g. 8G [default no limit]",
+          {option("--max-memory BYTES",
+                  "what may be taken, e.g. 8G; in blocks where the whole needs more [default no limit]",
                   memory_limit(args.options.max_memory_bytes)),
+           option("--temp DIR", "folder for temporary data of work in blocks [default that of the system]", &args.temp),
            option("--dry-run", "print the memory estimate and stop", &args.dry_run)}};
 }
 

@@ -15,6 +15,7 @@
 #include "input.hpp"
 #include "json_text.hpp"
 #include "progress.hpp"
+#include "reconstruct_blocks.hpp"
 #include "resident_runs.hpp"
 #include "run_memory.hpp"
 #include "run_mesh.hpp"
@@ -168,17 +169,9 @@ void settle_options(const ReconstructArgs& args, const Cloud& cloud, const RunMe
     options.depth = choose_depth(args, cloud, memory, record);
 }
 
-}  // namespace
-
-std::string mesh_file(const ReconstructArgs& args) {
-  return args.output.empty() && (args.dry_run || args.given.has("--repeat")) ? "-" : args.output;
-}
-
-Record run_reconstruction(const ReconstructArgs& args, const Stopwatch& watch,
-                          std::unique_ptr<Reconstructor>& reconstructor) {
-  Record record;
-  if (args.problems) record.command = "problems";
-  record.options = library_options(args);
+/// @param record  with the options; receives all else
+void run_whole(const ReconstructArgs& args, const Stopwatch& watch, std::unique_ptr<Reconstructor>& reconstructor,
+               Record& record) {
   // Repeated runs pay no start; what a limit counts depends on the device.
   const bool open = args.leaves_device_open() && args.repeat == 0 && record.options.max_memory_bytes == 0;
   if (!open) record.device = args.chosen();
@@ -197,7 +190,7 @@ Record run_reconstruction(const ReconstructArgs& args, const Stopwatch& watch,
     print_estimate(args, cloud, record, estimate);
     memory.check(estimate);
   }
-  if (args.dry_run) return record;
+  if (args.dry_run) return;
 
   on_interrupt(OnInterrupt::remember);
   warn_about_unused(args.given, record.options, cloud, mesh_file(args));
@@ -218,6 +211,35 @@ Record run_reconstruction(const ReconstructArgs& args, const Stopwatch& watch,
   if (!args.report.empty()) record.mesh = measure(mesh.on_host(), args.threads);
   if (!args.quiet)
     record.shape = args.report.empty() ? shape_words(mesh.glance(args.threads)) : shape_words(record.mesh);
+}
+
+/// The whole, or blocks where it does not fit.
+void run_within_limit(const ReconstructArgs& args, const Stopwatch& watch,
+                      std::unique_ptr<Reconstructor>& reconstructor, Record& record) {
+  if (record.options.max_memory_bytes > 0) record.device = args.chosen();
+  if (!may_work_in_blocks(args, record.device)) return run_whole(args, watch, reconstructor, record);
+  if (!must_work_in_blocks(args)) try {
+      return run_whole(args, watch, reconstructor, record);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::over_limit) throw;
+    }
+  reconstructor.reset();
+  reconstruct_in_blocks(args, watch, record);
+}
+
+}  // namespace
+
+std::string mesh_file(const ReconstructArgs& args) {
+  return args.output.empty() && (args.dry_run || args.given.has("--repeat")) ? "-" : args.output;
+}
+
+Record run_reconstruction(const ReconstructArgs& args, const Stopwatch& watch,
+                          std::unique_ptr<Reconstructor>& reconstructor) {
+  Record record;
+  if (args.problems) record.command = "problems";
+  record.options = library_options(args);
+  run_within_limit(args, watch, reconstructor, record);
+  if (args.dry_run) return record;
   if (!args.report.empty()) record.shown_options = shown_options(args, record);
   if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(record)));
   if (!args.report.empty() && args.each) file_was_written();

@@ -148,6 +148,7 @@ Json to_json(const Record& record) {
   json["mesh"] = to_json(record.mesh);
   json["ms"] = ms_json(record);
   if (!record.repeat_ms.empty()) json["ms_repeat"] = repeat_json(record.repeat_ms);
+  if (record.blocks > 0) json["blocks"] = {{"count", record.blocks}, {"coarse_level", record.coarse_level}};
   json["memory"] = {{"host_peak_bytes", record.host_peak_bytes}, {"device_peak_bytes", record.run.device_peak_bytes}};
   return json;
 }

@@ -34,6 +34,7 @@ struct Record {
   std::vector<PictureNames> pictures;   ///< of their views; empty: none are drawn
   double read_ms = 0, write_ms = 0, total_ms = 0;
   std::vector<double> repeat_ms;
+  int blocks = 0, coarse_level = 0;  ///< FilesReport's, where the whole did not fit; else 0
   std::int64_t host_peak_bytes = 0;
 };
 

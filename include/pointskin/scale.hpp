@@ -2,17 +2,59 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/reconstruct.hpp>
+#include <pointskin/vector.hpp>
 
 namespace pointskin PSK_EXPORT {
 
 struct ScaleOptions {
   std::int64_t max_memory_bytes = 0;  ///< that the work may take, beside the program; 0: as much as it likes
   int threads = 0;  ///< CPU threads, 0: all; fewer where their buffers would take too much of the memory
+  /// What positions are relative to, as ReadOptions::shift has it; for reconstruct_files().
+  std::optional<Vec3d> shift{};
+  std::string temp_folder{};  ///< for temporary data, on a disk; empty: that of the system (TMPDIR, or /tmp)
 };
+
+/// What reconstruct_files() did.
+struct FilesReport {
+  RunReport run;                    ///< without residuals, and without what a device takes
+  std::int64_t dropped = 0;         ///< rows of the file whose coordinates are not finite
+  std::int64_t without_normal = 0;  ///< points that were left out because their normal is zero
+  std::int64_t vertices = 0, triangles = 0;
+  int blocks = 0;        ///< that the cloud was worked on in, one after another
+  int coarse_level = 0;  ///< levels of the octree up to this one were there as a whole
+};
+
+/// Whether the points of a file can be read in parts: a binary PLY or NPY file whose rows are of one length.
+/// @throws Error invalid_input if it cannot be opened, or its header is garbled
+bool reads_in_parts(const std::string& path);
+
+/// What of these options cannot be worked on in blocks yet, in words: "trim", "an envelope". Empty if all can.
+std::vector<std::string> missing_in_blocks(const Options& options);
+
+/// Reconstructs a cloud that memory does not hold: from a file to a file, with the same bytes that reconstructing the whole in
+/// memory and writing it would give, for any memory and any number of threads.
+///
+/// Reads the file in parts, twice or three times, sorts its points on the disk, and works on blocks of the octree one after another,
+/// each with a ring of cells around it; the coarse levels are there as a whole. Points whose normal is zero are left out, as `pointskin
+/// reconstruct` does. Normals that point inwards are turned; others that seem wrong are kept, with a warning, as where a limit
+/// leaves no memory for repairing them.
+/// Memory: a third for the coarse levels, the rest for one block with its ring. Disk: 80 bytes a point while they are sorted, then
+/// 60, and 4 a node of the octree, and the mesh. Time: some three times that of the whole in memory.
+/// @param inputs   one binary PLY or NPY file of oriented points
+/// @param output   a PLY file, written whole or not at all
+/// @param options  whose max_memory_bytes and residuals do not count
+/// @throws Error usage for options that missing_in_blocks() names, a depth below 7, and for clouds whose mesh has pieces that no samples
+///         ask for, which are not taken away in blocks yet; invalid_input if the file cannot be read in parts; over_limit if one cell
+///         with its ring does not fit, which says how much would do; empty_result, no_normals, output_not_written, interrupted
+FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output,
+                              const Options& options = {}, const ScaleOptions& scale = {});
 
 /// Counts and measures the mesh in a file: the same numbers, to the last bit, as measure(read_mesh(path)).
 ///

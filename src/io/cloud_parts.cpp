@@ -1,5 +1,7 @@
 #include "io/cloud_parts.hpp"
 
+#include <pointskin/merge.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -93,14 +95,25 @@ void CloudParts::choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift)
 }
 
 Cloud CloudParts::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, Bytes& buffer) const {
-  return assemble(ex, input_.source(), rows_->read(first, count, buffer), origin_);
+  Cloud cloud = assemble(ex, input_.source(), rows_->read(first, count, buffer), origin_);
+  if (!keeps_zero_normals_ && std::find(cloud.normals.begin(), cloud.normals.end(), Vec3f{}) != cloud.normals.end()) {
+    std::vector<bool> keep(cloud.normals.size());
+    std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(),
+                   [](const Vec3f& n) { return n != Vec3f{}; });
+    const std::int64_t not_finite = cloud.dropped;
+    keep_where(cloud, keep);
+    cloud.dropped = not_finite;
+  }
+  return cloud;
 }
 
-void CloudParts::for_parts(exec::Cpu& ex, const std::function<void(const Cloud&)>& use) const {
+void CloudParts::for_parts(exec::Cpu& ex, const std::function<void(Cloud&)>& use) const {
   Bytes buffer;
   const std::int64_t step = rows_at_once(*rows_);
-  for (std::int64_t first = 0; first < rows(); first += step)
-    use(read(ex, first, std::min(step, rows() - first), buffer));
+  for (std::int64_t first = 0; first < rows(); first += step) {
+    Cloud cloud = read(ex, first, std::min(step, rows() - first), buffer);
+    use(cloud);
+  }
 }
 
 }  // namespace pointskin::io

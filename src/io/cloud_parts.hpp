@@ -38,14 +38,17 @@ class CloudParts {
   /// What positions are relative to, once it has been chosen.
   [[nodiscard]] const Vec3d& origin() const { return origin_; }
 
+  /// Points whose normal is zero are left out from now on, like those that are not finite, but not counted in Cloud::dropped.
+  void leave_out_zero_normals() { keeps_zero_normals_ = false; }
+
   /// The points of rows first .. first + count - 1, in parallel. The origin must have been chosen. Where rows have no
   /// finite coordinates there are fewer, and Cloud::dropped says how many.
   /// @throws Error invalid_input if the file has become shorter, or cannot be read
   Cloud read(exec::Cpu& ex, std::int64_t first, std::int64_t count, Bytes& buffer) const;
 
-  /// Reads all rows, kBufferBytes at a time, and hands their points on, in order.
+  /// Reads all rows, kBufferBytes at a time, and hands their points on, in order, to be changed at will.
   /// @throws Error as read, or whatever `use` throws
-  void for_parts(exec::Cpu& ex, const std::function<void(const Cloud&)>& use) const;
+  void for_parts(exec::Cpu& ex, const std::function<void(Cloud&)>& use) const;
 
   static constexpr std::int64_t kBufferBytes = std::int64_t{4} << 20;
 
@@ -55,6 +58,7 @@ class CloudParts {
   Input input_;  // the header is read from the mapping, the rest is not
   std::optional<TableParts> rows_, coordinates_;
   Vec3d origin_{0, 0, 0};
+  bool keeps_zero_normals_ = true;
 };
 
 }  // namespace pointskin::io

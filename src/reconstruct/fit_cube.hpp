@@ -38,6 +38,16 @@ octree::Frame fit_cube(Exec& ex, PointBuffers& points, const Options& options, R
   return octree::frame_around(strays.core, options.scale);
 }
 
+/// FitSetup::core around samples that are no outliers, or none if a cube for them would hardly be smaller.
+/// @param box  of these samples, in the unit cube of `frame`
+inline std::optional<Bounds> core_in(const Bounds& box, const octree::Frame& frame, double scale) {
+  constexpr double kWorthIt = 0.95;  // of the cube's side
+  const Bounds core{frame.to_world(box.lower), frame.to_world(box.upper)};
+  if (!(box.lower.x < box.upper.x) || octree::frame_around(core, scale).size > kWorthIt * frame.size)
+    return std::nullopt;
+  return core;
+}
+
 /// The working cube around FitSetup::core; leaves the points outside of it out of those that are used.
 template <exec::Space Exec>
 octree::Frame cube_around(Exec& ex, const Bounds& core, PointBuffers& points, const Options& options,

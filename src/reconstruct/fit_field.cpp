@@ -135,15 +135,11 @@ struct BoxOfInlier {
 template <exec::Space Exec>
 std::optional<Bounds> find_core(Exec& ex, const poisson::Samples& samples, const Options& options,
                                 const FieldData& field) {
-  constexpr double kWorthIt = 0.95;  // of the cube's side
   if (diagnose::findings_of(field.seen).lonely <= 0) return std::nullopt;
   const Bounds box =
       exec::reduce<Bounds>(ex, "octree.core", samples.areas.size(),
                            BoxOfInlier{samples.positions.cview(), samples.areas.cview()}, octree::JoinBoxes{});
-  const Bounds core{field.frame.to_world(box.lower), field.frame.to_world(box.upper)};
-  if (!(box.lower.x < box.upper.x) || octree::frame_around(core, options.scale).size > kWorthIt * field.frame.size)
-    return std::nullopt;
-  return core;
+  return core_in(box, field.frame, options.scale);
 }
 
 /// The tangent planes of the samples that are no outliers.

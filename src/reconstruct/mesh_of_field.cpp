@@ -28,11 +28,6 @@
 namespace pointskin::detail {
 namespace {
 
-/// Share of curvature that a crossing takes (surface/edge_vertex.hpp). The screening pulls the trilinear function to
-/// the samples, whose own crossing is linear; the smooth function that it stands for is curved. Halfway is nearest to
-/// the surface (docs/decisions/0017-noise-and-smoothness.md).
-constexpr float kCurvature = 0.5F;
-
 /// A trim that was to be chosen leaves out what closes the surface on the faces of the cube: that may be near samples.
 DomainFaces domain_faces(const FieldData& field, const Options& options) {
   const bool opens =

@@ -16,6 +16,11 @@
 
 namespace pointskin::detail {
 
+/// Share of curvature that a crossing takes (surface/edge_vertex.hpp). The screening pulls the trilinear function to
+/// the samples, whose own crossing is linear; the smooth function that it stands for is curved. Halfway is nearest to
+/// the surface (docs/decisions/0017-noise-and-smoothness.md).
+inline constexpr float kCurvature = 0.5F;
+
 /// A mesh in a space, in world units relative to an origin.
 struct MeshBuffers {
   surface::Surface surface;

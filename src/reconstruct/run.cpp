@@ -99,12 +99,8 @@ std::shared_ptr<FieldImpl> Run::solve(const Input& input, bool keep_all) {
 
 /// The coordinates came with too few digits, or have too few relative to their origin.
 void Run::warn_of_digits(const Input& input, const octree::Frame& frame, double spacing) {
-  const double kept = octree::float_step(frame);
   const double given = coordinate_step(input, frame, diagnose::kHarmlessStep * spacing);
-  if (kept > given)
-    diagnose::warn_of_origin(input.origin(), kept, "points lie", spacing, report_.warnings);
-  else
-    diagnose::warn_of_digits(given, spacing, report_.warnings);
+  warn_of_coordinates(input.origin(), frame, given, spacing, report_.warnings);
 }
 
 /// Turns a cloud that is inside out, unless it is known where it was seen from: of a room, from inside.

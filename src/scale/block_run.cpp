@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/announce.hpp"
 #include "core/format.hpp"
 #include "diagnose/in_blocks.hpp"
 #include "diagnose/look.hpp"
@@ -127,42 +128,42 @@ class BlockRun {
         counts_(diagnose::make_counts(ex)) {}
 
   BlockMeshes run() {
-    sweep("bricks", [&] { find_bricks(); });
-    sweep("plan", [&] {
+    sweep({"bricks", "octree", 0.05}, [&] { find_bricks(); });
+    sweep({"plan", "octree", 0.08}, [&] {
       choose_coarse_level();
       find_cells();
       choose_blocks();
       build_coarse_tree();
     });
-    over_blocks("sums", [&](const Range& own) { sum_facing(own); });
+    over_blocks({"sums", "splat", 0.1}, [&](const Range& own) { sum_facing(own); });
     finish_facing();
-    over_blocks("weights", [&](const Range& own) { weigh(own); });
+    over_blocks({"weights", "splat", 0.16}, [&](const Range& own) { weigh(own); });
     coarse_.facing.reset();
-    sweep("examine", [&] { examine(); });
-    over_blocks("depths", [&](const Range& own) { even_out(own); });
+    sweep({"examine", "splat", 0.22}, [&] { examine(); });
+    over_blocks({"depths", "splat", 0.23}, [&](const Range& own) { even_out(own); });
     const KeyIndex index(cloud_, level_, coarse_.cells, coarse_.first);
-    sweep("look at samples", [&] { look_at_pairs(ex_, cloud_, values_, index, depth_, *counts_.data()); });
-    sweep("coarse field", [&] { finish_resolution(); });
-    over_blocks("splat", [&](const Range& own) { splat(own); });
-    sweep("coarse solve", [&] { solve_coarse(); });
+    sweep({"look at samples", "splat", 0.27}, [&] { look_at_pairs(ex_, cloud_, values_, index, depth_, looks()); });
+    sweep({"coarse field", "splat", 0.27}, [&] { finish_resolution(); });
+    over_blocks({"splat", "splat", 0.27}, [&](const Range& own) { splat(own); });
+    sweep({"coarse solve", "solve", 0.4}, [&] { solve_coarse(); });
     poisson::ValuesOfSamples values;
     std::vector<std::unique_ptr<Spool>> fields;
-    over_blocks("solve", [&](const Range& own) { fields.push_back(solve(own, values)); });
+    over_blocks({"solve", "solve", 0.4}, [&](const Range& own) { fields.push_back(solve(own, values)); });
     if (!values.reliable())
       throw Error(ErrorCode::empty_result, "the field at the points is too far from 1/2 to be summed up in blocks");
     report_.isovalue = values.mean();
     BlockMeshes meshes({options_.folder, depth_, level_, columns()});
     std::size_t block = 0;
-    over_blocks("extract", [&](const Range& own) {
+    over_blocks({"extract", "extract", 0.8}, [&](const Range& own) {
       extract(own, *fields[block], meshes);
       fields[block++].reset();
     });
-    sweep("join", [&] { meshes.finish(); });
-    sweep("look at triangles", [&] {
-      const diagnose::Findings findings = diagnose::findings_of(*counts_.data());
-      look_at_triangles(meshes, index, diagnose::far_depth(findings, depth_), *counts_.data());
+    sweep({"join", "extract", 0.98}, [&] { meshes.finish(); });
+    sweep({"look at triangles", "extract", 0.98}, [&] {
+      const int far_depth = diagnose::far_depth(diagnose::findings_of(looks()), depth_);
+      look_at_triangles(meshes, index, far_depth, looks());
     });
-    report_.looks = *counts_.data();
+    report_.looks = looks();
     return meshes;
   }
 
@@ -174,15 +175,31 @@ class BlockRun {
   }
   [[nodiscard]] int finer() const { return depth_ - level_; }
 
+  [[nodiscard]] diagnose::Counts& looks() const { return *counts_.data(); }
+
+  /// A pass over all samples or blocks.
+  struct Pass {
+    const char* name;   ///< in the report
+    const char* phase;  ///< as callers of Options::progress know it
+    double fraction;    ///< of the run that is done when it begins
+  };
   template <class Work>
-  void sweep(const char* name, const Work& work) {
+  void sweep(const Pass& pass, const Work& work) {
+    announce(options_.progress, pass.phase, pass.fraction);
+    ex_.pool()->trim();  // what another pass left, in other sizes, is no use
     const auto begin = std::chrono::steady_clock::now();
     work();
-    report_.sweeps.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
+    report_.sweeps.push_back(
+        {pass.name, pass.phase, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
   }
   template <class Work>
-  void over_blocks(const char* name, const Work& work) {
-    sweep(name, [&] { std::for_each(ranges_.begin(), ranges_.end(), work); });
+  void over_blocks(const Pass& pass, const Work& work) {
+    sweep(pass, [&] {
+      for (const Range& own : ranges_) {
+        announce(options_.progress, pass.phase, pass.fraction);
+        work(own);
+      }
+    });
   }
 
   /// Calls visit(first, keys) with all keys, part by part.
@@ -539,7 +556,9 @@ class BlockRun {
       values_.read(SampleValues::trust, part.first - part.before, bends.view());
       poisson::examine_part(ex_, depth_, lowest_splat_depth_, part, look, std::move(own_side), std::move(bends),
                             samples);
-      counts_.data()->sums[diagnose::kLonely] += *samples.lonely.data();
+      looks().sums[diagnose::kLonely] += *samples.lonely.data();
+      for (std::int64_t i = part.before; i < part.before + part.count; ++i)
+        if (samples.areas.data()[i] > 0) report_.inliers.add(samples.positions.data()[i]);
       const auto own = [&](const exec::Buffer<float>& values) { return values.cview().part(part.before, part.count); };
       values_.write(SampleValues::area, part.first, own(samples.areas));
       values_.write(SampleValues::examined_depth, part.first, own(samples.splat_depths));
@@ -709,7 +728,11 @@ class BlockRun {
       coarse_.collapsed = {};
     }
     poisson::SolveOptions solving{std::ldexp(options_.screening, -2 * finer()), options_.iterations};
-    coarse_.u = poisson::solve_poisson(ex_, resolution.view(coarse_.tree), coarse_.b.cview(), screening, solving).u;
+    poisson::Solution solution =
+        poisson::solve_poisson(ex_, resolution.view(coarse_.tree), coarse_.b.cview(), screening, solving);
+    coarse_.u = std::move(solution.u);
+    for (const poisson::LevelSolve& level : solution.levels)
+      report_.levels.push_back({level.depth, tree.levels[level.depth].cells(), 0, level.iterations, 0, 0});
     coarse_.b.reset();
   }
 
@@ -726,7 +749,7 @@ class BlockRun {
     auto u = exec::make_buffer<float>(ex_, view.nodes);
     copy(ex_, coarse_.u.cview(), u.view().part(0, coarse_.u.size()));
     const poisson::SolveOptions solving{options_.screening, options_.iterations};
-    poisson::solve_below(ex_, view, b.cview(), screening, solving, level_, u.view());
+    report_levels(own, tree.view(), poisson::solve_below(ex_, view, b.cview(), screening, solving, level_, u.view()));
     const poisson::ValuesOfSamples found =
         poisson::values_at_samples(ex_, tree, u.cview(), block.samples.view(), own.begin, own.end);
     values.sum = exec::AddExactly{}(values.sum, found.sum);
@@ -736,6 +759,21 @@ class BlockRun {
     auto field = std::make_unique<Spool>(options_.folder, bytes);
     field->write(0, u.data() + coarse_.u.size(), bytes);
     return field;
+  }
+
+  /// Adds what a block has of its own.
+  void report_levels(const Range& own, const OctreeView& tree, const std::vector<poisson::LevelSolve>& solved) {
+    for (const poisson::LevelSolve& found : solved) {
+      const auto place = static_cast<std::size_t>(found.depth);
+      if (report_.levels.size() <= place) report_.levels.push_back({found.depth, 0, 0, found.iterations, 0, 0});
+      const octree::LevelView& level = tree.levels[found.depth];
+      const auto bricks_before = [&](std::uint64_t cell) {
+        return std::lower_bound(level.brick_key, level.brick_key + level.cell_bricks,
+                                cell >> 3 * (depth_ - found.depth + 1)) -
+               level.brick_key;
+      };
+      report_.levels[place].nodes += 8 * (bricks_before(own.end) - bricks_before(own.begin));
+    }
   }
 
   void extract(const Range& own, const Spool& field, BlockMeshes& meshes) {
@@ -759,6 +797,7 @@ class BlockRun {
                                     resolution.bricks.empty() ? nullptr : resolution.bricks.data()};
     diagnose::look_at_field_of_block(ex_, function, looked_at.view(), own.begin, own.end, counts_);
     const surface::Surface surface = surface::extract_surface(ex_, function, extraction);
+    report_.lone_corners += surface.lone_corners;
     std::vector<const std::byte*> columns{reinterpret_cast<const std::byte*>(surface.positions.data())};
     if (options_.normals) columns.push_back(reinterpret_cast<const std::byte*>(surface.normals.data()));
     const auto span = [](const auto& buffer) {

@@ -2,11 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include <pointskin/progress.hpp>
+#include <pointskin/reconstruct.hpp>
+#include <pointskin/vector.hpp>
+
 #include "diagnose/counts.hpp"
 #include "exec/cpu.hpp"
+#include "octree/bounding_box.hpp"
 #include "scale/block_meshes.hpp"
 #include "scale/sorted_cloud.hpp"
 
@@ -27,6 +33,17 @@ struct BlockOptions {
   int ring = 0;  ///< cells of level K around what is solved; 0: solve_ring(iterations), and fewer give other bytes
   float curvature = 0.5F;  ///< ExtractOptions::curvature
   bool normals = true;
+  std::function<bool(const Progress&)> progress{};  ///< as Options has it, called for every block of every sweep
+};
+
+/// The box of some points, or none.
+struct BoxOfPoints {
+  bool is_empty = true;
+  Bounds box{};
+  void add(const Vec3f& p) {
+    box = is_empty ? Bounds{p, p} : octree::JoinBoxes{}(box, {p, p});
+    is_empty = false;
+  }
 };
 
 struct BlockReport {
@@ -34,6 +51,9 @@ struct BlockReport {
   int coarse_level = 0;
   double isovalue = 0;
   diagnose::Counts looks{};                       ///< what the fit of the whole counts, and its surface
+  BoxOfPoints inliers;                            ///< in the unit cube: of the samples that are no outliers
+  std::int64_t lone_corners = 0;                  ///< as surface::Surface has them; some are counted twice
+  std::vector<LevelReport> levels;                ///< depth 0 first, without unknowns and residuals
   std::int64_t most_samples = 0, most_nodes = 0;  ///< of a block with its ring
   std::int64_t coarse_nodes = 0;                  ///< of levels up to K
   std::int64_t samples_read = 0;                  ///< by all sweeps
@@ -41,6 +61,7 @@ struct BlockReport {
   /// A pass over all samples or blocks.
   struct Sweep {
     const char* name = "";
+    const char* phase = "";  ///< octree, splat, solve or extract
     double seconds = 0;
   };
   std::vector<Sweep> sweeps;

@@ -101,6 +101,7 @@ CloudExtent find_extent(exec::Cpu& ex, const io::CloudParts& parts, bool keep_st
   parts.for_parts(ex, [&](const Cloud& cloud) {
     lanes.add(ex, cloud.positions);
     found.with_normal += count_normals(cloud.normals);
+    found.dropped += cloud.dropped;
   });
   found.points = lanes.points();
   if (found.points == 0) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
@@ -118,6 +119,12 @@ CloudExtent find_extent(exec::Cpu& ex, const io::CloudParts& parts, bool keep_st
   for (const std::int32_t i : found.strays.indices)
     if (std::binary_search(beyond.with_normal.begin(), beyond.with_normal.end(), i)) --found.with_normal;
   return found;
+}
+
+octree::StrayPoints find_outside(exec::Cpu& ex, const io::CloudParts& parts, const octree::Frame& cube,
+                                 const Bounds& core) {
+  const Bounds ends{cube.to_world({0, 0, 0}), cube.to_world({1, 1, 1})};
+  return octree::strays::as_strays(find_candidates(ex, parts, ends).candidates, core);
 }
 
 }  // namespace pointskin::scale

@@ -5,12 +5,14 @@
 
 #include "exec/cpu.hpp"
 #include "io/cloud_parts.hpp"
+#include "octree/frame.hpp"
 #include "octree/strays.hpp"
 
 namespace pointskin::scale {
 
 struct CloudExtent {
   std::int64_t points = 0;       ///< without strays
+  std::int64_t dropped = 0;      ///< rows without finite coordinates
   std::int64_t with_normal = 0;  ///< of them, that have a normal that is not zero
   octree::StrayPoints strays;    ///< indices count the points of the file; the core is the box around all others
 };
@@ -22,5 +24,10 @@ struct CloudExtent {
 /// @param keep_strays  all points count
 /// @throws Error empty_result if there are no points; as CloudParts::read
 CloudExtent find_extent(exec::Cpu& ex, const io::CloudParts& parts, bool keep_strays);
+
+/// The points outside of a cube, as octree::find_outside() finds them: one pass over the points.
+/// @throws Error as CloudParts::read
+octree::StrayPoints find_outside(exec::Cpu& ex, const io::CloudParts& parts, const octree::Frame& cube,
+                                 const Bounds& core);
 
 }  // namespace pointskin::scale

@@ -69,10 +69,14 @@ SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setu
   UsedOf used_of(setup.left_out);
   std::vector<std::uint64_t> hashes;
   std::vector<Record> records;
-  points.for_parts(ex, [&](const Cloud& cloud) {
+  points.for_parts(ex, [&](Cloud& cloud) {
     if (cloud.positions.empty()) return;
     if (!cloud.has_normals())
       throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
+    if (setup.turned)
+      std::transform(cloud.normals.begin(), cloud.normals.end(), cloud.normals.begin(), [](const Vec3f& n) {
+        return Vec3f{-n.x, -n.y, -n.z};
+      });
     const std::vector<std::int32_t>& used = used_of.next(cloud.size());
     const std::int64_t count = std::ssize(used);
     hashes.resize(used.size());

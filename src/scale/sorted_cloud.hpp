@@ -24,6 +24,7 @@ class SortedCloud {
     std::int64_t memory_bytes = 0;  ///< that sorting may take, as DiskSort::Setup
     octree::Frame frame;            ///< of the unit cube
     std::span<const std::int32_t> left_out{};  ///< points of the file to leave out, ascending
+    bool turned = false;                       ///< all normals the other way round
   };
 
   /// Points as arrays, for whoever needs them: shape (count), or null.

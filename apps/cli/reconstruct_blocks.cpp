@@ -1,0 +1,118 @@
+#include "reconstruct_blocks.hpp"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <pointskin/error.hpp>
+#include <pointskin/scale.hpp>
+
+#include "args.hpp"
+#include "console.hpp"
+#include "input.hpp"
+#include "json_text.hpp"
+#include "progress.hpp"
+#include "run_memory.hpp"
+#include "run_mesh.hpp"
+#include "signals.hpp"
+#include "summary_words.hpp"
+
+namespace pointskin::cli {
+namespace {
+
+void refuse_what_is_missing(const Options& options) {
+  const std::vector<std::string> missing = missing_in_blocks(options);
+  if (missing.empty()) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("the whole needs more than --max-memory {}, and in blocks there is not yet: {}",
+                          format_bytes(static_cast<double>(options.max_memory_bytes)), fmt::join(missing, ", ")));
+}
+
+ScaleOptions scale_options(const ReconstructArgs& args) {
+  ScaleOptions scale;
+  scale.max_memory_bytes = bytes_left_of(args.options.max_memory_bytes);
+  scale.threads = args.threads;
+  scale.shift = parse_shift(args.shift);
+  scale.temp_folder = args.temp;
+  return scale;
+}
+
+/// @throws Error as reconstruct_files(); of too little memory, with what the program takes beside it
+FilesReport work_in_blocks(const ReconstructArgs& args, const Options& options, const ScaleOptions& scale) {
+  try {
+    return reconstruct_files(args.inputs, args.output, options, scale);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::over_limit) throw;
+    const std::int64_t limit = args.options.max_memory_bytes;
+    throw Error(ErrorCode::over_limit,
+                fmt::format("--max-memory {}, of which the program takes {}: {}", bytes_text(limit),
+                            bytes_text(limit - scale.max_memory_bytes), error.what()));
+  }
+}
+
+void warn_about_left_out(const FilesReport& files) {
+  warn_about_dropped(files.dropped);
+  warn_about_zero_normals(files.without_normal);
+}
+
+}  // namespace
+
+bool may_work_in_blocks(const ReconstructArgs& args, const Device& device) {
+  if (args.options.max_memory_bytes == 0 || args.each || args.dry_run || args.repeat > 0 || args.problems) return false;
+  const bool to_ply = !args.ascii && std::filesystem::path(args.output).extension() == ".ply";
+  if (device.kind != DeviceKind::cpu || args.inputs.size() != 1 || !to_ply || args.given.has("--width")) return false;
+  return reads_in_parts(args.inputs.front());
+}
+
+bool must_work_in_blocks(const ReconstructArgs& args) {
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(args.inputs.front(), error);
+  return !error && static_cast<std::int64_t>(bytes) > bytes_left_of(args.options.max_memory_bytes) / 2;
+}
+
+void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, Record& record) {
+  refuse_what_is_missing(record.options);
+#ifdef __GLIBC__
+  malloc_trim(0);  // what the whole left behind
+#endif
+  if (!args.quiet)
+    print_note(fmt::format("the whole needs more than --max-memory {}: working in blocks",
+                           format_bytes(static_cast<double>(args.options.max_memory_bytes))));
+  on_interrupt(OnInterrupt::remember);
+  ProgressLine line(!args.quiet && stderr_is_terminal());
+  Options options = record.options;
+  options.progress = [&line](const Progress& progress) {
+    line.update(progress);
+    return !interrupted();
+  };
+  const bool was_said = record.points > 0;
+  const ScaleOptions scale = scale_options(args);
+  const FilesReport files = work_in_blocks(args, options, scale);
+  line.clear();
+  file_was_written();
+  if (!was_said) warn_about_left_out(files);
+  for (const Warning& warning : files.run.warnings)
+    if (warning.kind != WarningKind::coarse_depth || !args.given.has("--depth")) print_warning(warning.text);
+  record.run = files.run;
+  record.blocks = files.blocks;
+  record.coarse_level = files.coarse_level;
+  record.dropped = files.dropped + files.without_normal;
+  record.points = files.run.points + files.run.strays + record.dropped;
+  record.mesh.triangles = files.triangles;
+  record.shape = fmt::format("{} blocks", files.blocks);
+  record.total_ms = watch.ms();
+  record.host_peak_bytes = host_peak_bytes();
+  if (args.report.empty()) return;
+  record.mesh = measure_file(args.output, {.max_memory_bytes = scale.max_memory_bytes, .threads = args.threads});
+  record.shape = fmt::format("{}; {} blocks", shape_words(record.mesh), files.blocks);
+}
+
+}  // namespace pointskin::cli

@@ -1,0 +1,288 @@
+#include <pointskin/error.hpp>
+#include <pointskin/scale.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/announce.hpp"
+#include "core/format.hpp"
+#include "diagnose/verdict.hpp"
+#include "diagnose/warnings.hpp"
+#include "exec/cpu.hpp"
+#include "io/cloud_parts.hpp"
+#include "io/source.hpp"
+#include "octree/frame.hpp"
+#include "reconstruct/coordinate_step.hpp"
+#include "reconstruct/fit_cube.hpp"
+#include "reconstruct/mesh_of_field.hpp"
+#include "scale/block_run.hpp"
+#include "scale/cloud_extent.hpp"
+#include "scale/sorted_cloud.hpp"
+#include "scale/write_blocks.hpp"
+
+namespace pointskin {
+namespace {
+
+using diagnose::NormalsVerdict;
+
+/// What a fit of the cloud found, and the mesh.
+struct Fit {
+  scale::BlockReport report;
+  std::optional<scale::BlockMeshes> meshes;
+};
+
+/// The points that are left out, and the cube around the others.
+struct Place {
+  octree::StrayPoints left_out;  // indices ascend
+  octree::Frame frame;
+};
+
+class FilesRun {
+ public:
+  FilesRun(const std::string& input, const Options& options, const ScaleOptions& scale)
+      : options_(options), scale_(scale), ex_(scale.threads), parts_(io::CloudParts::open(input)) {
+    if (parts_ == nullptr)
+      throw Error(ErrorCode::invalid_input,
+                  fmt::format("{}: cannot be read in parts; blocks need a binary PLY or NPY file whose rows are of one "
+                              "length",
+                              io::printable(input)));
+    if (scale_.temp_folder.empty()) scale_.temp_folder = std::filesystem::temp_directory_path().string();
+  }
+
+  FilesReport run(const std::string& output) {
+    place_cloud();
+    Fit fit = fit_cloud();
+    const auto judge = [&] { return diagnose::judge_normals(findings(fit), true); };
+    if (options_.point_normals == PointNormals::automatic && judge() == NormalsVerdict::inside_out) {
+      fit = {};
+      turned_ = true;
+      fit = fit_cloud();
+      result_.run.normals_done = NormalsDone::turned;
+      diagnose::warn_of_turning(result_.run.warnings);
+    } else {
+      diagnose::warn_of_normals(findings(fit), judge(), result_.run.warnings);
+    }
+    check_pieces(fit.report);
+    warn(fit);
+    announce(options_.progress, "write", 0.99);
+    scale::write_ply(ex_, *fit.meshes, place_.frame, parts_->origin(), output);
+    report(fit);
+    return std::move(result_);
+  }
+
+ private:
+  static diagnose::Findings findings(const Fit& fit) { return diagnose::findings_of(fit.report.looks); }
+
+  void place_cloud() {
+    announce(options_.progress, "octree", 0);
+    parts_->choose_origin(ex_, scale_.shift);
+    parts_->leave_out_zero_normals();
+    scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options_.keep_strays);
+    result_.dropped = extent.dropped;
+    result_.without_normal = parts_->rows() - extent.dropped - extent.points - extent.strays.size();
+    set_place(std::move(extent.strays), octree::frame_around(extent.strays.core, options_.scale));
+  }
+
+  void set_place(octree::StrayPoints left_out, const octree::Frame& frame) {
+    result_.run.farthest_strays.clear();
+    detail::report_strays(left_out, result_.run);
+    std::sort(left_out.indices.begin(), left_out.indices.end());
+    place_ = {std::move(left_out), frame};
+  }
+
+  /// Where some samples are lonely, the cube is made for the others, and the fit begins again: once.
+  Fit fit_cloud() {
+    Fit fit = fit_in_cube();
+    ++fits_;
+    if (has_core_ || options_.keep_strays) return fit;
+    const std::optional<Bounds> core = core_of(fit.report);
+    if (!core) return fit;
+    has_core_ = true;
+    fit = {};
+    const octree::Frame cube = octree::frame_around(*core, options_.scale);
+    set_place(scale::find_outside(ex_, *parts_, cube, *core), cube);
+    fit = fit_in_cube();
+    ++fits_;
+    return fit;
+  }
+
+  [[nodiscard]] std::optional<Bounds> core_of(const scale::BlockReport& report) const {
+    if (diagnose::findings_of(report.looks).lonely <= 0 || report.inliers.is_empty) return std::nullopt;
+    return detail::core_in(report.inliers.box, place_.frame, options_.scale);
+  }
+
+  Fit fit_in_cube() {
+    constexpr int kTries = 4;
+    scale::BlockOptions blocks = block_options();
+    const scale::SortedCloud cloud(
+        ex_, *parts_, {scale_.temp_folder, bytes() / kSortShare, place_.frame, place_.left_out.indices, turned_});
+    points_ = cloud.size();
+    for (int tries = 1;; ++tries) {
+      Fit fit;
+      try {
+        fit.meshes.emplace(scale::reconstruct_blocks(ex_, cloud, blocks, fit.report));
+        return fit;
+      } catch (const Error& error) {  // of what was planned for
+        if (error.code() != ErrorCode::over_limit || fit.report.blocks == 0 || tries == kTries) throw;
+        blocks.blocks = 2 * fit.report.blocks;
+      }
+    }
+  }
+
+  /// What lists of cells, threads and blocks of unlike sizes take beside what is planned: 4 to 6 MB measured.
+  static constexpr std::int64_t kUnplanned = 6'000'000;
+
+  /// Of the memory.
+  static constexpr std::int64_t kSortShare = 8;
+
+  [[nodiscard]] std::int64_t bytes() const {
+    constexpr std::int64_t kAsMuchAsItLikes = std::int64_t{1} << 50;
+    return scale_.max_memory_bytes > 0 ? scale_.max_memory_bytes : kAsMuchAsItLikes;
+  }
+
+  [[nodiscard]] scale::BlockOptions block_options() const {
+    constexpr std::int64_t kFewestSamples = 1 << 14, kMostSamples = 1 << 22;  // of a part
+    scale::BlockOptions blocks;
+    blocks.folder = scale_.temp_folder;
+    blocks.depth = options_.depth;
+    blocks.memory_bytes = std::max<std::int64_t>(1, bytes() - kUnplanned);
+    blocks.part_samples = std::clamp(bytes() / 1000, kFewestSamples, kMostSamples);
+    blocks.samples_per_node = options_.samples_per_node;
+    blocks.screening = options_.screening;
+    blocks.fixed_screening = options_.fixed_screening;
+    blocks.iterations = options_.iterations;
+    blocks.curvature = options_.linear_fit ? 0 : detail::kCurvature;
+    blocks.normals = options_.normals;
+    blocks.progress = options_.progress;
+    return blocks;
+  }
+
+  /// What a whole would look at the pieces for, which blocks do not know.
+  void check_pieces(const scale::BlockReport& report) const {
+    if (options_.min_component == 1) return;
+    const auto lonely = static_cast<std::int64_t>(diagnose::findings_of(report.looks).lonely);
+    if (lonely > 0)
+      throw Error(
+          ErrorCode::usage,
+          fmt::format("{} points lie far from all others, and the small pieces around such points cannot be taken "
+                      "away in blocks yet; with a min-component of 1 all pieces stay",
+                      lonely));
+    if (report.lone_corners > 0)
+      throw Error(
+          ErrorCode::usage,
+          fmt::format("the surface has {} specks around single corners of the octree, which cannot be taken away "
+                      "in blocks yet; with a min-component of 1 all pieces stay",
+                      report.lone_corners));
+  }
+
+  void warn(const Fit& fit) {
+    std::vector<Warning>& warnings = result_.run.warnings;
+    diagnose::warn_of_strays(result_.run.strays, farthest(), warnings);
+    const diagnose::Findings found = findings(fit);
+    const diagnose::Cube cube{place_.frame.size, options_.depth};
+    diagnose::warn_of_fit(found, cube, warnings);
+    if (found.spacing > 0) warn_of_digits(found.spacing * cube.cell(cube.depth));
+    if (diagnose::judge_normals(found, true) != NormalsVerdict::inside_out)
+      diagnose::warn_of_surface(found, cube, options_, warnings);
+  }
+
+  void warn_of_digits(double spacing) {
+    const Vec3d& origin = parts_->origin();
+    const auto are_floats = [&](std::size_t axis) {
+      bool all = true;
+      parts_->for_parts(ex_, [&](const Cloud& cloud) {
+        all = all && std::all_of(cloud.positions.begin(), cloud.positions.end(), [&](const Vec3f& p) {
+                return detail::is_float(origin[axis] + static_cast<double>(axis == 0 ? p.x : axis == 1 ? p.y : p.z));
+              });
+      });
+      return all;
+    };
+    const double given = detail::coordinate_step(origin, place_.frame, diagnose::kHarmlessStep * spacing, are_floats);
+    detail::warn_of_coordinates(origin, place_.frame, given, spacing, result_.run.warnings);
+  }
+
+  [[nodiscard]] std::vector<Vec3d> farthest() const {
+    std::vector<Vec3d> places = result_.run.farthest_strays;
+    for (Vec3d& p : places)
+      for (std::size_t axis = 0; axis < 3; ++axis) p[axis] += parts_->origin()[axis];
+    return places;
+  }
+
+  void report(const Fit& fit) {
+    RunReport& run = result_.run;
+    run.farthest_strays = farthest();
+    run.points = points_;
+    run.fits = fits_;
+    run.depth = options_.depth;
+    run.levels = fit.report.levels;
+    for (const LevelReport& level : run.levels) run.nodes += level.nodes;
+    run.isovalue = fit.report.isovalue;
+    for (const scale::BlockReport::Sweep& sweep : fit.report.sweeps) time_of(sweep.phase) += 1000 * sweep.seconds;
+    result_.vertices = fit.meshes->vertices();
+    result_.triangles = fit.meshes->triangles();
+    result_.blocks = fit.report.blocks;
+    result_.coarse_level = fit.report.coarse_level;
+  }
+  double& time_of(const std::string& phase) {
+    RunReport& run = result_.run;
+    return phase == "octree"  ? run.octree_ms
+           : phase == "splat" ? run.splat_ms
+           : phase == "solve" ? run.solve_ms
+                              : run.extract_ms;
+  }
+
+  Options options_;
+  ScaleOptions scale_;
+  exec::Cpu ex_;
+  std::unique_ptr<io::CloudParts> parts_;
+  Place place_;
+  FilesReport result_;
+  std::int64_t points_ = 0;
+  int fits_ = 0;
+  bool turned_ = false, has_core_ = false;
+};
+
+}  // namespace
+
+bool reads_in_parts(const std::string& path) { return io::CloudParts::open(path) != nullptr; }
+
+std::vector<std::string> missing_in_blocks(const Options& options) {
+  std::vector<std::string> missing;
+  const auto name = [&](bool asked, const char* what) {
+    if (asked) missing.emplace_back(what);
+  };
+  name(options.depth == Options::kAutomaticDepth, "choosing the depth");
+  name(options.point_normals == PointNormals::repair || options.point_normals == PointNormals::estimate,
+       "making normals");
+  name(options.field != FieldKind::poisson, "the distance field");
+  name(options.confidence, "confidence");
+  name(options.boundary != Boundary::free, "a boundary");
+  name(options.domain_faces != DomainFaces::closed, "open faces");
+  name(options.envelope != nullptr, "an envelope");
+  name(options.offset != 0, "an offset");
+  name(options.isovalue.has_value(), "an isovalue");
+  name(options.trim != 0, "trimming");
+  name(options.largest, "the largest piece alone");
+  name(options.min_component != 0 && options.min_component != 1, "a least size of pieces");
+  name(options.density, "density");
+  name(options.weakness, "weakness");
+  name(options.attributes, "attributes");
+  return missing;
+}
+
+FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output, const Options& options,
+                              const ScaleOptions& scale) {
+  validate(options);
+  const std::vector<std::string> missing = missing_in_blocks(options);
+  if (!missing.empty())
+    throw Error(ErrorCode::usage, fmt::format("in blocks there is not yet: {}", fmt::join(missing, ", ")));
+  if (inputs.size() != 1)
+    throw Error(ErrorCode::usage, fmt::format("blocks are made of one file, not of {}", inputs.size()));
+  return FilesRun(inputs.front(), options, scale).run(output);
+}
+
+}  // namespace pointskin

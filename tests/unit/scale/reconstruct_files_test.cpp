@@ -1,0 +1,230 @@
+// Files reconstructed in blocks, against the whole in memory.
+#include <gtest/gtest.h>
+
+#include <pointskin/error.hpp>
+#include <pointskin/io.hpp>
+#include <pointskin/merge.hpp>
+#include <pointskin/reconstruct.hpp>
+#include <pointskin/scale.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "support/io_files.hpp"
+#include "support/shapes.hpp"
+
+namespace pointskin::test {
+namespace {
+
+constexpr std::int64_t kMegabyte = 1'000'000;
+
+class ReconstructFiles : public testing::Test {
+ protected:
+  void start(const Cloud& cloud) const { write_cloud(input_, cloud); }
+
+  /// Reconstructs both ways, and compares files and reports.
+  void expect_as_whole(const Options& options, std::int64_t memory_bytes) {
+    Cloud cloud = read_cloud(input_);
+    std::vector<bool> keep;
+    for (const Vec3f& n : cloud.normals) keep.push_back(n != Vec3f{});
+    const std::int64_t unreadable = cloud.dropped;
+    keep_where(cloud, keep);
+    Reconstructor reconstructor(Device::cpu(2));
+    write_mesh(whole_, reconstructor.reconstruct(cloud, options));
+    files_ = reconstruct_files({input_}, output_, options, scale(memory_bytes));
+    EXPECT_TRUE(bytes_of_file(output_) == bytes_of_file(whole_));
+    EXPECT_EQ(files_.dropped, unreadable);
+    EXPECT_EQ(files_.dropped + files_.without_normal, cloud.dropped);
+    expect_report(reconstructor.report());
+    EXPECT_EQ(temporary_.file_count(), 0U);
+  }
+
+  void expect_report(const RunReport& whole) const {
+    const RunReport& blocks = files_.run;
+    ASSERT_EQ(blocks.warnings.size(), whole.warnings.size());
+    for (std::size_t i = 0; i < whole.warnings.size(); ++i) EXPECT_EQ(blocks.warnings[i].text, whole.warnings[i].text);
+    EXPECT_EQ(blocks.normals_done, whole.normals_done);
+    EXPECT_EQ(blocks.points, whole.points);
+    EXPECT_EQ(blocks.fits, whole.fits);
+    EXPECT_EQ(blocks.strays, whole.strays);
+    EXPECT_EQ(blocks.farthest_strays, whole.farthest_strays);
+    EXPECT_EQ(blocks.depth, whole.depth);
+    EXPECT_EQ(blocks.nodes, whole.nodes);
+    EXPECT_EQ(blocks.isovalue, whole.isovalue);
+    ASSERT_EQ(blocks.levels.size(), whole.levels.size());
+    for (std::size_t d = 0; d < whole.levels.size(); ++d) {
+      EXPECT_EQ(blocks.levels[d].depth, whole.levels[d].depth);
+      EXPECT_EQ(blocks.levels[d].nodes, whole.levels[d].nodes) << "depth " << d;
+      EXPECT_EQ(blocks.levels[d].iterations, whole.levels[d].iterations) << "depth " << d;
+    }
+  }
+
+  void expect_error(ErrorCode code, const std::string& says, const std::function<void()>& work) const {
+    const std::string before = bytes_of_file(output_);
+    try {
+      work();
+      FAIL() << says;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), code) << error.what();
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(bytes_of_file(output_), before);
+    EXPECT_EQ(temporary_.file_count(), 0U);
+  }
+
+  [[nodiscard]] ScaleOptions scale(std::int64_t memory_bytes) const {
+    ScaleOptions scale;
+    scale.max_memory_bytes = memory_bytes;
+    scale.threads = 2;
+    scale.temp_folder = temporary_.file("");
+    return scale;
+  }
+  void reconstruct(const Options& options, std::int64_t memory_bytes = 100 * kMegabyte) const {
+    (void)reconstruct_files({input_}, output_, options, scale(memory_bytes));
+  }
+  /// A writer refuses what is not finite.
+  void make_first_coordinate_nan() const {
+    std::string bytes = bytes_of_file(input_);
+    const std::string end = "end_header\n";
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    std::memcpy(bytes.data() + bytes.find(end) + end.size(), &kNan, sizeof kNan);
+    std::ofstream(input_, std::ios::binary) << bytes;
+  }
+  void write_old_output() const { std::ofstream(output_) << "what was there"; }
+
+  TemporaryFolder folder_, temporary_;
+  std::string input_ = folder_.file("cloud.ply"), output_ = folder_.file("blocks.ply"),
+              whole_ = folder_.file("whole.ply");
+  FilesReport files_;
+};
+
+Options at_depth(int depth) {
+  Options options;
+  options.depth = depth;
+  return options;
+}
+
+TEST_F(ReconstructFiles, WritesTheFileOfTheWhole) {
+  Cloud cloud = torus_cloud(60000, 1);
+  for (std::size_t i = 0; i < 50; ++i) cloud.normals[100 * i + 1] = {};
+  start(cloud);
+  make_first_coordinate_nan();
+  expect_as_whole(at_depth(8), 50 * kMegabyte);
+  EXPECT_GT(files_.blocks, 1);
+  EXPECT_EQ(files_.without_normal, 50);
+  EXPECT_EQ(files_.dropped, 1);
+  expect_as_whole(at_depth(7), 0);
+  EXPECT_EQ(files_.blocks, 1);
+}
+
+TEST_F(ReconstructFiles, KeepsTheOriginOfCoordinatesThatAreFar) {
+  start(translated(sphere_cloud(20000, 2), {3e5F, -2e5F, 0}));
+  expect_as_whole(at_depth(7), 40 * kMegabyte);
+}
+
+TEST_F(ReconstructFiles, TurnsNormalsThatPointInwards) {
+  start(flipped(sphere_cloud(20000, 3)));
+  expect_as_whole(at_depth(7), 40 * kMegabyte);
+  EXPECT_EQ(files_.run.normals_done, NormalsDone::turned);
+  Options options = at_depth(7);
+  options.point_normals = PointNormals::given;
+  expect_as_whole(options, 40 * kMegabyte);
+  EXPECT_EQ(files_.run.normals_done, NormalsDone::kept);
+}
+
+TEST_F(ReconstructFiles, LeavesStraysOut) {
+  Cloud cloud = sphere_cloud(20000, 4);
+  for (const float far : {40.0F, 50.0F}) {
+    cloud.positions.push_back({far, 0, far});
+    cloud.normals.push_back({0, 0, 1});
+  }
+  start(cloud);
+  expect_as_whole(at_depth(7), 40 * kMegabyte);
+  EXPECT_EQ(files_.run.strays, 2);
+  Options options = at_depth(8);
+  options.keep_strays = true;
+  options.min_component = 1;
+  expect_as_whole(options, 40 * kMegabyte);
+}
+
+TEST_F(ReconstructFiles, MakesTheCubeForInliersAsTheWholeDoes) {
+  Cloud cloud = sphere_cloud(20000, 5);
+  append(cloud, scaled(jittered(box_cloud(300, 6), 7, 0.5), 3));
+  start(cloud);
+  Options options = at_depth(8);
+  options.point_normals = PointNormals::given;
+  options.min_component = 1;
+  expect_as_whole(options, 60 * kMegabyte);
+  EXPECT_EQ(files_.run.fits, 2);
+}
+
+TEST_F(ReconstructFiles, SaysWhatBlocksCannotDo) {
+  start(sphere_cloud(2000, 8));
+  write_old_output();
+  Options options = at_depth(7);
+  options.density = true;
+  options.trim = 0.01;
+  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"trimming", "density"}));
+  expect_error(ErrorCode::usage, "trimming, density", [&] { reconstruct(options); });
+  expect_error(ErrorCode::usage, "depth", [&] { reconstruct(at_depth(6)); });
+  expect_error(ErrorCode::usage, "one file", [&] {
+    (void)reconstruct_files({input_, input_}, output_, at_depth(7), scale(0));
+  });
+  EXPECT_TRUE(missing_in_blocks(at_depth(7)).empty());
+}
+
+TEST_F(ReconstructFiles, NeedsAFileThatCanBeReadInParts) {
+  start(sphere_cloud(2000, 9));
+  write_old_output();
+  EXPECT_TRUE(reads_in_parts(input_));
+  const std::string text = folder_.file("cloud.xyz");
+  std::ofstream(text) << "0 0 0 0 0 1\n";
+  EXPECT_FALSE(reads_in_parts(text));
+  expect_error(ErrorCode::invalid_input, "in parts",
+               [&] { (void)reconstruct_files({text}, output_, at_depth(7), scale(0)); });
+}
+
+TEST_F(ReconstructFiles, NeedsNormals) {
+  Cloud cloud = sphere_cloud(2000, 10);
+  cloud.normals.clear();
+  start(cloud);
+  write_old_output();
+  expect_error(ErrorCode::no_normals, "normals", [&] { reconstruct(at_depth(7)); });
+}
+
+TEST_F(ReconstructFiles, SaysHowMuchMemoryIsMissing) {
+  start(sphere_cloud(20000, 11));
+  write_old_output();
+  expect_error(ErrorCode::over_limit, "bytes or more", [&] { reconstruct(at_depth(8), kMegabyte); });
+}
+
+TEST_F(ReconstructFiles, StopsAtAnyMoment) {
+  start(torus_cloud(20000, 12));
+  write_old_output();
+  int calls = 0;
+  Options options = at_depth(7);
+  options.progress = [&](const Progress& progress) {
+    EXPECT_GE(progress.fraction, 0);
+    EXPECT_LE(progress.fraction, 1);
+    return ++calls > 0;
+  };
+  const std::string before = bytes_of_file(output_);
+  reconstruct(options, 30 * kMegabyte);
+  EXPECT_NE(bytes_of_file(output_), before);
+  const int all = calls;
+  EXPECT_GT(all, 14);
+  for (int stop = 1; stop <= all; stop += 1 + all / 12) {
+    calls = 0;
+    options.progress = [&](const Progress&) { return ++calls < stop; };
+    expect_error(ErrorCode::interrupted, "", [&] { reconstruct(options, 30 * kMegabyte); });
+  }
+}
+
+}  // namespace
+}  // namespace pointskin::test

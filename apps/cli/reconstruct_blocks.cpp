@@ -28,6 +28,8 @@
 namespace pointskin::cli {
 namespace {
 
+constexpr int kShallowest = 7;  // that reconstruct_files() takes
+
 void refuse_what_is_missing(const Options& options) {
   const std::vector<std::string> missing = missing_in_blocks(options);
   if (missing.empty()) return;
@@ -67,6 +69,7 @@ void warn_about_left_out(const FilesReport& files) {
 
 bool may_work_in_blocks(const ReconstructArgs& args, const Device& device) {
   if (args.options.max_memory_bytes == 0 || args.each || args.dry_run || args.repeat > 0 || args.problems) return false;
+  if (args.options.depth != Options::kAutomaticDepth && args.options.depth < kShallowest) return false;
   const bool to_ply = !args.ascii && std::filesystem::path(args.output).extension() == ".ply";
   if (device.kind != DeviceKind::cpu || args.inputs.size() != 1 || !to_ply || args.given.has("--width")) return false;
   return reads_in_parts(args.inputs.front());
@@ -83,9 +86,6 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
 #ifdef __GLIBC__
   malloc_trim(0);  // what the whole left behind
 #endif
-  if (!args.quiet)
-    print_note(fmt::format("the whole needs more than --max-memory {}: working in blocks",
-                           format_bytes(static_cast<double>(args.options.max_memory_bytes))));
   on_interrupt(OnInterrupt::remember);
   ProgressLine line(!args.quiet && stderr_is_terminal());
   Options options = record.options;

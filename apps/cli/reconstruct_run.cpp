@@ -213,16 +213,25 @@ void run_whole(const ReconstructArgs& args, const Stopwatch& watch, std::unique_
     record.shape = args.report.empty() ? shape_words(mesh.glance(args.threads)) : shape_words(record.mesh);
 }
 
+/// @returns false if the whole needs more than --max-memory
+bool run_whole_if_it_fits(const ReconstructArgs& args, const Stopwatch& watch,
+                          std::unique_ptr<Reconstructor>& reconstructor, Record& record) {
+  if (must_work_in_blocks(args)) return false;
+  try {
+    run_whole(args, watch, reconstructor, record);
+    return true;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::over_limit) throw;
+    return false;
+  }
+}
+
 /// The whole, or blocks where it does not fit.
 void run_within_limit(const ReconstructArgs& args, const Stopwatch& watch,
                       std::unique_ptr<Reconstructor>& reconstructor, Record& record) {
   if (record.options.max_memory_bytes > 0) record.device = args.chosen();
   if (!may_work_in_blocks(args, record.device)) return run_whole(args, watch, reconstructor, record);
-  if (!must_work_in_blocks(args)) try {
-      return run_whole(args, watch, reconstructor, record);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::over_limit) throw;
-    }
+  if (run_whole_if_it_fits(args, watch, reconstructor, record)) return;
   reconstructor.reset();
   reconstruct_in_blocks(args, watch, record);
 }

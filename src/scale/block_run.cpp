@@ -115,6 +115,18 @@ struct TakeOwn {
   }
 };
 
+/// Limits what buffers may take together as long as it is there; 0: they may take what they like.
+class LimitOfPool {
+ public:
+  LimitOfPool(exec::Cpu& ex, std::int64_t bytes) : ex_(ex) { ex_.pool()->set_limit(bytes); }
+  ~LimitOfPool() { ex_.pool()->set_limit(0); }
+  LimitOfPool(const LimitOfPool&) = delete;
+  LimitOfPool& operator=(const LimitOfPool&) = delete;
+
+ private:
+  exec::Cpu& ex_;
+};
+
 class BlockRun {
  public:
   BlockRun(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options, BlockReport& report)
@@ -135,6 +147,7 @@ class BlockRun {
       choose_blocks();
       build_coarse_tree();
     });
+    const LimitOfPool limit(ex_, options_.holds_to_memory ? options_.memory_bytes : 0);
     over_blocks({"sums", "splat", 0.1}, [&](const Range& own) { sum_facing(own); });
     finish_facing();
     over_blocks({"weights", "splat", 0.16}, [&](const Range& own) { weigh(own); });

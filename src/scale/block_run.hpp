@@ -25,6 +25,7 @@ struct BlockOptions {
   int coarse_level = 0;  ///< K in [octree::kCompleteDepth, depth - 2]: levels up to it are there as a whole; 0: chosen
   int blocks = 0;        ///< at most so many: cuts lie between cells; 0: as many as memory asks for
   std::int64_t memory_bytes = 0;  ///< that a block and the coarse levels may take, where they are to be chosen
+  bool holds_to_memory = false;   ///< ends where buffers come to need more than that, once blocks are chosen
   std::int64_t part_samples = std::int64_t{1} << 20;  ///< that steps without an octree take at once, > 0
   double samples_per_node = 1.5;
   double screening = 2;

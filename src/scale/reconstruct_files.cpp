@@ -144,12 +144,17 @@ class FilesRun {
     return scale_.max_memory_bytes > 0 ? scale_.max_memory_bytes : kAsMuchAsItLikes;
   }
 
+  [[nodiscard]] std::int64_t planned_bytes() const {
+    return std::max<std::int64_t>(1, bytes() - bytes() / 32 - kUnplanned);
+  }
+
   [[nodiscard]] scale::BlockOptions block_options() const {
     constexpr std::int64_t kFewestSamples = 1 << 14, kMostSamples = 1 << 22;  // of a part
     scale::BlockOptions blocks;
     blocks.folder = scale_.temp_folder;
     blocks.depth = options_.depth;
-    blocks.memory_bytes = std::max<std::int64_t>(1, bytes() - kUnplanned);
+    blocks.memory_bytes = planned_bytes();
+    blocks.holds_to_memory = scale_.max_memory_bytes > 0;
     blocks.part_samples = std::clamp(bytes() / 1000, kFewestSamples, kMostSamples);
     blocks.samples_per_node = options_.samples_per_node;
     blocks.screening = options_.screening;

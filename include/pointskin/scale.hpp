@@ -23,7 +23,7 @@ struct ScaleOptions {
 
 /// What reconstruct_files() did.
 struct FilesReport {
-  RunReport run;                    ///< without residuals, and without what a device takes
+  RunReport run;                    ///< without residuals
   std::int64_t dropped = 0;         ///< rows of the file whose coordinates are not finite
   std::int64_t without_normal = 0;  ///< points that were left out because their normal is zero
   std::int64_t vertices = 0, triangles = 0;

@@ -226,6 +226,7 @@ class FilesRun {
     run.levels = fit.report.levels;
     for (const LevelReport& level : run.levels) run.nodes += level.nodes;
     run.isovalue = fit.report.isovalue;
+    run.device_peak_bytes = ex_.pool()->peak_bytes();
     for (const scale::BlockReport::Sweep& sweep : fit.report.sweeps) time_of(sweep.phase) += 1000 * sweep.seconds;
     result_.vertices = fit.meshes->vertices();
     result_.triangles = fit.meshes->triangles();

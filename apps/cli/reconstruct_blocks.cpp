@@ -18,10 +18,8 @@
 #include "args.hpp"
 #include "console.hpp"
 #include "input.hpp"
-#include "json_text.hpp"
 #include "progress.hpp"
 #include "run_memory.hpp"
-#include "run_mesh.hpp"
 #include "signals.hpp"
 #include "summary_words.hpp"
 
@@ -30,12 +28,19 @@ namespace {
 
 constexpr int kShallowest = 7;  // that reconstruct_files() takes
 
-void refuse_what_is_missing(const Options& options) {
-  const std::vector<std::string> missing = missing_in_blocks(options);
-  if (missing.empty()) return;
+/// What is asked for and blocks do not do; an envelope also where it has not been read.
+std::vector<std::string> missing(const ReconstructArgs& args, const Options& options) {
+  std::vector<std::string> names = missing_in_blocks(options);
+  if (!args.envelope.empty() && options.envelope == nullptr) names.emplace_back("an envelope");
+  return names;
+}
+
+void refuse_what_is_missing(const ReconstructArgs& args, const Options& options) {
+  const std::vector<std::string> names = missing(args, options);
+  if (names.empty()) return;
   throw Error(ErrorCode::usage,
               fmt::format("the whole needs more than --max-memory {}, and in blocks there is not yet: {}",
-                          format_bytes(static_cast<double>(options.max_memory_bytes)), fmt::join(missing, ", ")));
+                          format_bytes(static_cast<double>(options.max_memory_bytes)), fmt::join(names, ", ")));
 }
 
 ScaleOptions scale_options(const ReconstructArgs& args) {
@@ -75,14 +80,15 @@ bool may_work_in_blocks(const ReconstructArgs& args, const Device& device) {
   return reads_in_parts(args.inputs.front());
 }
 
-bool must_work_in_blocks(const ReconstructArgs& args) {
+bool must_work_in_blocks(const ReconstructArgs& args, const Options& options) {
+  if (!missing(args, options).empty()) return false;
   std::error_code error;
   const auto bytes = std::filesystem::file_size(args.inputs.front(), error);
   return !error && static_cast<std::int64_t>(bytes) > bytes_left_of(args.options.max_memory_bytes) / 2;
 }
 
 void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, Record& record) {
-  refuse_what_is_missing(record.options);
+  refuse_what_is_missing(args, record.options);
 #ifdef __GLIBC__
   malloc_trim(0);  // what the whole left behind
 #endif

@@ -10,10 +10,11 @@ namespace pointskin::cli {
 /// True if a run whose memory is limited may go on in blocks: on the CPU, from one file that can be read in parts to binary PLY.
 bool may_work_in_blocks(const ReconstructArgs& args, const Device& device);
 
-/// True if reading the points as a whole would take more than the limit, so that nothing else needs to be tried.
-bool must_work_in_blocks(const ReconstructArgs& args);
+/// True if reading the points as a whole might take more than the limit, so that the whole is not to be tried; false where blocks do
+/// not do what the options ask for.
+bool must_work_in_blocks(const ReconstructArgs& args, const Options& options);
 
-/// Reconstructs in blocks, and writes the mesh and the report.
+/// Reconstructs in blocks and writes the mesh; measures it where a report is asked for.
 /// @param record  of what was tried as a whole, with the number of points if they were read: then it was said which are left out
 /// @throws Error usage if the options ask for what blocks do not do yet; as reconstruct_files()
 void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, Record& record);

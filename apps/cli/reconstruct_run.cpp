@@ -216,7 +216,7 @@ void run_whole(const ReconstructArgs& args, const Stopwatch& watch, std::unique_
 /// @returns false if the whole needs more than --max-memory
 bool run_whole_if_it_fits(const ReconstructArgs& args, const Stopwatch& watch,
                           std::unique_ptr<Reconstructor>& reconstructor, Record& record) {
-  if (must_work_in_blocks(args)) return false;
+  if (must_work_in_blocks(args, record.options)) return false;
   try {
     run_whole(args, watch, reconstructor, record);
     return true;

@@ -89,7 +89,7 @@ int run(const std::vector<std::string>& words) {
     std::printf("%-14s %8.2f s\n", sweep.name, sweep.seconds);
   const auto write_begin = std::chrono::steady_clock::now();
   if (!output.empty()) {
-    scale::write_ply(ex, meshes, frame, parts->origin(), output);
+    scale::write_ply(ex, meshes, {}, frame, parts->origin(), output);
     std::printf("%-14s %8.2f s\n", "write", seconds_since(write_begin));
   }
   std::printf("%-14s %8.2f s\n", "all", seconds_since(begin));

@@ -225,8 +225,12 @@ Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* tri
 }
 
 Blocks format_ply_parts(const MeshParts& mesh, bool double_coordinates) {
-  const VertexRow row{static_cast<std::size_t>(mesh.vertices), double_coordinates || !is_zero(mesh.origin),
-                      mesh.normals != nullptr};
+  VertexRow row{static_cast<std::size_t>(mesh.vertices), double_coordinates || !is_zero(mesh.origin),
+                mesh.normals != nullptr};
+  for (const MeshParts::AttributeParts& attribute : mesh.attributes) {
+    row.names.push_back(property_name(attribute.name));
+    row.types.push_back(attribute.type);
+  }
   const auto append_vertices = [mesh, row](std::size_t first, std::size_t last, std::string& bytes) {
     auto& [positions, normals, triangles] = fetched();
     mesh.positions(first, last, positions);
@@ -234,8 +238,10 @@ Blocks format_ply_parts(const MeshParts& mesh, bool double_coordinates) {
     normals.clear();
     if (row.normals) mesh.normals(first, last, normals);
     check_finite("the normal of vertex", first, normals);
-    const std::vector<Attribute> none;
-    store_rows({mesh.origin, positions, normals, none, row.wide}, {}, {0, last - first, row.bytes()},
+    std::vector<Attribute> attributes;
+    for (const MeshParts::AttributeParts& attribute : mesh.attributes)
+      attributes.push_back({attribute.name, attribute.values(first, last)});
+    store_rows({mesh.origin, positions, normals, attributes, row.wide}, row.types, {0, last - first, row.bytes()},
                append_rows(bytes, last - first, row.bytes()));
   };
   const auto append_faces = [mesh](std::size_t first, std::size_t last, std::string& bytes) {

@@ -52,6 +52,12 @@ struct MeshParts {
   std::function<void(std::size_t first, std::size_t last, std::vector<Vec3f>& part)> positions{};
   std::function<void(std::size_t first, std::size_t last, std::vector<Vec3f>& part)> normals{};  ///< may be empty
   std::function<void(std::size_t first, std::size_t last, std::vector<Triangle>& part)> corners{};
+  struct AttributeParts {
+    std::string name;
+    AttributeType type = AttributeType::float32;
+    std::function<AttributeValues(std::size_t first, std::size_t last)> values{};
+  };
+  std::vector<AttributeParts> attributes{};
 };
 
 /// Binary little endian PLY of such a mesh, the same bytes as format_ply() makes. Where the data are wrong, making a block throws.

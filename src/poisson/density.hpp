@@ -47,6 +47,17 @@ struct DensityView {
   }
 };
 
+/// Samples per finest cell face to samples per unit of area; of cells so small that float does not hold it, what it holds.
+struct PerArea {
+  double face;  ///< area of one
+  ArrayView<float> density;
+  PSK_HD void operator()(std::int64_t i) const {
+    constexpr double kLargest = 3.4028234663852886e38;
+    const double per_area = static_cast<double>(density[i]) / face;
+    density[i] = static_cast<float>(per_area < kLargest ? per_area : kLargest);
+  }
+};
+
 struct WeighOptions {
   double samples_per_node = 1.5;  ///< samples the splat kernel must average over, >= 0
   bool confidence = false;        ///< weight a sample by its normal's length over the mean length

@@ -68,23 +68,13 @@ bool is_worth_trimming(Exec& ex, const FieldData& field, const surface::Surface&
   return diagnose::findings_of(diagnose::read_counts(ex, counts)).far >= kLittle;
 }
 
-/// Samples per finest cell face to samples per unit of area; of cells so small that float does not hold it, what it holds.
-struct PerArea {
-  double face;  // world units^2
-  ArrayView<float> density;
-  PSK_HD void operator()(std::int64_t i) const {
-    constexpr double kLargest = 3.4028234663852886e38;
-    const double per_area = static_cast<double>(density[i]) / face;
-    density[i] = static_cast<float>(per_area < kLargest ? per_area : kLargest);
-  }
-};
-
 /// Samples per area of the cube's unit at the vertices.
 template <exec::Space Exec>
 exec::Buffer<float> density_at_vertices(Exec& ex, const FieldData& field, const surface::Surface& surface) {
   auto density = exec::make_buffer<float>(ex, surface.positions.size());
   poisson::evaluate_density(ex, field.tree, field.density, surface.positions.cview(), density.view());
-  for_each(ex, "pieces.density", density.size(), PerArea{std::ldexp(1.0, -2 * field.tree.depth), density.view()});
+  for_each(ex, "pieces.density", density.size(),
+           poisson::PerArea{std::ldexp(1.0, -2 * field.tree.depth), density.view()});
   return density;
 }
 
@@ -158,13 +148,7 @@ template <exec::Space Exec>
 surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& options, RunReport& report) {
   ex.activate();
   surface::Surface surface = detail::extract(ex, field, options, report);
-  if (surface.triangles.empty() && report.pieces.pieces > 0)
-    throw Error(ErrorCode::empty_result, "all pieces of the surface are smaller than min-component");
-  if (surface.triangles.empty() && report.trim.triangles_before > 0)
-    throw Error(ErrorCode::empty_result,
-                "all of the surface was trimmed away; choose a smaller trim quantile or island ratio");
-  if (surface.triangles.empty())
-    throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
+  check_triangles(surface.triangles.size(), report);
   return surface;
 }
 
@@ -182,7 +166,7 @@ exec::TypedBuffer density_at(Exec& ex, const FieldData& field, const surface::Su
   exec::TypedBuffer out = floats(ex, surface.positions.size());
   poisson::evaluate_density(ex, field.tree, field.density, surface.positions.cview(), out.as<float>());
   const double cell = field.frame.size / static_cast<double>(std::int64_t{1} << field.tree.depth);
-  for_each(ex, "density.area", out.size, PerArea{cell * cell, out.as<float>()});
+  for_each(ex, "density.area", out.size, poisson::PerArea{cell * cell, out.as<float>()});
   return out;
 }
 

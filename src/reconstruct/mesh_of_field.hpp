@@ -1,11 +1,13 @@
 // Implicit function to mesh: what reconstruction, editing, Booleans and deformation share.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <pointskin/device_data.hpp>
+#include <pointskin/error.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
 
@@ -41,6 +43,18 @@ void look_at_surface(Exec& ex, const surface::Surface& surface, FieldData& field
 /// @throws Error empty_result if nothing crosses the isovalue, or nothing is left after Options::trim
 template <exec::Space Exec>
 surface::Surface extract_some(Exec& ex, const FieldData& field, const Options& options, RunReport& report);
+
+/// @param report  of how the surface came to be
+/// @throws Error empty_result, with the reason, if there are no triangles
+inline void check_triangles(std::int64_t triangles, const RunReport& report) {
+  if (triangles > 0) return;
+  if (report.pieces.pieces > 0)
+    throw Error(ErrorCode::empty_result, "all pieces of the surface are smaller than min-component");
+  if (report.trim.triangles_before > 0)
+    throw Error(ErrorCode::empty_result,
+                "all of the surface was trimmed away; choose a smaller trim quantile or island ratio");
+  throw Error(ErrorCode::empty_result, "the surface has no triangles; are the normals oriented consistently?");
+}
 
 /// Copies a surface of `field` to the host, in world units relative to `origin`, with attributes and density.
 /// @param mesh  receives it; its memory is used again

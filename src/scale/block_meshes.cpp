@@ -13,7 +13,6 @@
 namespace pointskin::scale {
 namespace {
 
-constexpr std::int64_t kIndexBytes = sizeof(BlockMeshes::Indices);
 constexpr std::int64_t kTrianglesAtOnce = 64 << 10;
 constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -25,9 +24,32 @@ std::int64_t place_among_equals(std::span<const std::uint64_t> keys, std::size_t
   return keys.begin() + static_cast<std::ptrdiff_t>(at) - first;
 }
 
+/// Triangles one after another, written many at once.
+class TriangleWriter {
+ public:
+  TriangleWriter(const Spool& spool, std::int64_t at) : spool_(spool), at_(at) {}
+
+  void write(const BlockMeshes::Indices& triangle) {
+    some_.push_back(triangle);
+    if (std::ssize(some_) == kTrianglesAtOnce) flush();
+  }
+  void flush() {
+    const std::int64_t bytes = std::ssize(some_) * std::int64_t{sizeof(BlockMeshes::Indices)};
+    spool_.write(at_, some_.data(), bytes);
+    at_ += bytes;
+    some_.clear();
+  }
+
+ private:
+  const Spool& spool_;
+  std::int64_t at_;
+  std::vector<BlockMeshes::Indices> some_;
+};
+
 }  // namespace
 
 BlockMeshes::BlockMeshes(Setup setup) : setup_(std::move(setup)) {
+  if (setup_.pieces) setup_.columns.push_back(sizeof(std::int32_t));
   column_begins_.push_back(0);
   for (const std::int64_t bytes : setup_.columns) column_begins_.push_back(column_begins_.back() + bytes);
 }
@@ -44,12 +66,14 @@ void BlockMeshes::add(const BlockMesh& from) {
   const auto first = static_cast<std::size_t>(std::ranges::lower_bound(from.keys, from.begin) - from.keys.begin());
   count_vertices(from, first, block);
   add_outer(from);
-  const std::int64_t triangles = count_triangles(from);
-  block.spool = std::make_unique<Spool>(setup_.folder, block.count * column_begins_.back() + triangles * kIndexBytes);
-  write_vertices(from, first, block);
-  write_triangles(from, first, block);
+  block.triangles = count_triangles(from);
+  block.spool = std::make_unique<Spool>(setup_.folder, triangles_at(block.count) + block.triangles * kIndexBytes);
+  std::vector<std::int32_t> pieces;
+  if (setup_.pieces) pieces = add_pieces(from, first, block);
+  write_vertices(from, first, pieces, block);
+  write_triangles(from, first, pieces, block);
   inner_ += block.count;
-  triangles_ += triangles;
+  triangles_ += block.triangles;
   blocks_.push_back(std::move(block));
 }
 
@@ -71,7 +95,7 @@ void BlockMeshes::add_outer(const BlockMesh& from) {
     if (!from.owns(owner)) continue;
     Outer vertex{*key, std::vector<std::byte>(static_cast<std::size_t>(column_begins_.back()))};
     const std::int64_t v = key - from.keys.begin();
-    for (std::size_t c = 0; c < setup_.columns.size(); ++c)
+    for (std::size_t c = 0; c < from.columns.size(); ++c)
       std::memcpy(vertex.values.data() + column_begins_[c], from.columns[c] + v * setup_.columns[c],
                   static_cast<std::size_t>(setup_.columns[c]));
     outer_.push_back(std::move(vertex));
@@ -90,14 +114,40 @@ std::int64_t BlockMeshes::count_triangles(const BlockMesh& from) {
   return own;
 }
 
-void BlockMeshes::write_vertices(const BlockMesh& from, std::size_t first, const Block& block) const {
-  for (std::size_t c = 0; c < setup_.columns.size(); ++c)
-    block.spool->write(block.count * column_begins_[c],
-                       from.columns[c] + static_cast<std::int64_t>(first) * setup_.columns[c],
-                       block.count * setup_.columns[c]);
+std::vector<std::int32_t> BlockMeshes::add_pieces(const BlockMesh& from, std::size_t first, const Block& block) {
+  std::vector<std::uint8_t> is_own(from.cells.size());
+  std::ranges::transform(from.cells, is_own.begin(),
+                         [&](std::uint64_t cell) { return static_cast<std::uint8_t>(from.owns(cell)); });
+  PiecesOfPart pieces = find_pieces({{reinterpret_cast<const Vec3f*>(from.columns[0]), from.keys.size()},
+                                     from.triangles,
+                                     is_own,
+                                     from.density,
+                                     first,
+                                     static_cast<std::size_t>(block.count)});
+  const std::int32_t before = pieces_.size();
+  for (std::size_t p = 0; p < pieces.extents.size(); ++p) {
+    const std::int64_t own = pieces.first_own_vertex[p];
+    pieces_.add(pieces.extents[p],
+                own == PiecesOfPart::kNone ? own : block.first + own - static_cast<std::int64_t>(first));
+  }
+  for (std::int32_t& piece : pieces.piece_of)
+    if (piece >= 0) piece += before;
+  return std::move(pieces.piece_of);
 }
 
-void BlockMeshes::write_triangles(const BlockMesh& from, std::size_t first, Block& block) const {
+void BlockMeshes::write_vertices(const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
+                                 const Block& block) const {
+  const auto write = [&](std::size_t column, const std::byte* values) {
+    block.spool->write(block.count * column_begins_[column],
+                       values + static_cast<std::int64_t>(first) * setup_.columns[column],
+                       block.count * setup_.columns[column]);
+  };
+  for (std::size_t c = 0; c < from.columns.size(); ++c) write(c, from.columns[c]);
+  if (!pieces.empty()) write(piece_column(), reinterpret_cast<const std::byte*>(pieces.data()));
+}
+
+void BlockMeshes::write_triangles(const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
+                                  Block& block) const {
   std::vector<std::uint32_t> other_of(from.keys.size(), kNone);  // place in block.others
   const auto local = [&](std::int32_t vertex) -> std::uint32_t {
     const auto v = static_cast<std::size_t>(vertex);
@@ -105,24 +155,17 @@ void BlockMeshes::write_triangles(const BlockMesh& from, std::size_t first, Bloc
     if (other_of[v] == kNone) {
       other_of[v] = static_cast<std::uint32_t>(block.others.size());
       block.others.push_back(reference_to(from.keys, v));
+      if (!pieces.empty()) block.pieces_of_others.push_back(pieces[v]);
     }
     return static_cast<std::uint32_t>(block.count) + other_of[v];
   };
-  std::vector<Indices> some;
-  std::int64_t at = block.count * column_begins_.back();
-  const auto flush = [&] {
-    const std::int64_t bytes = std::ssize(some) * kIndexBytes;
-    block.spool->write(at, some.data(), bytes);
-    at += bytes;
-    some.clear();
-  };
+  TriangleWriter out(*block.spool, triangles_at(block.count));
   for (std::size_t t = 0; t < from.triangles.size(); ++t) {
     if (!from.owns(from.cells[t])) continue;
     const Triangle& corners = from.triangles[t];
-    some.push_back({local(corners[0]), local(corners[1]), local(corners[2])});
-    if (std::ssize(some) == kTrianglesAtOnce) flush();
+    out.write({local(corners[0]), local(corners[1]), local(corners[2])});
   }
-  flush();
+  out.flush();
 }
 
 BlockMeshes::Reference BlockMeshes::reference_to(std::span<const std::uint64_t> keys, std::size_t v) const {
@@ -141,11 +184,16 @@ void BlockMeshes::finish() {
     for (const Reference& vertex : block.others) block.numbers.push_back(number_of(vertex));
     block.others = {};
   }
+  cells_ = {};
   std::ranges::stable_sort(chunks_, {}, [](const Chunk& chunk) { return std::tuple(chunk.segment, chunk.block); });
-  std::int64_t before = 0;
+  place_chunks();
+}
+
+void BlockMeshes::place_chunks() {
+  triangles_ = 0;
   for (Chunk& chunk : chunks_) {
-    chunk.before = before;
-    before += chunk.count;
+    chunk.before = triangles_;
+    triangles_ += chunk.count;
   }
 }
 
@@ -196,8 +244,7 @@ void BlockMeshes::read_triangles(std::int64_t first, std::int64_t count, Indices
     const Block& block = blocks_[static_cast<std::size_t>(from.block)];
     const std::int64_t begin = first - from.before;
     const std::int64_t some = std::min(count, from.count - begin);
-    block.spool->read(block.count * column_begins_.back() + (from.first + begin) * kIndexBytes, out,
-                      some * kIndexBytes);
+    block.spool->read(triangles_at(block.count) + (from.first + begin) * kIndexBytes, out, some * kIndexBytes);
     const auto own = static_cast<std::uint32_t>(block.count);
     for (std::int64_t t = 0; t < some; ++t)
       for (std::uint32_t& vertex : out[t])

@@ -12,7 +12,10 @@
 
 #include <pointskin/vector.hpp>
 
+#include "scale/block_pieces.hpp"
+#include "scale/ranked_bits.hpp"
 #include "scale/spool.hpp"
+#include "surface/pieces.hpp"
 
 namespace pointskin::scale {
 
@@ -25,6 +28,7 @@ struct BlockMesh {
   std::span<const Triangle> triangles;     ///< (t) numbers of the block's vertices
   std::span<const std::uint64_t> cells;    ///< (t) the first of the finest cells in the cell that a triangle lies in
   std::span<const std::uint8_t> segments;  ///< (t) ascending; in one segment, triangles are in the order of their cells
+  std::span<const float> density{};        ///< (v) as surface::PieceOptions::density, or empty
 
   [[nodiscard]] bool owns(std::uint64_t cell) const { return cell >= begin && cell < end; }
 };
@@ -44,6 +48,7 @@ class BlockMeshes {
     int depth = 0;                      ///< finest level
     int cell_level = 0;                 ///< of the cells by which vertices of other blocks are found
     std::vector<std::int64_t> columns;  ///< bytes that a vertex has in each
+    bool pieces = false;                ///< finds pieces, for keep_pieces(); positions are the first column
   };
 
   explicit BlockMeshes(Setup setup);
@@ -51,7 +56,7 @@ class BlockMeshes {
   /// Blocks come in ascending order of their cells. Every vertex of a triangle that lies in an own cell must be there, and
   /// all vertices of the cells of `cell_level` that hold one; of those on the upper faces of the cube, all of its corner.
   /// @throws Error output_not_written, interrupted
-  /// O(v + t), 4 bytes a vertex of scratch
+  /// O(v + t), 4 bytes a vertex of scratch, and 9 with pieces
   void add(const BlockMesh& block);
 
   /// When all blocks are there.
@@ -59,9 +64,15 @@ class BlockMeshes {
   /// O(blocks + border vertices log cells)
   void finish();
 
+  /// Leaves out pieces, as surface::keep_pieces() does; after finish(), once, if Setup::pieces is true. The options' density is
+  /// that of the blocks.
+  /// @throws Error output_not_written, interrupted
+  /// Reads the pieces of all vertices, and writes anew the blocks that lose some. A byte for 5 vertices of scratch.
+  surface::PieceCounts keep_pieces(const surface::PieceOptions& options);
+
   [[nodiscard]] std::int64_t vertices() const { return inner_ + outer_count(); }
   [[nodiscard]] std::int64_t triangles() const { return triangles_; }
-  [[nodiscard]] std::int64_t columns() const { return std::ssize(setup_.columns); }
+  [[nodiscard]] std::int64_t columns() const { return std::ssize(setup_.columns) - (setup_.pieces ? 1 : 0); }
 
   /// Column `column` of vertices first .. first + count - 1; for many threads at once, after finish().
   /// @throws Error output_not_written if the disk fails, interrupted
@@ -79,6 +90,7 @@ class BlockMeshes {
     std::int64_t place = 0;
   };
   static constexpr std::uint64_t kOuter = std::uint64_t{1} << 63;
+  static constexpr std::int64_t kIndexBytes = sizeof(Indices);
 
   /// The vertices of a cell of `cell_level`.
   struct Cell {
@@ -98,10 +110,12 @@ class BlockMeshes {
     std::int64_t count = 0;
   };
   struct Block {
-    std::int64_t first = 0, count = 0;   ///< own inner vertices in the whole
-    std::unique_ptr<Spool> spool;        ///< own inner vertices column after column, then triangles
+    std::int64_t first = 0, count = 0;  ///< own inner vertices in the whole
+    std::unique_ptr<Spool> spool;       ///< own inner vertices column after column, then triangles
+    std::int64_t triangles = 0;
     std::vector<Reference> others;       ///< vertices that triangles number after the own inner ones
     std::vector<std::uint32_t> numbers;  ///< of these, after finish()
+    std::vector<std::int32_t> pieces_of_others;
   };
 
   [[nodiscard]] bool is_outer(std::uint64_t key) const { return key >> 3 * setup_.depth != 0; }
@@ -117,16 +131,38 @@ class BlockMeshes {
   void add_outer(const BlockMesh& from);
   /// @returns own triangles
   std::int64_t count_triangles(const BlockMesh& from);
-  void write_vertices(const BlockMesh& from, std::size_t first, const Block& block) const;
-  void write_triangles(const BlockMesh& from, std::size_t first, Block& block) const;
+  /// @param pieces  (v) or empty
+  void write_vertices(const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
+                      const Block& block) const;
+  void write_triangles(const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
+                       Block& block) const;
+  void place_chunks();
   void read_inner(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) const;
+
+  /// Where the triangles begin in a block's spool.
+  [[nodiscard]] std::int64_t triangles_at(std::int64_t vertices) const { return vertices * column_begins_.back(); }
+  /// The last column, with pieces.
+  [[nodiscard]] std::size_t piece_column() const { return setup_.columns.size() - 1; }
+  /// Adds the pieces of a block. @returns (v) their numbers among those of all blocks, or -1
+  [[nodiscard]] std::vector<std::int32_t> add_pieces(const BlockMesh& from, std::size_t first, const Block& block);
+  void join_pieces();
+  [[nodiscard]] RankedBits vertices_that_stay() const;
+  /// Of one block: what does not stay.
+  void leave_out(std::size_t number, const RankedBits& stays);
+  /// @param count  own vertices that stay
+  void write_columns_that_stay(const Block& block, const RankedBits& stays, std::int64_t count, const Spool& out) const;
+  /// @param other_of  (block.numbers) places of those that stay among each other
+  void write_triangles_that_stay(std::size_t number, const RankedBits& stays, std::int64_t count,
+                                 const std::vector<std::uint32_t>& other_of, const Spool& out);
 
   Setup setup_;
   std::vector<std::int64_t> column_begins_;  ///< bytes of the columns before each
   std::vector<Block> blocks_;
-  std::vector<Cell> cells_;    ///< ascending
-  std::vector<Outer> outer_;   ///< by key after finish()
-  std::vector<Chunk> chunks_;  ///< in the order of the whole after finish()
+  std::vector<Cell> cells_;        ///< ascending
+  std::vector<Outer> outer_;       ///< by key after finish()
+  std::vector<Chunk> chunks_;      ///< in the order of the whole after finish()
+  BlockPieces pieces_;             ///< of all blocks, and after join_pieces() one for each outer vertex
+  std::int32_t outer_pieces_ = 0;  ///< the first of these
   std::int64_t inner_ = 0;
   std::int64_t triangles_ = 0;
 };

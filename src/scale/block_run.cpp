@@ -25,6 +25,7 @@
 #include "poisson/in_blocks.hpp"
 #include "poisson/sum_hats.hpp"
 #include "poisson/trust.hpp"
+#include "reconstruct/pieces_by_support.hpp"
 #include "scale/block_cuts.hpp"
 #include "scale/block_looks.hpp"
 #include "scale/cell_set.hpp"
@@ -50,7 +51,7 @@ void keep_single(std::vector<std::uint64_t>& keys) { keys.erase(std::unique(keys
 
 /// Bytes that are taken for a node of a block's octree and a sample, while it is solved, and for a node of the coarse levels
 /// from the first to the last block (docs/decisions/0057-blocks.md).
-constexpr std::int64_t kNodeBytes = 48, kSampleBytes = 60, kCoarseBytes = 75;
+constexpr std::int64_t kNodeBytes = 48, kSampleBytes = 60, kCoarseBytes = 79;
 
 /// The coarse levels get a third of the memory.
 constexpr std::int64_t kCoarseShare = 3;
@@ -76,6 +77,7 @@ struct Coarse {
   std::vector<std::int64_t> first;                  ///< first sample of each, and the number of all
 
   exec::Buffer<Facing> facing;
+  exec::Buffer<float> counts;                  ///< poisson::Density::counts, if they are needed
   std::uint32_t depths = 0;                    ///< that samples are splatted at, with poisson::kSparseSamples
   std::vector<std::int8_t> resolved;           ///< finest level up to K that a sample of each of `cells` resolves
   exec::Buffer<std::uint8_t> resolved_bricks;  ///< Resolution::bricks, or empty if all are
@@ -165,13 +167,7 @@ class BlockRun {
     if (!values.reliable())
       throw Error(ErrorCode::empty_result, "the field at the points is too far from 1/2 to be summed up in blocks");
     report_.isovalue = values.mean();
-    BlockMeshes meshes({options_.folder, depth_, level_, columns()});
-    std::size_t block = 0;
-    over_blocks({"extract", "extract", 0.8}, [&](const Range& own) {
-      extract(own, *fields[block], meshes);
-      fields[block++].reset();
-    });
-    sweep({"join", "extract", 0.98}, [&] { meshes.finish(); });
+    BlockMeshes meshes = extract_all(fields);
     sweep({"look at triangles", "extract", 0.98}, [&] {
       const int far_depth = diagnose::far_depth(diagnose::findings_of(looks()), depth_);
       look_at_triangles(meshes, index, far_depth, looks());
@@ -184,7 +180,49 @@ class BlockRun {
   [[nodiscard]] std::vector<std::int64_t> columns() const {
     std::vector<std::int64_t> columns{sizeof(Vec3f)};
     if (options_.normals) columns.push_back(sizeof(Vec3f));
+    if (options_.density_face > 0) columns.push_back(sizeof(float));
     return columns;
+  }
+
+  [[nodiscard]] bool picks_by_support() const {
+    return detail::picks_pieces_by_support(options_.largest, options_.min_component);
+  }
+  [[nodiscard]] double fewest_samples() const {
+    if (!picks_by_support()) return 0;
+    return detail::fewest_samples(diagnose::findings_of(looks()).lonely > 0, report_.lone_corners);
+  }
+  [[nodiscard]] bool needs_counts() const { return picks_by_support() || options_.density_face > 0; }
+
+  /// Whether pieces without samples go is known once all is extracted: then once more, with pieces.
+  BlockMeshes extract_all(std::vector<std::unique_ptr<Spool>>& fields) {
+    surface::PieceOptions pieces{options_.largest, options_.min_component, fewest_samples()};
+    const auto looks_for_pieces = [&] { return pieces.largest || pieces.least > 0 || pieces.least_samples > 0; };
+    const bool may_come_again = picks_by_support() && !looks_for_pieces();
+    BlockMeshes meshes = start_meshes(looks_for_pieces());
+    std::size_t block = 0;
+    over_blocks({"extract", "extract", 0.8}, [&](const Range& own) {
+      extract(own, *fields[block], {pieces.least_samples > 0, true}, meshes);
+      if (!may_come_again) fields[block].reset();
+      ++block;
+    });
+    pieces.least_samples = fewest_samples();
+    if (may_come_again && looks_for_pieces()) {
+      meshes = start_meshes(true);
+      block = 0;
+      over_blocks({"extract again", "extract", 0.9}, [&](const Range& own) {
+        extract(own, *fields[block++], {true, false}, meshes);
+      });
+    }
+    fields.clear();
+    sweep({"join", "extract", 0.98}, [&] {
+      meshes.finish();
+      if (looks_for_pieces() && meshes.triangles() > 0) report_.pieces = meshes.keep_pieces(pieces);
+    });
+    return meshes;
+  }
+
+  [[nodiscard]] BlockMeshes start_meshes(bool pieces) const {
+    return BlockMeshes({options_.folder, depth_, level_, columns(), pieces});
   }
   [[nodiscard]] int finer() const { return depth_ - level_; }
 
@@ -492,6 +530,10 @@ class BlockRun {
                poisson::hats::Restrict<Facing>{level, below, coarse_.facing.data() + below.first_node,
                                                coarse_.facing.view().part(level.first_node, level.nodes())});
     }
+    if (!needs_counts()) return;
+    coarse_.counts = exec::make_buffer<float>(ex_, coarse_.facing.size());
+    std::transform(coarse_.facing.data(), coarse_.facing.data() + coarse_.facing.size(), coarse_.counts.data(),
+                   [](const Facing& facing) { return facing.count; });
   }
 
   void weigh(const Range& own) {
@@ -789,9 +831,17 @@ class BlockRun {
     }
   }
 
-  void extract(const Range& own, const Spool& field, BlockMeshes& meshes) {
+  /// What an extraction is for besides the surface.
+  struct Extraction {
+    bool supports = false;  ///< pieces without samples go
+    bool looks = false;     ///< counts what may be wrong
+  };
+
+  void extract(const Range& own, const Spool& field, const Extraction& what, BlockMeshes& meshes) {
     BlockSamples block = read_weighed(own, around_finer_nodes(own));
     const OctreeData tree = build(block);
+    poisson::Density density;
+    if (what.supports || options_.density_face > 0) density = density_of(tree, block.samples);
     const poisson::Resolution resolution = resolution_of(tree, block.samples);
     const std::vector<std::int64_t> chosen =
         chosen_own(own, diagnose::kSamples / diagnose::kSparse, block.first_own, [](std::int64_t) { return true; });
@@ -806,18 +856,40 @@ class BlockRun {
     surface::SurfacePlaces places;
     surface::ExtractOptions extraction{options_.curvature, options_.normals};
     extraction.places = &places;
+    extraction.counted = {own.begin, own.end};
     const field::FieldView function{view, u.data(), static_cast<float>(report_.isovalue), true,
                                     resolution.bricks.empty() ? nullptr : resolution.bricks.data()};
-    diagnose::look_at_field_of_block(ex_, function, looked_at.view(), own.begin, own.end, counts_);
+    if (what.looks) diagnose::look_at_field_of_block(ex_, function, looked_at.view(), own.begin, own.end, counts_);
     const surface::Surface surface = surface::extract_surface(ex_, function, extraction);
-    report_.lone_corners += surface.lone_corners;
+    if (what.looks) report_.lone_corners += surface.lone_corners;
+    exec::Buffer<float> per_cube, per_world;  // samples per area of the cube's unit, and of the world's
+    if (what.supports) per_cube = density_at(tree, density, surface, std::ldexp(1.0, -2 * depth_));
+    if (options_.density_face > 0) per_world = density_at(tree, density, surface, options_.density_face);
     std::vector<const std::byte*> columns{reinterpret_cast<const std::byte*>(surface.positions.data())};
     if (options_.normals) columns.push_back(reinterpret_cast<const std::byte*>(surface.normals.data()));
+    if (options_.density_face > 0) columns.push_back(reinterpret_cast<const std::byte*>(per_world.data()));
     const auto span = [](const auto& buffer) {
       return std::span(buffer.data(), static_cast<std::size_t>(buffer.size()));
     };
     meshes.add({own.begin, own.end, span(places.keys), columns, span(surface.triangles), span(places.cells),
-                span(places.segments)});
+                span(places.segments), span(per_cube)});
+  }
+
+  /// As the whole has it, at nodes around which all samples are there.
+  poisson::Density density_of(const OctreeData& tree, const Samples& samples) {
+    poisson::Density density = poisson::splat_density(ex_, tree, samples.positions.cview());
+    copy(ex_, coarse_.counts.cview(), density.counts.view().part(0, coarse_.counts.size()));
+    return density;
+  }
+
+  /// Samples per area.
+  /// @param face  area of a face of a finest cell
+  exec::Buffer<float> density_at(const OctreeData& tree, const poisson::Density& density,
+                                 const surface::Surface& surface, double face) {
+    auto values = exec::make_buffer<float>(ex_, surface.positions.size());
+    poisson::evaluate_density(ex_, tree, density, surface.positions.cview(), values.view());
+    for_each(ex_, "scale.density", values.size(), poisson::PerArea{face, values.view()});
+    return values;
   }
 
   /// A sample that is splatted at levels up to K.

@@ -15,6 +15,7 @@
 #include "octree/bounding_box.hpp"
 #include "scale/block_meshes.hpp"
 #include "scale/sorted_cloud.hpp"
+#include "surface/pieces.hpp"
 
 namespace pointskin::scale {
 
@@ -34,6 +35,10 @@ struct BlockOptions {
   int ring = 0;  ///< cells of level K around what is solved; 0: solve_ring(iterations), and fewer give other bytes
   float curvature = 0.5F;  ///< ExtractOptions::curvature
   bool normals = true;
+  bool largest = false;  ///< as Options has them
+  double min_component = 0;
+  double density_face =
+      0;  ///< area of a face of a finest cell in world units^2: samples per area are the last column; 0: none
   std::function<bool(const Progress&)> progress{};  ///< as Options has it, called for every block of every sweep
 };
 
@@ -53,7 +58,8 @@ struct BlockReport {
   double isovalue = 0;
   diagnose::Counts looks{};                       ///< what the fit of the whole counts, and its surface
   BoxOfPoints inliers;                            ///< in the unit cube: of the samples that are no outliers
-  std::int64_t lone_corners = 0;                  ///< as surface::Surface has them; some are counted twice
+  std::int64_t lone_corners = 0;                  ///< as surface::Surface has them
+  surface::PieceCounts pieces;                    ///< what keep_pieces() found, if they were looked for
   std::vector<LevelReport> levels;                ///< depth 0 first, without unknowns and residuals
   std::int64_t most_samples = 0, most_nodes = 0;  ///< of a block with its ring
   std::int64_t coarse_nodes = 0;                  ///< of levels up to K
@@ -73,14 +79,14 @@ struct BlockReport {
 inline constexpr int kSumRing = 5;
 [[nodiscard]] constexpr int solve_ring(int iterations) { return iterations + 5; }
 
-/// The surface that detail::fit_field() and detail::extract() make of the same samples, without trimming, attributes and
-/// pieces taken away, with the same bits for any number of blocks and any coarse level: positions in the unit cube and, if
-/// asked for, normals are the columns.
+/// The surface that detail::fit_field() and detail::extract() make of the same samples, without trimming and attributes of
+/// samples, with the same bits for any number of blocks and any coarse level: positions in the unit cube and, if asked for,
+/// normals and density are the columns.
 /// @param cloud  of at least one point
 /// @throws Error usage for levels and numbers beyond their ranges; over_limit if no number of blocks does with the memory, which
 ///         says how much one that cannot be cut takes; empty_result if the isovalue cannot be summed up in parts;
 ///         output_not_written, over_limit, interrupted
-/// Sweeps over all blocks six times, and builds the octree of a block in each.
+/// Sweeps over all blocks six times, and builds the octree of a block in each; once more where corners turn out to be lone ones.
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                BlockReport& report);
 

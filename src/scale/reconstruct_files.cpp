@@ -66,10 +66,9 @@ class FilesRun {
     } else {
       diagnose::warn_of_normals(findings(fit), judge(), result_.run.warnings);
     }
-    check_pieces(fit.report);
     warn(fit);
     announce(options_.progress, "write", 0.99);
-    scale::write_ply(ex_, *fit.meshes, place_.frame, parts_->origin(), output);
+    scale::write_ply(ex_, *fit.meshes, {options_.normals, options_.density}, place_.frame, parts_->origin(), output);
     report(fit);
     return std::move(result_);
   }
@@ -94,8 +93,17 @@ class FilesRun {
     place_ = {std::move(left_out), frame};
   }
 
-  /// Where some samples are lonely, the cube is made for the others, and the fit begins again: once.
+  /// @throws Error empty_result if there is no surface
   Fit fit_cloud() {
+    Fit fit = fit_around_inliers();
+    const surface::PieceCounts& pieces = fit.report.pieces;
+    result_.run.pieces = {pieces.pieces, pieces.pieces_removed, pieces.triangles_removed};
+    detail::check_triangles(fit.meshes->triangles(), result_.run);
+    return fit;
+  }
+
+  /// Where some samples are lonely, the cube is made for the others, and the fit begins again: once.
+  Fit fit_around_inliers() {
     Fit fit = fit_in_cube();
     ++fits_;
     if (has_core_ || options_.keep_strays) return fit;
@@ -162,26 +170,14 @@ class FilesRun {
     blocks.iterations = options_.iterations;
     blocks.curvature = options_.linear_fit ? 0 : detail::kCurvature;
     blocks.normals = options_.normals;
+    blocks.largest = options_.largest;
+    blocks.min_component = options_.min_component;
+    if (options_.density) {
+      const double cell = place_.frame.size / static_cast<double>(std::int64_t{1} << options_.depth);
+      blocks.density_face = cell * cell;
+    }
     blocks.progress = options_.progress;
     return blocks;
-  }
-
-  /// What a whole would look at the pieces for, which blocks do not know.
-  void check_pieces(const scale::BlockReport& report) const {
-    if (options_.min_component == 1) return;
-    const auto lonely = static_cast<std::int64_t>(diagnose::findings_of(report.looks).lonely);
-    if (lonely > 0)
-      throw Error(
-          ErrorCode::usage,
-          fmt::format("{} points lie far from all others, and the small pieces around such points cannot be taken "
-                      "away in blocks yet; with a min-component of 1 all pieces stay",
-                      lonely));
-    if (report.lone_corners > 0)
-      throw Error(
-          ErrorCode::usage,
-          fmt::format("the surface has {} specks around single corners of the octree, which cannot be taken away "
-                      "in blocks yet; with a min-component of 1 all pieces stay",
-                      report.lone_corners));
   }
 
   void warn(const Fit& fit) {
@@ -272,9 +268,6 @@ std::vector<std::string> missing_in_blocks(const Options& options) {
   name(options.offset != 0, "an offset");
   name(options.isovalue.has_value(), "an isovalue");
   name(options.trim != 0, "trimming");
-  name(options.largest, "the largest piece alone");
-  name(options.min_component != 0 && options.min_component != 1, "a least size of pieces");
-  name(options.density, "density");
   name(options.weakness, "weakness");
   name(options.attributes, "attributes");
   return missing;

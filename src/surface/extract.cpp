@@ -435,7 +435,7 @@ Surface extract_surface(Exec& ex, const field::FieldView& f, const ExtractOption
   auto signs = exec::make_buffer<std::uint8_t>(ex, f.tree.nodes);
   auto lone_corners = exec::make_buffer<std::uint64_t>(ex, 1);
   exec::fill(ex, lone_corners.view(), std::uint64_t{0});
-  const Marker marker{f, count_triangles(kCases), marks.view(), signs.view(), lone_corners.data()};
+  const Marker marker{f, count_triangles(kCases), marks.view(), signs.view(), lone_corners.data(), options.counted};
   if constexpr (Exec::kManyThreads)
     for_each(ex, "extract.mark", f.tree.nodes, MarkNode{marker});
   else

@@ -16,6 +16,12 @@
 
 namespace pointskin::surface {
 
+/// Morton keys begin..end - 1 of cells of the finest level.
+struct KeyRange {
+  std::uint64_t begin = 0, end = ~std::uint64_t{0};
+  [[nodiscard]] PSK_HD bool holds(std::uint64_t key) const { return key >= begin && key < end; }
+};
+
 /// Where the vertices and triangles of a surface come from, for meshes of blocks. Keys are Morton keys in units of the
 /// finest cells.
 struct SurfacePlaces {
@@ -33,6 +39,7 @@ struct ExtractOptions {
   /// before triangles and centres of loops are made; may move the vertices along their edges towards the inside ends.
   std::function<void(ArrayView<Vec3f> vertices, ArrayView<const Vec3f> inside_ends)> move_vertices{};
   SurfacePlaces* places = nullptr;  ///< receives where all comes from, if not null
+  KeyRange counted{};               ///< cells at whose corners lone ones are counted
 };
 
 /// A mesh in the space it was made in.

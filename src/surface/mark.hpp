@@ -7,6 +7,7 @@
 #include "exec/atomic.hpp"
 #include "field/field_view.hpp"
 #include "octree/neighbourhood.hpp"
+#include "surface/extract.hpp"
 #include "surface/leaf_cell.hpp"
 
 namespace pointskin::surface::extract {
@@ -29,7 +30,8 @@ struct Marker {
   TriangleCounts counts;
   ArrayView<std::uint8_t> marks;
   ArrayView<std::uint8_t> signs;  ///< inside bits of the corners of cells with triangles; undefined for others
-  std::uint64_t* lone_corners;    ///< counts them
+  std::uint64_t* lone_corners;    ///< counts those below
+  KeyRange counted{};             ///< finest cells at whose corners lone ones are counted
 
   /// True if cells of the brick touch a face of the cube. Read off the key, without decoding it.
   PSK_HD static bool is_near_face(const octree::LevelView& l, std::int64_t brick) {
@@ -55,7 +57,8 @@ struct Marker {
       const unsigned end = signs >> (4 >> axis);  // the corner one step along the axis
       if (((signs ^ end) & 1) != 0 && is_finest_edge(level, node, axis)) mark |= 1U << axis;
     }
-    if (mark == kEdges && (signs == 1 || signs == 0xfe) && is_lone(level, node, signs == 1)) exec::add(lone_corners, 1);
+    if (mark == kEdges && (signs == 1 || signs == 0xfe) && is_lone(level, node, signs == 1) && is_counted(level, node))
+      exec::add(lone_corners, 1);
     return mark | mark_cell(level, node, signs, uniform);
   }
 
@@ -76,6 +79,10 @@ struct Marker {
       same.last = other;
     }
     return same;
+  }
+
+  PSK_HD bool is_counted(int level, std::int32_t node) const {
+    return counted.holds(f.tree.levels[level].node_key(node) << 3 * (f.tree.depth - level));
   }
 
   /// Surface::lone_corners.

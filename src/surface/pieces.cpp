@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "exec/this_space.hpp"
+#include "surface/piece_rule.hpp"
 #include "surface/split_surface.hpp"
 
 namespace pointskin::surface {
@@ -10,20 +11,12 @@ namespace {
 
 using namespace trim;
 
-/// Of a piece, at its root; else nothing.
-struct PieceExtent {
-  std::uint64_t area = 0, triangles = 0;  // area in trim's units
-  std::uint64_t samples = 0;              // in units of 2^-20
-};
-
-constexpr double kSampleUnits = 0x1p20;
-
 /// Adds the triangles of a block to their pieces, those of one piece in a row at once.
 struct SumExtents {
   static constexpr std::int64_t kTriangles = 32;
   SidesView mesh;
   exec::DisjointSets sets;
-  PieceExtent* extents;  // (v)
+  PieceExtent* extents;  // (v) of a piece at its root; else nothing
   ArrayView<const float> density;
 
   PSK_HD void operator()(std::int64_t block) const {
@@ -36,11 +29,8 @@ struct SumExtents {
       if (root != piece) flush(piece, sum);
       piece = root;
       const double area = mesh.area(t);
-      sum.area += area_units(area);
-      if (!density.empty())
-        sum.samples +=
-            static_cast<std::uint64_t>(kSampleUnits * area * static_cast<double>(density[mesh.triangles[t].data()[0]]));
-      ++sum.triangles;
+      sum.add_triangle(area);
+      if (!density.empty()) sum.add_samples(area, density[mesh.triangles[t].data()[0]]);
     }
     flush(piece, sum);
   }
@@ -53,46 +43,19 @@ struct SumExtents {
   }
 };
 
-/// The whole, and its largest piece.
-struct Whole {
-  std::uint64_t area = 0, largest = 0;
-  std::int64_t pieces = 0;
-  std::int64_t largest_root = -1;
-};
 struct WholeOf {
   exec::DisjointSets sets;
   ArrayView<const PieceExtent> extents;
-  PSK_HD Whole operator()(std::int64_t v) const {
+  PSK_HD WholeOfPieces operator()(std::int64_t v) const {
     if (!sets.is_root(static_cast<std::int32_t>(v)) || extents[v].triangles == 0) return {};
     return {extents[v].area, extents[v].area, 1, v};
-  }
-};
-struct AddWholes {
-  PSK_HD Whole operator()(const Whole& a, const Whole& b) const {
-    const bool second = a.largest_root < 0 || b.largest > a.largest ||
-                        (b.largest == a.largest && b.largest_root >= 0 && b.largest_root < a.largest_root);
-    return {a.area + b.area, second ? b.largest : a.largest, a.pieces + b.pieces,
-            second ? b.largest_root : a.largest_root};
-  }
-};
-
-/// Which pieces stay.
-struct Rule {
-  std::int64_t only = -1;    // root of the one that stays; -1: those that are large enough
-  std::int64_t always = -1;  // root of one that stays however small it is
-  std::uint64_t least_area = 0, least_triangles = 0, least_samples = 0;
-
-  [[nodiscard]] PSK_HD bool stays(std::int64_t root, const PieceExtent& extent) const {
-    if (only >= 0) return root == only;
-    return root == always ||
-           (extent.area >= least_area && extent.triangles >= least_triangles && extent.samples >= least_samples);
   }
 };
 
 struct MarkKept {
   exec::DisjointSets sets;
   ArrayView<const PieceExtent> extents;
-  Rule rule;
+  PieceRule rule;
   ArrayView<std::uint8_t> kept;
   PSK_HD void operator()(std::int64_t v) const {
     const std::int32_t root = sets.root(static_cast<std::int32_t>(v));
@@ -106,7 +69,7 @@ struct Removed {
 struct RemovedAt {
   exec::DisjointSets sets;
   ArrayView<const PieceExtent> extents;
-  Rule rule;
+  PieceRule rule;
   PSK_HD Removed operator()(std::int64_t v) const {
     if (!sets.is_root(static_cast<std::int32_t>(v)) || extents[v].triangles == 0 || rule.stays(v, extents[v]))
       return {};
@@ -118,19 +81,6 @@ struct AddRemoved {
     return {a.pieces + b.pieces, a.triangles + b.triangles};
   }
 };
-
-Rule rule_of(const PieceOptions& options, const Whole& whole) {
-  Rule rule;
-  if (options.largest) rule.only = whole.largest_root;
-  if (options.least_samples > 0) {
-    rule.always = whole.largest_root;
-    rule.least_samples = static_cast<std::uint64_t>(kSampleUnits * options.least_samples);
-  }
-  if (options.least >= 1) rule.least_triangles = static_cast<std::uint64_t>(options.least);
-  if (options.least > 0 && options.least < 1)
-    rule.least_area = static_cast<std::uint64_t>(options.least * static_cast<double>(whole.area));
-  return rule;
-}
 
 }  // namespace
 
@@ -150,8 +100,9 @@ Surface keep_pieces(Exec& ex, Surface surface, const PieceOptions& options, Piec
     exec::fill(ex, extents.view(), PieceExtent{});
     const std::int64_t blocks = (triangles + SumExtents::kTriangles - 1) / SumExtents::kTriangles;
     for_each(ex, "pieces.sum", blocks, SumExtents{mesh, sets, extents.data(), options.density});
-    const auto whole = exec::reduce<Whole>(ex, "pieces.whole", vertices, WholeOf{sets, extents.cview()}, AddWholes{});
-    const Rule rule = rule_of(options, whole);
+    const auto whole =
+        exec::reduce<WholeOfPieces>(ex, "pieces.whole", vertices, WholeOf{sets, extents.cview()}, AddWholes{});
+    const PieceRule rule = rule_of(options, whole);
     const auto removed =
         exec::reduce<Removed>(ex, "pieces.removed", vertices, RemovedAt{sets, extents.cview(), rule}, AddRemoved{});
     counts = {whole.pieces, removed.pieces, removed.triangles};

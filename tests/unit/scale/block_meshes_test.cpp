@@ -11,14 +11,17 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "exec/cpu.hpp"
 #include "octree/keys.hpp"
 #include "scale/block_meshes.hpp"
 #include "support/io_files.hpp"
 #include "support/shapes.hpp"
+#include "surface/pieces.hpp"
 
 namespace pointskin::test {
 namespace {
@@ -54,7 +57,8 @@ std::vector<octree::Coordinates> cells_of_sphere() {
   return cells;
 }
 
-Whole make_whole(std::uint64_t seed) {
+/// @param density  share of the triangles that are made
+Whole make_whole(std::uint64_t seed, double density = 1) {
   Random random(seed);
   Whole whole;
   std::map<std::uint64_t, std::vector<std::int32_t>> vertices_at;  // by corner
@@ -80,6 +84,7 @@ Whole make_whole(std::uint64_t seed) {
     std::sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [key, cell] : in_order)
       for (int i = random.below(3); i >= 0; --i) {
+        if (random.unit() > density) continue;
         Triangle triangle;
         for (std::int32_t& corner : triangle) {
           const std::vector<std::int32_t>& there = vertices_at[corner_of(cell, random.below(8))];
@@ -94,8 +99,9 @@ Whole make_whole(std::uint64_t seed) {
 }
 
 /// What a block has: own cells, all around that share a cell of `kCellLevel` with a corner of one, and of the rest what
-/// chance gives. Values beyond its own vertices are wrong.
-Whole part_of(const Whole& whole, std::uint64_t begin, std::uint64_t end, Random& random) {
+/// chance gives.
+/// @param others_wrong  values beyond its own vertices are
+Whole part_of(const Whole& whole, std::uint64_t begin, std::uint64_t end, Random& random, bool others_wrong = true) {
   const auto owns = [&](std::uint64_t key) { return key >= begin && key < end; };
   const auto inner_of = [](std::uint64_t key) {
     const octree::Coordinates c = octree::decode(key);
@@ -118,7 +124,7 @@ Whole part_of(const Whole& whole, std::uint64_t begin, std::uint64_t end, Random
     if (!is_own && !cell_taken[cell]) continue;
     number[v] = static_cast<std::int32_t>(part.keys.size());
     part.keys.push_back(whole.keys[v]);
-    part.positions.push_back(is_own ? whole.positions[v] : Vec3f{-1, -1, -1});
+    part.positions.push_back(is_own || !others_wrong ? whole.positions[v] : Vec3f{-1, -1, -1});
     part.labels.push_back(is_own ? whole.labels[v] : std::uint16_t{0});
   }
   for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
@@ -143,10 +149,23 @@ BlockMeshes::Setup setup_in(const TemporaryFolder& folder) {
           {sizeof(Vec3f), sizeof(std::uint16_t)}};
 }
 
-void add(BlockMeshes& meshes, const Whole& part, std::uint64_t begin, std::uint64_t end) {
+void add(BlockMeshes& meshes, const Whole& part, std::uint64_t begin, std::uint64_t end,
+         std::span<const float> density = {}) {
   const std::array columns{reinterpret_cast<const std::byte*>(part.positions.data()),
                            reinterpret_cast<const std::byte*>(part.labels.data())};
-  meshes.add({begin, end, part.keys, columns, part.triangles, part.cells, part.segments});
+  meshes.add({begin, end, part.keys, columns, part.triangles, part.cells, part.segments, density});
+}
+
+/// The same with the density of all vertices of the whole.
+void add(BlockMeshes& meshes, const Whole& part, std::uint64_t begin, std::uint64_t end, const Whole& whole,
+         const std::vector<float>& density) {
+  std::vector<float> of_part;
+  std::size_t from = 0;  // they are in order
+  for (const Vec3f& position : part.positions) {
+    while (whole.positions[from] != position) ++from;
+    of_part.push_back(density[from++]);
+  }
+  add(meshes, part, begin, end, of_part);
 }
 
 /// @param cuts  ascending keys of finest cells
@@ -200,6 +219,68 @@ TEST(BlockMeshes, JoinedAreTheMeshThatTheyWereCutFrom) {
       expect_same(meshes, whole);
       EXPECT_EQ(folder.file_count(), 0U);
     }
+  }
+}
+
+/// What stays of a mesh in memory.
+Whole without_pieces(const Whole& whole, const surface::PieceOptions& options, surface::PieceCounts& counts) {
+  exec::Cpu ex(2);
+  surface::Surface surface{exec::make_buffer<Vec3f>(ex, std::ssize(whole.positions)),
+                           {},
+                           exec::make_buffer<Triangle>(ex, std::ssize(whole.triangles))};
+  std::copy(whole.positions.begin(), whole.positions.end(), surface.positions.data());
+  std::copy(whole.triangles.begin(), whole.triangles.end(), surface.triangles.data());
+  surface = surface::keep_pieces(ex, std::move(surface), options, counts);
+  Whole rest;
+  rest.positions.assign(surface.positions.data(), surface.positions.data() + surface.positions.size());
+  rest.triangles.assign(surface.triangles.data(), surface.triangles.data() + surface.triangles.size());
+  std::size_t from = 0;  // they are in order
+  for (const Vec3f& position : rest.positions) {
+    while (whole.positions[from] != position) ++from;
+    rest.keys.push_back(whole.keys[from]);
+    rest.labels.push_back(whole.labels[from++]);
+  }
+  return rest;
+}
+
+TEST(BlockMeshes, KeepThePiecesThatTheWholeKeeps) {
+  for (const std::uint64_t seed : {1U, 2U}) {
+    const Whole whole = make_whole(seed, 0.2);
+    std::vector<float> density(whole.keys.size());
+    Random random(seed + 20);
+    std::generate(density.begin(), density.end(), [&] { return static_cast<float>(4 * random.unit()); });
+    for (const surface::PieceOptions& options :
+         {surface::PieceOptions{}, surface::PieceOptions{.least = 1}, surface::PieceOptions{.least = 4},
+          surface::PieceOptions{.largest = true}, surface::PieceOptions{.least = 0.001},
+          surface::PieceOptions{.least_samples = 1.5}, surface::PieceOptions{.least = 1e9}})
+      for (const int blocks : {1, 5, 40}) {
+        SCOPED_TRACE(std::to_string(blocks) + " blocks, seed " + std::to_string(seed));
+        surface::PieceOptions in_memory = options;
+        in_memory.density = {density.data(), std::ssize(density)};
+        surface::PieceCounts expected, found;
+        const Whole rest = without_pieces(whole, in_memory, expected);
+        if (options.least > 1) {
+          EXPECT_GT(expected.pieces_removed, 20);
+        }
+        const TemporaryFolder folder;
+        BlockMeshes::Setup setup = setup_in(folder);
+        setup.pieces = true;
+        BlockMeshes meshes(setup);
+        std::uint64_t begin = 0;
+        for (int b = 1; b <= blocks; ++b) {
+          const std::uint64_t end = finest_key(
+              (std::uint64_t{1} << 3 * kCutLevel) * static_cast<std::uint64_t>(b) / static_cast<std::uint64_t>(blocks),
+              kCutLevel);
+          add(meshes, part_of(whole, begin, end, random, false), begin, end, whole, density);
+          begin = end;
+        }
+        meshes.finish();
+        found = meshes.keep_pieces(options);
+        EXPECT_EQ(found.pieces, expected.pieces);
+        EXPECT_EQ(found.pieces_removed, expected.pieces_removed);
+        EXPECT_EQ(found.triangles_removed, expected.triangles_removed);
+        expect_same(meshes, rest);
+      }
   }
 }
 

@@ -61,6 +61,8 @@ class BlockRun : public testing::Test {
     options.part_samples = 7001;
     options.screening = options_.screening;
     options.iterations = options_.iterations;
+    options.largest = options_.largest;
+    options.min_component = options_.min_component;
     return options;
   }
 
@@ -77,6 +79,7 @@ class BlockRun : public testing::Test {
       EXPECT_EQ(report.blocks, options.blocks);
     }
     blocks_ = report.blocks;
+    specks_ = report.lone_corners;
     if (options.ring == 0) expect_looks(report.looks);
     const std::int64_t more = std::abs(meshes.vertices() - std::ssize(whole_.vertices)) +
                               std::abs(meshes.triangles() - std::ssize(whole_.triangles));
@@ -109,7 +112,7 @@ class BlockRun : public testing::Test {
   void expect_the_file_of_the_whole(const scale::BlockOptions& options) {
     scale::BlockReport report;
     const scale::BlockMeshes meshes = scale::reconstruct_blocks(ex_, *sorted_, options, report);
-    scale::write_ply(ex_, meshes, frame_, parts_->origin(), folder_.file("blocks.ply"));
+    scale::write_ply(ex_, meshes, {}, frame_, parts_->origin(), folder_.file("blocks.ply"));
     write_mesh(folder_.file("whole.ply"), whole_);
     EXPECT_TRUE(bytes_of_file(folder_.file("blocks.ply")) == bytes_of_file(folder_.file("whole.ply")));
   }
@@ -121,7 +124,6 @@ class BlockRun : public testing::Test {
     return count;
   }
 
- private:
   exec::Cpu ex_{2};
   TemporaryFolder folder_;
   std::string place_;
@@ -131,9 +133,8 @@ class BlockRun : public testing::Test {
   Mesh whole_;
   diagnose::Counts looks_{};
   Options options_;
-
- protected:
   int blocks_ = 0;  ///< of the last run
+  std::int64_t specks_ = 0;
 };
 
 Options at_depth(int depth, int iterations = 8, double screening = 2) {
@@ -178,6 +179,40 @@ TEST_F(BlockRun, GivesItForSheetsAndEdgesAndOutliers) {
   options.min_component = 1;
   start(cloud, options);
   expect_as_whole(6, 4);
+}
+
+TEST_F(BlockRun, LeavesOutPiecesAsTheWholeDoes) {
+  Cloud cloud = torus_cloud(20000, 4);
+  const Cloud outliers = jittered(box_cloud(200, 5), 6, 0.3);
+  append(cloud, outliers);
+  append(cloud, translated(scaled(sphere_cloud(1000, 7), 0.2F), {0.9F, 0.9F, 0.9F}));
+  Options options = at_depth(8, 4);
+  options.point_normals = PointNormals::given;  // what a run does besides fitting and extracting is left out
+  options.keep_strays = true;
+  start(cloud, options);
+  const std::size_t by_support = whole_.triangles.size();
+  for (const int blocks : {1, 5}) expect_as_whole(6, blocks);
+  options.largest = true;
+  start(cloud, options);
+  EXPECT_LT(whole_.triangles.size(), by_support);
+  expect_as_whole(5, 3);
+  options.largest = false;
+  for (const double least : {1.0, 60.0, 0.02}) {
+    options.min_component = least;
+    start(cloud, options);
+    if (least == 1.0) {
+      EXPECT_GT(whole_.triangles.size(), by_support);
+    }
+    expect_as_whole(6, 4);
+  }
+}
+
+TEST_F(BlockRun, LooksForSpecksOnlyWhereTheWholeDoes) {
+  start(jittered(box_cloud(30000, 12), 13, 0.005F), at_depth(8, 4));
+  for (const int blocks : {1, 2, 4}) {
+    expect_as_whole(6, blocks);
+    EXPECT_EQ(specks_, 2);
+  }
 }
 
 TEST_F(BlockRun, NeedsTheRingThatItTakes) {

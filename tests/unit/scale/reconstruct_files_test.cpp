@@ -52,6 +52,9 @@ class ReconstructFiles : public testing::Test {
     EXPECT_EQ(blocks.normals_done, whole.normals_done);
     EXPECT_EQ(blocks.points, whole.points);
     EXPECT_EQ(blocks.fits, whole.fits);
+    EXPECT_EQ(blocks.pieces.pieces, whole.pieces.pieces);
+    EXPECT_EQ(blocks.pieces.pieces_removed, whole.pieces.pieces_removed);
+    EXPECT_EQ(blocks.pieces.triangles_removed, whole.pieces.triangles_removed);
     EXPECT_EQ(blocks.strays, whole.strays);
     EXPECT_EQ(blocks.farthest_strays, whole.farthest_strays);
     EXPECT_EQ(blocks.depth, whole.depth);
@@ -149,7 +152,6 @@ TEST_F(ReconstructFiles, LeavesStraysOut) {
   EXPECT_EQ(files_.run.strays, 2);
   Options options = at_depth(8);
   options.keep_strays = true;
-  options.min_component = 1;
   expect_as_whole(options, 40 * kMegabyte);
 }
 
@@ -159,19 +161,38 @@ TEST_F(ReconstructFiles, MakesTheCubeForInliersAsTheWholeDoes) {
   start(cloud);
   Options options = at_depth(8);
   options.point_normals = PointNormals::given;
-  options.min_component = 1;
   expect_as_whole(options, 60 * kMegabyte);
   EXPECT_EQ(files_.run.fits, 2);
+  EXPECT_GT(files_.run.pieces.pieces, 0);
+}
+
+TEST_F(ReconstructFiles, LeavesOutPiecesAndWritesTheDensity) {
+  Cloud cloud = torus_cloud(20000, 13);
+  append(cloud, translated(scaled(sphere_cloud(1000, 7), 0.2F), {2, 2, 2}));
+  start(cloud);
+  Options options = at_depth(8);
+  options.density = true;
+  expect_as_whole(options, 60 * kMegabyte);
+  options.largest = true;
+  options.normals = false;
+  expect_as_whole(options, 60 * kMegabyte);
+  EXPECT_EQ(files_.run.pieces.pieces_removed, 1);
+  options.largest = false;
+  options.min_component = 0.9;
+  expect_as_whole(options, 60 * kMegabyte);
+  options.min_component = 1e9;
+  write_old_output();
+  expect_error(ErrorCode::empty_result, "min-component", [&] { reconstruct(options); });
 }
 
 TEST_F(ReconstructFiles, SaysWhatBlocksCannotDo) {
   start(sphere_cloud(2000, 8));
   write_old_output();
   Options options = at_depth(7);
-  options.density = true;
+  options.weakness = true;
   options.trim = 0.01;
-  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"trimming", "density"}));
-  expect_error(ErrorCode::usage, "trimming, density", [&] { reconstruct(options); });
+  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"trimming", "weakness"}));
+  expect_error(ErrorCode::usage, "trimming, weakness", [&] { reconstruct(options); });
   expect_error(ErrorCode::usage, "depth", [&] { reconstruct(at_depth(6)); });
   expect_error(ErrorCode::usage, "one file", [&] {
     (void)reconstruct_files({input_, input_}, output_, at_depth(7), scale(0));

@@ -24,7 +24,7 @@ namespace {
 using namespace pointskin;
 
 constexpr const char* kUsage =
-    "usage: pointskin_scale CLOUD [--depth 8] [--memory 1000] [--coarse-level K] [--blocks N] [--threads 0]\n"
+    "usage: pointskin_scale CLOUD [--depth 8] [--memory 1000] [--coarse-level K] [--blocks N] [--ring R] [--threads 0]\n"
     "                       [--temp DIR] [-o MESH.ply]\n"
     "\n"
     "Reads a binary PLY or NPY file in parts, sorts its points on the disk, and reconstructs them in blocks, as many\n"
@@ -56,6 +56,8 @@ int run(const std::vector<std::string>& words) {
       options.coarse_level = static_cast<int>(arguments.whole_number());
     else if (*word == "--blocks")
       options.blocks = static_cast<int>(arguments.whole_number());
+    else if (*word == "--ring")
+      options.ring = static_cast<int>(arguments.whole_number());
     else if (*word == "--memory")
       megabytes = arguments.whole_number();
     else if (*word == "--threads")

@@ -51,7 +51,7 @@ void keep_single(std::vector<std::uint64_t>& keys) { keys.erase(std::unique(keys
 
 /// Bytes that are taken for a node of a block's octree and a sample, while it is solved, and for a node of the coarse levels
 /// from the first to the last block (docs/decisions/0057-blocks.md).
-constexpr std::int64_t kNodeBytes = 48, kSampleBytes = 60, kCoarseBytes = 79;
+constexpr std::int64_t kNodeBytes = 48, kSampleBytes = 60, kCoarseBytes = 83;
 
 /// The coarse levels get a third of the memory.
 constexpr std::int64_t kCoarseShare = 3;
@@ -145,6 +145,7 @@ class BlockRun {
     sweep({"bricks", "octree", 0.05}, [&] { find_bricks(); });
     sweep({"plan", "octree", 0.08}, [&] {
       choose_coarse_level();
+      find_cells_near_finer();
       find_cells();
       choose_blocks();
       build_coarse_tree();
@@ -360,6 +361,13 @@ class BlockRun {
   /// Upper ends of cells need nodes beside those of the cells' own bricks.
   static std::int64_t with_ghosts(std::int64_t nodes) { return nodes + nodes / 4; }
 
+  /// Cells with children, and all around them.
+  void find_cells_near_finer() {
+    std::vector<std::uint64_t> keys(split_.size());
+    std::transform(split_.begin(), split_.end(), keys.begin(), [](const SplitCell& cell) { return cell.key; });
+    near_finer_ = CellSet(level_, keys).grown(1).keys();
+  }
+
   /// As many as are asked for; or the fewest, as far as estimates tell, that memory holds one by one.
   void choose_blocks() {
     if (options_.blocks > 0) return cut(options_.blocks);
@@ -453,21 +461,14 @@ class BlockRun {
     return CellSet(level_, cells).grown(kSumRing);
   }
 
-  /// Cells of level K around those of the block that hold finer nodes: they have children, or lie at upper ends of cells that do.
+  /// Cells of level K around those of the block that hold finer nodes, or touch cells that do: what is extracted from a leaf
+  /// needs the nodes on its upper faces, too.
   [[nodiscard]] CellSet around_finer_nodes(const Range& own) const {
-    std::vector<std::uint64_t> cells;
-    const std::int32_t last = (1 << level_) - 1;
-    for (const SplitCell& split : split_) {
-      const octree::Coordinates c = octree::decode(split.key);
-      for (int s = 0; s < 8; ++s) {
-        const std::uint64_t cell =
-            octree::encode({std::min(c.x + octree::slot_x(s), last), std::min(c.y + octree::slot_y(s), last),
-                            std::min(c.z + octree::slot_z(s), last)});
-        const std::uint64_t finest = cell << 3 * finer();
-        if (finest >= own.begin && finest < own.end) cells.push_back(cell);
-      }
-    }
-    return CellSet(level_, cells).grown(options_.ring > 0 ? options_.ring : solve_ring(options_.iterations));
+    const auto at = [&](std::uint64_t finest) {
+      return std::lower_bound(near_finer_.begin(), near_finer_.end(), finest >> 3 * finer());
+    };
+    return CellSet(level_, std::span(at(own.begin), at(own.end)))
+        .grown(options_.ring > 0 ? options_.ring : solve_ring(options_.iterations));
   }
 
   /// Positions, unit normals and keys of the samples in cells of level K, and columns of values.
@@ -906,8 +907,9 @@ class BlockRun {
   int depth_;
   int level_ = 0;  ///< K
   int lowest_splat_depth_;
-  int cut_level_ = 0;             ///< blocks are cut between its cells
-  std::vector<SplitCell> split_;  ///< of level K, ascending
+  int cut_level_ = 0;                      ///< blocks are cut between its cells
+  std::vector<SplitCell> split_;           ///< of level K, ascending
+  std::vector<std::uint64_t> near_finer_;  ///< cells of level K that are split or touch one that is, ascending
   std::int64_t planned_coarse_bytes_ = 0;
   SampleValues values_;
   exec::Buffer<diagnose::Counts> counts_;

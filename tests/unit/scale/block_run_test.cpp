@@ -215,6 +215,27 @@ TEST_F(BlockRun, LooksForSpecksOnlyWhereTheWholeDoes) {
   }
 }
 
+/// Where samples end beside a cut, the surface goes on in a block whose own finer nodes are far away.
+TEST_F(BlockRun, GivesItWhereSamplesEndAtTheBorderOfABlock) {
+  const Cloud sphere = sphere_cloud(60000, 14);
+  for (const float end : {0.06F, 0.07F, 0.08F}) {
+    Cloud cloud;
+    for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
+      if (sphere.positions[i].x <= end) continue;
+      cloud.positions.push_back(sphere.positions[i]);
+      cloud.normals.push_back(sphere.normals[i]);
+    }
+    for (const Vec3f& corner : {Vec3f{-0.9F, -0.9F, -0.9F}, Vec3f{-0.9F, 0.9F, 0.9F}, Vec3f{-0.9F, -0.9F, 0.9F},
+                                Vec3f{-0.9F, 0.9F, -0.9F}})  // which keep the cut in the middle
+      append(cloud, translated(scaled(sphere_cloud(200, 15), 0.05F), corner));
+    Options options = at_depth(8);
+    options.point_normals = PointNormals::given;
+    options.keep_strays = true;
+    start(cloud, options);
+    expect_as_whole(6, 16);
+  }
+}
+
 TEST_F(BlockRun, NeedsTheRingThatItTakes) {
   start(sphere_cloud(40000, 8), at_depth(7, 16));
   scale::BlockOptions options = block_options(5, 3);

@@ -22,6 +22,7 @@
 #include "diagnose/verdict.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "octree/octree_data.hpp"
+#include "poisson/boundary.hpp"
 #include "poisson/in_blocks.hpp"
 #include "poisson/sum_hats.hpp"
 #include "poisson/trust.hpp"
@@ -784,12 +785,20 @@ class BlockRun {
       coarse_.collapsed = {};
     }
     poisson::SolveOptions solving{std::ldexp(options_.screening, -2 * finer()), options_.iterations};
+    const exec::Buffer<std::uint8_t> free = find_free_unknowns(resolution.view(coarse_.tree));
+    solving.free_unknowns = free.cview();
     poisson::Solution solution =
         poisson::solve_poisson(ex_, resolution.view(coarse_.tree), coarse_.b.cview(), screening, solving);
     coarse_.u = std::move(solution.u);
     for (const poisson::LevelSolve& level : solution.levels)
       report_.levels.push_back({level.depth, tree.levels[level.depth].cells(), 0, level.iterations, 0, 0});
     coarse_.b.reset();
+  }
+
+  /// The unknowns to solve for, where some are held at 0; else none.
+  exec::Buffer<std::uint8_t> find_free_unknowns(const OctreeView& tree) {
+    if (options_.boundary != Boundary::dirichlet) return {};
+    return poisson::free_unknowns(ex_, tree, true);
   }
 
   /// @returns the fields of the finer levels
@@ -804,7 +813,9 @@ class BlockRun {
     const OctreeView view = resolution.view(tree);
     auto u = exec::make_buffer<float>(ex_, view.nodes);
     copy(ex_, coarse_.u.cview(), u.view().part(0, coarse_.u.size()));
-    const poisson::SolveOptions solving{options_.screening, options_.iterations};
+    poisson::SolveOptions solving{options_.screening, options_.iterations};
+    const exec::Buffer<std::uint8_t> free = find_free_unknowns(view);
+    solving.free_unknowns = free.cview();
     report_levels(own, tree.view(), poisson::solve_below(ex_, view, b.cview(), screening, solving, level_, u.view()));
     const poisson::ValuesOfSamples found =
         poisson::values_at_samples(ex_, tree, u.cview(), block.samples.view(), own.begin, own.end);
@@ -858,9 +869,11 @@ class BlockRun {
     surface::ExtractOptions extraction{options_.curvature, options_.normals};
     extraction.places = &places;
     extraction.counted = {own.begin, own.end};
-    const field::FieldView function{view, u.data(), static_cast<float>(report_.isovalue), true,
-                                    resolution.bricks.empty() ? nullptr : resolution.bricks.data()};
+    field::FieldView function{view, u.data(), static_cast<float>(report_.isovalue),
+                              options_.domain_faces == DomainFaces::closed,
+                              resolution.bricks.empty() ? nullptr : resolution.bricks.data()};
     if (what.looks) diagnose::look_at_field_of_block(ex_, function, looked_at.view(), own.begin, own.end, counts_);
+    if (options_.isovalue) function.isovalue = static_cast<float>(*options_.isovalue);
     const surface::Surface surface = surface::extract_surface(ex_, function, extraction);
     if (what.looks) report_.lone_corners += surface.lone_corners;
     exec::Buffer<float> per_cube, per_world;  // samples per area of the cube's unit, and of the world's

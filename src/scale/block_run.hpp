@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,10 @@ struct BlockOptions {
   int ring = 0;  ///< cells of level K around what is solved; 0: solve_ring(iterations), and fewer give other bytes
   float curvature = 0.5F;  ///< ExtractOptions::curvature
   bool normals = true;
-  bool largest = false;  ///< as Options has them
+  Boundary boundary = Boundary::free;
+  DomainFaces domain_faces = DomainFaces::closed;
+  std::optional<double> isovalue{};  ///< of the surface; unset: the mean at the samples
+  bool largest = false;              ///< as Options has them
   double min_component = 0;
   double density_face =
       0;  ///< area of a face of a finest cell in world units^2: samples per area are the last column; 0: none

@@ -56,7 +56,7 @@ class FilesRun {
   FilesReport run(const std::string& output) {
     place_cloud();
     Fit fit = fit_cloud();
-    const auto judge = [&] { return diagnose::judge_normals(findings(fit), true); };
+    const auto judge = [&] { return judge_normals(fit); };
     if (options_.point_normals == PointNormals::automatic && judge() == NormalsVerdict::inside_out) {
       fit = {};
       turned_ = true;
@@ -75,6 +75,10 @@ class FilesRun {
 
  private:
   static diagnose::Findings findings(const Fit& fit) { return diagnose::findings_of(fit.report.looks); }
+
+  [[nodiscard]] NormalsVerdict judge_normals(const Fit& fit) const {
+    return diagnose::judge_normals(findings(fit), options_.boundary == Boundary::free);
+  }
 
   void place_cloud() {
     announce(options_.progress, "octree", 0);
@@ -170,6 +174,9 @@ class FilesRun {
     blocks.iterations = options_.iterations;
     blocks.curvature = options_.linear_fit ? 0 : detail::kCurvature;
     blocks.normals = options_.normals;
+    blocks.boundary = options_.boundary;
+    blocks.domain_faces = options_.domain_faces;
+    blocks.isovalue = options_.isovalue;
     blocks.largest = options_.largest;
     blocks.min_component = options_.min_component;
     if (options_.density) {
@@ -187,8 +194,7 @@ class FilesRun {
     const diagnose::Cube cube{place_.frame.size, options_.depth};
     diagnose::warn_of_fit(found, cube, warnings);
     if (found.spacing > 0) warn_of_digits(found.spacing * cube.cell(cube.depth));
-    if (diagnose::judge_normals(found, true) != NormalsVerdict::inside_out)
-      diagnose::warn_of_surface(found, cube, options_, warnings);
+    if (judge_normals(fit) != NormalsVerdict::inside_out) diagnose::warn_of_surface(found, cube, options_, warnings);
   }
 
   void warn_of_digits(double spacing) {
@@ -262,11 +268,8 @@ std::vector<std::string> missing_in_blocks(const Options& options) {
        "making normals");
   name(options.field != FieldKind::poisson, "the distance field");
   name(options.confidence, "confidence");
-  name(options.boundary != Boundary::free, "a boundary");
-  name(options.domain_faces != DomainFaces::closed, "open faces");
   name(options.envelope != nullptr, "an envelope");
   name(options.offset != 0, "an offset");
-  name(options.isovalue.has_value(), "an isovalue");
   name(options.trim != 0, "trimming");
   name(options.weakness, "weakness");
   name(options.attributes, "attributes");

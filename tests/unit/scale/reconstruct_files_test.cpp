@@ -185,6 +185,25 @@ TEST_F(ReconstructFiles, LeavesOutPiecesAndWritesTheDensity) {
   expect_error(ErrorCode::empty_result, "min-component", [&] { reconstruct(options); });
 }
 
+TEST_F(ReconstructFiles, ObeysBoundariesAndIsovalues) {
+  Cloud cloud = sphere_cloud(40000, 14);
+  std::vector<bool> keep;
+  for (const Vec3f& p : cloud.positions) keep.push_back(p.x > -0.5F && p.z < 0.7F);
+  keep_where(cloud, keep);  // the surface runs into the faces of the cube
+  start(cloud);
+  Options options = at_depth(8);
+  options.boundary = Boundary::dirichlet;
+  expect_as_whole(options, 60 * kMegabyte);
+  options.boundary = Boundary::free;
+  options.domain_faces = DomainFaces::open;
+  expect_as_whole(options, 60 * kMegabyte);
+  EXPECT_GT(files_.blocks, 1);
+  options.isovalue = 0.4;
+  expect_as_whole(options, 60 * kMegabyte);
+  options.domain_faces = DomainFaces::closed;
+  expect_as_whole(options, 60 * kMegabyte);
+}
+
 TEST_F(ReconstructFiles, SaysWhatBlocksCannotDo) {
   start(sphere_cloud(2000, 8));
   write_old_output();

@@ -33,7 +33,8 @@ struct BlockOptions {
   double screening = 2;
   bool fixed_screening = false;
   int iterations = 8;
-  int ring = 0;  ///< cells of level K around what is solved; 0: solve_ring(iterations), and fewer give other bytes
+  int ring =
+      0;  ///< cells of level K around what is solved; 0: solve_ring(iterations) of block_plan.hpp, and fewer give other bytes
   float curvature = 0.5F;  ///< ExtractOptions::curvature
   bool normals = true;
   Boundary boundary = Boundary::free;
@@ -77,11 +78,6 @@ struct BlockReport {
   };
   std::vector<Sweep> sweeps;
 };
-
-/// Cells that a block needs around its own, of level K: to know what reaches its nodes of that level, and to solve the finer ones
-/// (docs/decisions/0057-blocks.md).
-inline constexpr int kSumRing = 5;
-[[nodiscard]] constexpr int solve_ring(int iterations) { return iterations + 5; }
 
 /// The surface that detail::fit_field() and detail::extract() make of the same samples, without trimming and attributes of
 /// samples, with the same bits for any number of blocks and any coarse level: positions in the unit cube and, if asked for,

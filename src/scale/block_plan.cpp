@@ -1,0 +1,240 @@
+#include "scale/block_plan.hpp"
+
+#include <pointskin/error.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "core/format.hpp"
+#include "octree/keys.hpp"
+#include "octree/octree_data.hpp"
+#include "scale/block_cuts.hpp"
+
+namespace pointskin::scale {
+namespace {
+
+/// Keys of points have more bits than those of finest cells.
+constexpr int shift_to(int depth) { return 3 * (octree::kPointBits - depth); }
+
+/// Makes ascending keys single.
+void keep_single(std::vector<std::uint64_t>& keys) { keys.erase(std::unique(keys.begin(), keys.end()), keys.end()); }
+
+/// Bytes that are taken for a node of a block's octree and a sample, while it is solved, and for a node of the coarse levels
+/// from the first to the last block (docs/decisions/0057-blocks.md).
+constexpr std::int64_t kNodeBytes = 48, kSampleBytes = 60, kCoarseBytes = 83;
+
+/// The coarse levels get a third of the memory.
+constexpr std::int64_t kCoarseShare = 3;
+
+/// Upper ends of cells need nodes beside those of the cells' own bricks.
+std::int64_t with_ghosts(std::int64_t nodes) { return nodes + nodes / 4; }
+
+}  // namespace
+
+std::uint64_t OwnNodes::cell_beside(std::uint64_t node) const {
+  const octree::Coordinates c = octree::decode(node);
+  const std::int32_t last = (1 << level) - 1;
+  return octree::encode({std::min(c.x, last), std::min(c.y, last), std::min(c.z, last)});
+}
+
+template <class Visit>
+void BlockPlan::for_keys(const Visit& visit) const {
+  std::vector<std::uint64_t> keys;
+  for (std::int64_t first = 0; first < cloud_.size(); first += std::ssize(keys)) {
+    keys.resize(static_cast<std::size_t>(std::min(setup_.part_samples, cloud_.size() - first)));
+    cloud_.read(first, std::ssize(keys), {.keys = keys.data()});
+    visit(first, keys);
+  }
+}
+
+/// The cells of level depth - 2 with children. The bricks that parts of the points need are, together, those that all points
+/// need; of those that several parts need, the bricks of the finest level count several times.
+void BlockPlan::find_bricks() {
+  std::size_t most = std::size_t{1} << 17;
+  for_keys([&](std::int64_t /*first*/, std::vector<std::uint64_t> keys) {
+    for (std::uint64_t& key : keys) key >>= shift_to(setup_.depth);
+    keep_single(keys);
+    const ArrayView<const std::uint64_t> cells{keys.data(), std::ssize(keys)};
+    const exec::Buffer<std::uint64_t> finest = octree::bricks_around(ex_, cells, setup_.depth);
+    const exec::Buffer<std::uint64_t> above = octree::bricks_around(ex_, finest.cview(), setup_.depth - 1);
+    std::int64_t next = 0;
+    for (std::int64_t i = 0; i < above.size(); ++i) {
+      SplitCell cell{above.data()[i], 0};
+      for (; next < finest.size() && finest.data()[next] >> 3 == cell.key; ++next) ++cell.bricks;
+      split_.push_back(cell);
+    }
+    if (split_.size() < most) return;
+    join_split();
+    most = 2 * std::max(split_.size(), most / 2);
+  });
+  join_split();
+  for (SplitCell& cell : split_) ++cell.bricks;  // its own children
+}
+
+void BlockPlan::join_split() {
+  std::sort(split_.begin(), split_.end(), [](const SplitCell& a, const SplitCell& b) { return a.key < b.key; });
+  std::size_t joined = 0;
+  for (std::size_t i = 0; i < split_.size(); ++i) {
+    if (joined > 0 && split_[joined - 1].key == split_[i].key)
+      split_[joined - 1].bricks += split_[i].bricks;
+    else
+      split_[joined++] = split_[i];
+  }
+  split_.resize(joined);
+}
+
+void BlockPlan::divide() {
+  choose_coarse_level();
+  find_cells_near_finer();
+  find_cells();
+  choose_blocks();
+}
+
+std::vector<ArrayView<const std::uint64_t>> BlockPlan::bricks() const {
+  std::vector<ArrayView<const std::uint64_t>> views;
+  for (const auto& level : bricks_) views.push_back(level.cview());
+  return views;
+}
+
+/// Goes up from level depth - 2 to K, and on to the complete levels.
+void BlockPlan::choose_coarse_level() {
+  const int first = setup_.depth - 2;
+  bricks_.resize(static_cast<std::size_t>(first) + 1);
+  std::vector<std::vector<SplitCell>> split(static_cast<std::size_t>(first) + 1);
+  split[static_cast<std::size_t>(first)] = std::move(split_);
+  std::vector<std::int64_t> nodes(static_cast<std::size_t>(first) + 1);  // of each level and all above
+  for (int d = first; d > octree::kCompleteDepth; --d) {
+    const std::vector<SplitCell>& below = split[static_cast<std::size_t>(d)];
+    std::vector<std::uint64_t> keys(below.size());
+    std::transform(below.begin(), below.end(), keys.begin(), [](const SplitCell& cell) { return cell.key; });
+    auto& bricks = bricks_[static_cast<std::size_t>(d)];
+    bricks = octree::bricks_around(ex_, ArrayView<const std::uint64_t>{keys.data(), std::ssize(keys)}, d);
+    std::vector<SplitCell>& above = split[static_cast<std::size_t>(d) - 1];
+    std::size_t next = 0;
+    for (std::int64_t i = 0; i < bricks.size(); ++i) {
+      SplitCell cell{bricks.data()[i], 1};
+      for (; next < below.size() && below[next].key >> 3 == cell.key; ++next) cell.bricks += below[next].bricks;
+      above.push_back(cell);
+    }
+  }
+  for (int d = 0; d <= first; ++d) {
+    const std::int64_t own =
+        d <= octree::kCompleteDepth ? (std::int64_t{1} << 3 * d) : 8 * bricks_[static_cast<std::size_t>(d)].size();
+    nodes[static_cast<std::size_t>(d)] = own + (d > 0 ? nodes[static_cast<std::size_t>(d) - 1] : 0);
+  }
+  level_ = setup_.coarse_level > 0 ? setup_.coarse_level : first;
+  if (setup_.coarse_level <= 0)
+    while (level_ > octree::kCompleteDepth &&
+           with_ghosts(nodes[static_cast<std::size_t>(level_)]) * kCoarseBytes > setup_.memory_bytes / kCoarseShare)
+      --level_;
+  bricks_.resize(static_cast<std::size_t>(level_) + 1);
+  split_ = std::move(split[static_cast<std::size_t>(level_)]);
+  planned_coarse_bytes_ = with_ghosts(nodes[static_cast<std::size_t>(level_)]) * kCoarseBytes;
+  cut_level_ = std::max(0, std::min({level_, setup_.depth - 4, setup_.lowest_splat_depth}));
+}
+
+void BlockPlan::find_cells() {
+  for_keys([&](std::int64_t first, const std::vector<std::uint64_t>& keys) {
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const std::uint64_t cell = keys[i] >> shift_to(level_);
+      if (!cells_.empty() && cells_.back() == cell) continue;
+      cells_.push_back(cell);
+      first_.push_back(first + static_cast<std::int64_t>(i));
+    }
+  });
+  first_.push_back(cloud_.size());
+}
+
+/// Cells with children, and all around them.
+void BlockPlan::find_cells_near_finer() {
+  std::vector<std::uint64_t> keys(split_.size());
+  std::transform(split_.begin(), split_.end(), keys.begin(), [](const SplitCell& cell) { return cell.key; });
+  near_finer_ = CellSet(level_, keys).grown(1).keys();
+}
+
+/// As many as are asked for; or the fewest, as far as estimates tell, that memory holds one by one.
+void BlockPlan::choose_blocks() {
+  if (setup_.blocks > 0) return cut(setup_.blocks);
+  const double left = std::max(1.0, static_cast<double>(setup_.memory_bytes - planned_coarse_bytes_));
+  std::int64_t bricks = 0;
+  for (const SplitCell& cell : split_) bricks += cell.bricks;
+  const double whole = 8 * static_cast<double>(with_ghosts(bricks)) * static_cast<double>(kNodeBytes);
+  for (int blocks = static_cast<int>(std::clamp(whole / left, 1.0, 1e6));;) {
+    cut(blocks);
+    std::int64_t most = 0;
+    for (const BlockRange& own : blocks_) {
+      most = std::max(most, planned_bytes(own));
+      if (static_cast<double>(most) > left) break;
+    }
+    if (planned_coarse_bytes_ + most <= setup_.memory_bytes) return;
+    if (std::ssize(blocks_) < blocks)
+      throw Error(ErrorCode::over_limit,
+                  fmt::format("blocks of this cloud need {} bytes or more: one that cannot be cut takes {} with its "
+                              "ring, and the levels that all share {}",
+                              planned_coarse_bytes_ + most, most, planned_coarse_bytes_));
+    blocks = std::max(blocks + 1, static_cast<int>(std::min(4.0, 0.8 * static_cast<double>(most) / left) * blocks));
+  }
+}
+
+/// Of a block with the cells around it, and what working on it takes.
+std::int64_t BlockPlan::planned_bytes(const BlockRange& own) const {
+  const CellSet cells = around_finer_nodes(own);
+  std::int64_t nodes = 0;
+  for (const SplitCell& cell : split_)
+    if (cells.contains(octree::decode(cell.key))) nodes += 8 * cell.bricks;
+  std::int64_t samples = 0;
+  for (const SampleRun& run : samples_in(cells)) samples += run.end - run.begin;
+  return with_ghosts(nodes) * kNodeBytes + samples * kSampleBytes +
+         planned_coarse_bytes_ / kCoarseBytes * kNodeBytes;  // every block's octree has the coarse levels
+}
+
+/// At most so many.
+void BlockPlan::cut(int blocks) {
+  std::vector<std::uint64_t> keys;
+  std::vector<std::int64_t> loads;
+  for (const SplitCell& cell : split_) {
+    const std::uint64_t key = cell.key >> 3 * (level_ - cut_level_);
+    if (keys.empty() || keys.back() != key) {
+      keys.push_back(key);
+      loads.push_back(0);
+    }
+    loads.back() += cell.bricks;
+  }
+  const std::vector<std::int64_t> begins = cut_evenly(loads, blocks);
+  const auto first_in = [&](std::uint64_t key) {  // sample
+    const auto cell = std::lower_bound(cells_.begin(), cells_.end(), key >> 3 * finer());
+    return first_[static_cast<std::size_t>(cell - cells_.begin())];
+  };
+  const std::uint64_t end = std::uint64_t{1} << 3 * setup_.depth;
+  blocks_.clear();
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    if (begins[i] == begins[i + 1]) continue;
+    const std::uint64_t begin =
+        blocks_.empty() ? 0 : keys[static_cast<std::size_t>(begins[i])] << 3 * (setup_.depth - cut_level_);
+    if (!blocks_.empty()) {
+      blocks_.back().end = begin;
+      blocks_.back().samples.end = first_in(begin);
+    }
+    blocks_.push_back({begin, end, {first_in(begin), cloud_.size()}});
+  }
+}
+
+CellSet BlockPlan::around_nodes(const BlockRange& own, const octree::LevelView& coarse) const {
+  const OwnNodes nodes{level_, setup_.depth, own};
+  std::vector<std::uint64_t> cells;
+  for (std::int64_t n = 0; n < coarse.nodes(); ++n) {
+    const std::uint64_t node = coarse.node_key(static_cast<std::int32_t>(n));
+    if (nodes.holds(node)) cells.push_back(nodes.cell_beside(node));
+  }
+  return CellSet(level_, cells).grown(kSumRing);
+}
+
+CellSet BlockPlan::around_finer_nodes(const BlockRange& own) const {
+  const auto at = [&](std::uint64_t finest) {
+    return std::lower_bound(near_finer_.begin(), near_finer_.end(), finest >> 3 * finer());
+  };
+  return CellSet(level_, std::span(at(own.begin), at(own.end))).grown(setup_.ring);
+}
+
+}  // namespace pointskin::scale

@@ -37,6 +37,14 @@ struct ExactSum {
 /// Bits of the largest term.
 inline constexpr int kExactTermBits = 95;
 
+/// The unit, 2^-fraction, in which a term of this size has all its bits.
+/// @param largest  finite, > 0
+inline int fraction_for(double largest) {
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  return kExactTermBits - std::max(exponent, std::numeric_limits<double>::min_exponent);
+}
+
 /// One term in units of 2^-fraction.
 PSK_HD inline ExactSum exact_term(double value, int fraction) {
   const auto bits = std::bit_cast<std::uint64_t>(value);
@@ -62,6 +70,12 @@ struct AddExactly {
   }
 };
 
+/// Of magnitudes. What is not a number counts as larger than all.
+struct Largest {
+  static constexpr bool kAnyOrder = true;
+  PSK_HD double operator()(double a, double b) const { return a <= b || b != b ? b : a; }
+};
+
 namespace detail {
 
 template <class F>
@@ -80,24 +94,16 @@ struct MagnitudeOf {
   }
 };
 
-/// Of magnitudes. What is not a number counts as larger than all.
-struct Largest {
-  static constexpr bool kAnyOrder = true;
-  PSK_HD double operator()(double a, double b) const { return a <= b || b != b ? b : a; }
-};
-
 }  // namespace detail
 
 /// f(0) + ... + f(n-1) for n > 0, with the unit chosen by the largest term. NaN if a term is not finite. About 2 n calls of f; waits
 /// two times.
 template <Space Exec, class F>
 double exact_sum(Exec& ex, const char* label, std::int64_t n, const F& f) {
-  const auto largest = reduce<double>(ex, label, n, detail::MagnitudeOf<F>{f}, detail::Largest{});
+  const auto largest = reduce<double>(ex, label, n, detail::MagnitudeOf<F>{f}, Largest{});
   if (!std::isfinite(largest)) return std::numeric_limits<double>::quiet_NaN();
   if (largest == 0) return 0;
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  const int fraction = kExactTermBits - std::max(exponent, std::numeric_limits<double>::min_exponent);
+  const int fraction = fraction_for(largest);
   return reduce<ExactSum>(ex, label, n, detail::ExactTermOf<F>{f, fraction}, AddExactly{}).value(fraction);
 }
 

@@ -164,19 +164,27 @@ std::vector<LevelSolve> solve_below(Exec& ex, const octree::OctreeView& tree, Ar
 struct ValuesOfSamples {
   static constexpr int kFraction = 64;
 
-  exec::ExactSum sum;  ///< in units of 2^-kFraction
+  exec::ExactSum sum;  ///< in units of 2^-fraction
   std::int64_t count = 0;
   std::int64_t cells = 0;  ///< that were looked at
+  double largest = 0;      ///< magnitude of the sum of a cell
 
-  /// False if the unit is too small or too large, for which mean_at_samples() chooses another one.
+  void add(const ValuesOfSamples& other) {
+    sum = exec::AddExactly{}(sum, other.sum);
+    count += other.count;
+    cells += other.cells;
+    largest = exec::Largest{}(largest, other.largest);
+  }
+  /// False if the unit is too small or too large: with that of exec::fraction_for(largest) it is not.
   [[nodiscard]] bool reliable() const { return sum.reliable(cells); }
-  [[nodiscard]] double mean() const { return sum.value(kFraction) / static_cast<double>(count); }
+  [[nodiscard]] double mean(int fraction) const { return sum.value(fraction) / static_cast<double>(count); }
 };
 
 /// Over the samples in cells of the finest level begin..end - 1, by key.
 /// O(cells + n). Defined in solve.cpp.
 template <exec::Space Exec>
 ValuesOfSamples values_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> u,
-                                  const SamplesView& samples, std::uint64_t begin, std::uint64_t end);
+                                  const SamplesView& samples, std::uint64_t begin, std::uint64_t end,
+                                  int fraction = ValuesOfSamples::kFraction);
 
 }  // namespace pointskin::poisson

@@ -162,8 +162,9 @@ struct ExactSumOfValues {
 };
 struct ExactlyInCell {
   ArrayView<const SumOfValues> cells;
+  int fraction = kValueFraction;
   PSK_HD ExactSumOfValues operator()(std::int64_t cell) const {
-    return {exec::exact_term(cells[cell].sum, kValueFraction), cells[cell].count};
+    return {exec::exact_term(cells[cell].sum, fraction), cells[cell].count};
   }
 };
 struct AddSums {
@@ -177,11 +178,12 @@ struct SumOfOwnValues {
   struct Total {
     ExactSumOfValues values;
     std::int64_t cells = 0;
+    double largest = 0;  // magnitude of a cell's sum
   };
   struct Add {
     static constexpr bool kAnyOrder = true;
     PSK_HD Total operator()(const Total& a, const Total& b) const {
-      return {AddSums{}(a.values, b.values), a.cells + b.cells};
+      return {AddSums{}(a.values, b.values), a.cells + b.cells, exec::Largest{}(a.largest, b.largest)};
     }
   };
 
@@ -191,7 +193,8 @@ struct SumOfOwnValues {
   PSK_HD Total operator()(std::int64_t cell) const {
     const std::uint64_t key = level.node_key(static_cast<std::int32_t>(cell));
     if (key < begin || key >= end) return {};
-    return {values(cell), 1};
+    const double sum = values.cells[cell].sum;
+    return {values(cell), 1, sum < 0 ? -sum : sum};
   }
 };
 
@@ -353,14 +356,15 @@ std::vector<LevelSolve> solve_below(Exec& ex, const octree::OctreeView& tree, Ar
 
 template <exec::Space Exec>
 ValuesOfSamples values_at_samples(Exec& ex, const octree::OctreeData& tree, ArrayView<const float> u,
-                                  const SamplesView& samples, std::uint64_t begin, std::uint64_t end) {
+                                  const SamplesView& samples, std::uint64_t begin, std::uint64_t end, int fraction) {
   static_assert(ValuesOfSamples::kFraction == kValueFraction);
   const octree::LevelView level = tree.view().finest();
   auto cells = exec::make_buffer<SumOfValues>(ex, level.cells());
   for_each(ex, "solve.isovalue", level.cells(), ValuesInCell{level, u.data + level.first_node, samples, cells.view()});
-  const auto total = exec::reduce<SumOfOwnValues::Total>(
-      ex, "solve.isovalue", cells.size(), SumOfOwnValues{level, {cells.cview()}, begin, end}, SumOfOwnValues::Add{});
-  return {total.values.sum, total.values.count, total.cells};
+  const auto total = exec::reduce<SumOfOwnValues::Total>(ex, "solve.isovalue", cells.size(),
+                                                         SumOfOwnValues{level, {cells.cview(), fraction}, begin, end},
+                                                         SumOfOwnValues::Add{});
+  return {total.values.sum, total.values.count, total.cells, total.largest};
 }
 
 PSK_INSTANTIATE(solve_poisson);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -111,9 +112,7 @@ class BlockRun {
     poisson::ValuesOfSamples values;
     std::vector<std::unique_ptr<Spool>> fields;
     over_blocks({"solve", "solve", 0.4}, [&](const BlockRange& own) { fields.push_back(solve(own, values)); });
-    if (!values.reliable())
-      throw Error(ErrorCode::empty_result, "the field at the points is too far from 1/2 to be summed up in blocks");
-    report_.isovalue = values.mean();
+    report_.isovalue = mean_of(values, fields);
     BlockMeshes meshes = extract_all(fields);
     sweep({"look at triangles", "extract", 0.98}, [&] {
       const int far_depth = diagnose::far_depth(diagnose::findings_of(looks()), depth_);
@@ -408,16 +407,37 @@ class BlockRun {
     solving.free_unknowns = free.cview();
     report_levels(own, tree.view(),
                   poisson::solve_below(ex_, view, b.cview(), screening, solving, plan_.level(), u.view()));
-    const poisson::ValuesOfSamples found =
-        poisson::values_at_samples(ex_, tree, u.cview(), block.samples.view(), own.begin, own.end);
-    values.sum = exec::AddExactly{}(values.sum, found.sum);
-    values.count += found.count;
-    values.cells += found.cells;
+    values.add(poisson::values_at_samples(ex_, tree, u.cview(), block.samples.view(), own.begin, own.end));
     const std::int64_t given = coarse_->u().size;
     const std::int64_t bytes = (u.size() - given) * std::int64_t{sizeof(float)};
     auto field = std::make_unique<Spool>(options_.folder, bytes);
     field->write(0, u.data() + given, bytes);
     return field;
+  }
+
+  /// The field of a block's octree.
+  exec::Buffer<float> read_field(const OctreeView& tree, const Spool& field) {
+    auto u = exec::make_buffer<float>(ex_, tree.nodes);
+    give(coarse_->u(), u);
+    field.read(0, u.data() + coarse_->u().size, field.size());
+    return u;
+  }
+
+  /// As poisson::mean_at_samples() has it: values that are far from 1/2 are summed up once more, in another unit.
+  double mean_of(const poisson::ValuesOfSamples& values, const std::vector<std::unique_ptr<Spool>>& fields) {
+    if (values.reliable()) return values.mean(poisson::ValuesOfSamples::kFraction);
+    if (!std::isfinite(values.largest)) return std::numeric_limits<double>::quiet_NaN();
+    if (values.largest == 0) return 0;
+    const int fraction = exec::fraction_for(values.largest);
+    poisson::ValuesOfSamples again;
+    std::size_t number = 0;
+    over_blocks({"sum again", "solve", 0.79}, [&](const BlockRange& own) {
+      BlockSamples block = read_weighed(own, plan_.around_finer_nodes(own));
+      const OctreeData tree = build(block);
+      const exec::Buffer<float> u = read_field(tree.view(), *fields[number++]);
+      again.add(poisson::values_at_samples(ex_, tree, u.cview(), block.samples.view(), own.begin, own.end, fraction));
+    });
+    return again.mean(fraction);
   }
 
   /// Adds what a block has of its own.
@@ -454,9 +474,7 @@ class BlockRun {
     looked_at.splat_depths = choose(chosen, block.samples.splat_depths.cview());
     block = {};
     const OctreeView view = resolution.view(tree);
-    auto u = exec::make_buffer<float>(ex_, view.nodes);
-    give(coarse_->u(), u);
-    field.read(0, u.data() + coarse_->u().size, field.size());
+    exec::Buffer<float> u = read_field(view, field);
     surface::SurfacePlaces places;
     surface::ExtractOptions extraction{options_.curvature, options_.normals};
     extraction.places = &places;

@@ -84,8 +84,7 @@ struct BlockReport {
 /// normals and density are the columns.
 /// @param cloud  of at least one point
 /// @throws Error usage for levels and numbers beyond their ranges; over_limit if no number of blocks does with the memory, which
-///         says how much one that cannot be cut takes; empty_result if the isovalue cannot be summed up in parts;
-///         output_not_written, over_limit, interrupted
+///         says how much one that cannot be cut takes; output_not_written, over_limit, interrupted
 /// Sweeps over all blocks six times, and builds the octree of a block in each; once more where corners turn out to be lone ones.
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                BlockReport& report);

@@ -266,11 +266,34 @@ def judge_again(case, runner, first):
     return wrong
 
 
+def judge_in_blocks(case, runner, whole):
+    """The same with less memory than the whole took: where work goes on in blocks, the same bytes."""
+    if whole["code"] or "contradict each other" in whole["err"]:  # normals are not repaired in blocks
+        return []
+    limit = str(int(case.share * whole["peak"]))
+    blocks = runner.run(case.words() + ["--max-memory", limit] + on("cpu", case, runner), case.inputs)
+    refused = blocks["code"] == 2 and "in blocks" in blocks["err"]
+    if blocks["code"] not in (0, 6) and not refused:
+        return [f"exit code {blocks['code']} with --max-memory {limit}: {blocks['err'].strip()[-300:]}"]
+    if blocks["code"]:
+        return [f"{n} was written with --max-memory {limit}, exit code {blocks['code']}" for n in new_files(case, blocks)]
+    wrong = [f"{n} has other bytes with --max-memory {limit}" for n in new_files(case, whole)
+             if blocks["files"].get(n) != whole["files"][n]]
+    allowed = max(int(limit) * 1.05, int(limit) + 2 ** 21)
+    wrong += [f"{blocks['peak']} bytes were taken with --max-memory {limit}"] if blocks["peak"] > allowed else []
+    return wrong
+
+
 def judge_case(case, runner):
     # What a process may take is measured on the CPU: a driver takes more than small limits allow.
-    first = runner.run(case.words() + on("cpu" if case.has("--max-memory") else "cuda", case, runner), case.inputs)
+    on_cpu = case.has("--max-memory") or case.share
+    first = runner.run(case.words() + on("cpu" if on_cpu else "cuda", case, runner), case.inputs)
     wrong = judge_run(case, first, runner.sanitized)
-    return wrong if wrong or first["code"] == 2 else judge_again(case, runner, first)
+    if wrong or first["code"] == 2:
+        return wrong
+    if case.share and not runner.sanitized:
+        return judge_in_blocks(case, runner, first)
+    return judge_again(case, runner, first)
 
 
 def kind(wrong):

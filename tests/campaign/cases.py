@@ -10,13 +10,14 @@ import ply
 
 class Case:
     """`arguments` are groups of words, of which the first `fixed` stay when a case is shrunk. `inputs` are bytes by name,
-    `points` the names of those that are clouds. `codes` are the exit codes that are right."""
+    `points` the names of those that are clouds. `codes` are the exit codes that are right. With a `share` the case is judged
+    once more with that share of the memory that it took."""
 
     def __init__(self, command):
         self.arguments, self.fixed = [[command]], 1
         self.inputs, self.points = {}, []
         self.solid = self.beyond = False
-        self.codes, self.shows, self.compare = None, "", [2, 1]
+        self.codes, self.shows, self.compare, self.share = None, "", [2, 1], 0.0
 
     def command(self):
         return self.arguments[0][0]
@@ -39,14 +40,15 @@ class Case:
         packed = {name: base64.b64encode(zlib.compress(data, 9)).decode() for name, data in self.inputs.items()}
         return json.dumps({"shows": self.shows, "arguments": self.arguments, "fixed": self.fixed, "codes": self.codes,
                            "solid": self.solid, "beyond": self.beyond, "threads": self.compare[0],
-                           "order": self.compare[1], "points": self.points, "inputs": packed}, indent=1) + "\n"
+                           "order": self.compare[1], "points": self.points, "share": self.share,
+                           "inputs": packed}, indent=1) + "\n"
 
     @staticmethod
     def from_json(text):
         data, case = json.loads(text), Case("")
         case.shows, case.arguments, case.fixed, case.codes = data["shows"], data["arguments"], data["fixed"], data["codes"]
         case.solid, case.beyond, case.points = data["solid"], data["beyond"], data["points"]
-        case.compare = [data["threads"], data["order"]]
+        case.compare, case.share = [data["threads"], data["order"]], data.get("share", 0.0)
         case.inputs = {name: zlib.decompress(base64.b64decode(packed)) for name, packed in data["inputs"].items()}
         return case
 
@@ -142,8 +144,8 @@ def _options(r, case, table, most=5):
         case.arguments.append([name] if value is None else [name, value])
 
 
-def _cloud(r, case, name, normals=True, most=1500):
-    cloud = clouds.random_cloud(r, normals, most)
+def _cloud(r, case, name, normals=True, most=1500, least=1):
+    cloud = clouds.random_cloud(r, normals, most, least)
     case.inputs[name] = cloud.bytes()
     case.points.append(name)
     return cloud
@@ -181,6 +183,24 @@ def reconstruct(r, command="reconstruct"):
         case.solid = False
     if r.random() < 0.2:
         case.arguments.append(["--report", "report.json"])
+    return case
+
+
+BLOCKS = {**SURFACE, **{name: FIT[name] for name in ("--open", "--largest", "--min-component", "--density")},
+          "--normals": (["given"], [])}
+
+
+def in_blocks(r):
+    """A cloud that is large enough for work in blocks to be of use."""
+    case = Case("reconstruct")
+    most = r.choice((3000, 8000, 20000))
+    cloud = _cloud(r, case, "a.ply", most=most, least=most)
+    _inputs(r, case, ["a.ply"], ["-o", "mesh.ply"])
+    case.arguments.append(["--depth", r.choice(("8", "9", "10"))])
+    case.fixed += 1
+    _options(r, case, BLOCKS)
+    case.solid = False
+    case.share = r.uniform(0.4, 0.93)
     return case
 
 
@@ -385,7 +405,7 @@ def info(r):
     return case
 
 
-COMMANDS = [reconstruct] * 10 + [problems, boolean, boolean, deform, edit, edit, orient, orient, fluid, fluid, fluid,
+COMMANDS = [reconstruct] * 10 + [in_blocks, problems, boolean, boolean, deform, edit, edit, orient, orient, fluid, fluid, fluid,
                                  check, compare, convert, render, info]
 
 

@@ -193,10 +193,10 @@ class Cloud:
         return ply.write(self.properties, self.rows, self.form)
 
 
-def random_cloud(r, normals=True, most=1500):
+def random_cloud(r, normals=True, most=1500, least=1):
     """One shape, up to three flaws, a scale and an offset."""
     shape = r.choice(SHAPES)
-    n = r.choice((1, 3, 30, 200, 600, 1000, most))
+    n = r.choice([n for n in (1, 3, 30, 200, 600, 1000, most) if n >= least])
     points = shape(r, n)
     flaws = r.sample(FLAWS, r.choice((0, 0, 1, 1, 2, 3)))
     for flaw in flaws:

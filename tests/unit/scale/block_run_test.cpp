@@ -61,6 +61,7 @@ class BlockRun : public testing::Test {
     options.part_samples = 7001;
     options.screening = options_.screening;
     options.iterations = options_.iterations;
+    options.domain_faces = options_.domain_faces;
     options.largest = options_.largest;
     options.min_component = options_.min_component;
     return options;
@@ -80,6 +81,9 @@ class BlockRun : public testing::Test {
     }
     blocks_ = report.blocks;
     specks_ = report.lone_corners;
+    sums_again_ = std::any_of(report.sweeps.begin(), report.sweeps.end(), [](const scale::BlockReport::Sweep& sweep) {
+      return std::string(sweep.name) == "sum again";
+    });
     if (options.ring == 0) expect_looks(report.looks);
     const std::int64_t more = std::abs(meshes.vertices() - std::ssize(whole_.vertices)) +
                               std::abs(meshes.triangles() - std::ssize(whole_.triangles));
@@ -135,6 +139,7 @@ class BlockRun : public testing::Test {
   Options options_;
   int blocks_ = 0;  ///< of the last run
   std::int64_t specks_ = 0;
+  bool sums_again_ = false;
 };
 
 Options at_depth(int depth, int iterations = 8, double screening = 2) {
@@ -278,6 +283,21 @@ TEST_F(BlockRun, TakesMoreBlocksWhereThereIsLessMemory) {
 TEST_F(BlockRun, RefusesLevelsThatItCannotShare) {
   start(sphere_cloud(2000, 9), at_depth(7));
   for (const int level : {4, 6}) EXPECT_THROW((void)differences(block_options(level, 2)), Error);
+}
+
+TEST_F(BlockRun, SumsUpFieldsThatAreFarFromOneHalf) {
+  Random random(16);
+  Cloud plane;  // 0 in the middle, but for what is cut off
+  for (int i = 0; i < 10000; ++i) {
+    plane.positions.push_back({static_cast<float>(random.unit()), static_cast<float>(random.unit()), 0});
+    plane.normals.push_back({0, 0, 1});
+  }
+  Options options = at_depth(8, 30, 0);
+  options.point_normals = PointNormals::given;
+  options.domain_faces = DomainFaces::open;
+  start(plane, options);
+  expect_as_whole(6, 2);
+  EXPECT_TRUE(sums_again_);
 }
 
 TEST_F(BlockRun, GivesItWithoutScreening) {

@@ -17,24 +17,25 @@ import tempfile
 import runs
 
 FEW = {"once": 14, "from": 8}  # calls chosen of each command and kind where not all are taken
+FEW_OF_SLOW = {"once": 4, "from": 2}
 MANY_FROM = 200
 ARGUMENTS_ONLY = "formats"
 SKIPPED = 77
 
 
-def chosen_calls(count, mode, everything, first):
+def chosen_calls(count, mode, everything, first, few):
     """@param first  calls before it are tried with another command"""
     if not everything:
-        return runs.spread(count, FEW[mode])
+        return runs.spread(count, few[mode])
     if mode == "from":
         return runs.spread(count, MANY_FROM)
     return sorted({*runs.spread(min(first, count), FEW[mode]), *range(first, count + 1)})
 
 
-def faults_of(counts, kinds, everything, first_allocation):
+def faults_of(counts, kinds, everything, first_allocation, few):
     for kind in kinds:
         first = first_allocation if kind == "alloc" else 1
-        calls = [(mode, call) for mode in FEW for call in chosen_calls(counts[kind], mode, everything, first)]
+        calls = [(mode, call) for mode in FEW for call in chosen_calls(counts[kind], mode, everything, first, few)]
         if kind in ("read", "write") and counts[kind] > 0:
             calls.append(("short", 1))
         for mode, call in calls:
@@ -67,7 +68,7 @@ def main():
             if good.code != 0 or problems:
                 raise SystemExit(f"{name}: without a fault: exit code {good.code}: {good.err} {problems}")
             first = 1 if name == ARGUMENTS_ONLY else of_arguments
-            faults = list(faults_of(good.counts, kinds, args.long, first))
+            faults = list(faults_of(good.counts, kinds, args.long, first, FEW_OF_SLOW if one.slow else FEW))
             results = runs.in_parallel(faults, lambda fault: bench.run(one, fault))
             codes, wrongs = collections.Counter(), collections.defaultdict(list)
             for fault, result in zip(faults, results):

@@ -54,6 +54,7 @@ def make_inputs(program, folder):
     (folder / "b.ply").write_bytes(ply(sphere(600, 0.7), NORMALS))
     (folder / "c.ply").write_bytes(ply(sphere(500), NORMALS))
     (folder / "d.ply").write_bytes(ply(sphere(400), NORMALS))
+    (folder / "larger.ply").write_bytes(ply(sphere(3000), NORMALS))
     (folder / "bare.xyz").write_text("".join("%.6f %.6f %.6f\n" % row[:3] for row in sphere(400)))
     grid = ((float(x), float(y), float(z)) for x in range(6) for y in range(6) for z in range(6))
     (folder / "particles.ply").write_bytes(ply(grid, NORMALS[:3]))
@@ -64,8 +65,9 @@ def make_inputs(program, folder):
 
 # A word with "@" is a file of the inputs; `outputs` are compared by their bytes, `reports`, which hold times, are to be
 # whole. In a `sequence` an interrupt leaves the frames before.
-# `at_once` outputs are written at a time.
-Command = collections.namedtuple("Command", "words outputs reports sequence printed at_once", defaults=((), (), False, True, 1))
+# `at_once` outputs are written at a time. What is `slow` is tried less often where not every call is.
+Command = collections.namedtuple("Command", "words outputs reports sequence printed at_once slow",
+                                 defaults=((), (), False, True, 1, False))
 
 
 def command(words, outputs="", reports="", **more):
@@ -78,6 +80,9 @@ COMMANDS = {
     "reconstruct-each": command(
         "reconstruct @a.ply @b.ply @c.ply @d.ply --each -o out_{}.ply --report r_{}.json --depth 4 --threads 2",
         "out_a.ply out_b.ply out_c.ply out_d.ply", "r_a.json r_b.json r_c.json r_d.json", at_once=2),
+    "reconstruct-blocks": command(  # 4 blocks
+        "reconstruct @larger.ply -o out.ply --report report.json --depth 8 --iterations 1 --max-memory 44M --temp . --threads 2",
+        "out.ply", "report.json", slow=True),
     "orient": command("orient @bare.xyz -o out.ply --threads 2", "out.ply"),
     "boolean": command("boolean @a.ply @b.ply --op union -o out.obj --cloud points.ply --depth 4 --threads 2", "out.obj points.ply"),
     "edit": command("edit @a.ply --script @edits.json -o out.ply --save saved.json --report report.json --depth 4 --threads 2",

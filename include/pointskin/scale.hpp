@@ -46,7 +46,7 @@ std::vector<std::string> missing_in_blocks(const Options& options);
 /// reconstruct` does. Normals that point inwards are turned; others that seem wrong are kept, with a warning, as where a limit
 /// leaves no memory for repairing them.
 /// Memory: a third for the coarse levels, the rest for one block with its ring. Disk: 80 bytes a point while they are sorted, then
-/// 60, and 4 a node of the octree, and the mesh. Time: two to three times that of the whole in memory.
+/// 60, and 4 a node of the octree, and the mesh. Time: about three times that of the whole in memory.
 /// @param inputs   one binary PLY or NPY file of oriented points
 /// @param output   a PLY file, written whole or not at all
 /// @param options  whose max_memory_bytes and residuals do not count

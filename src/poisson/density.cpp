@@ -127,7 +127,6 @@ struct EvaluateDensity {
 namespace {
 
 /// The finest level that is counted: its cells hold 16 samples of a surface that resolves the finest ones.
-int counted_depth(int depth) { return depth > 2 ? depth - 2 : 0; }
 
 template <exec::Space Exec>
 exec::Buffer<Facing> splat_facing(Exec& ex, const octree::OctreeView& tree, Samples& samples, Density& density) {
@@ -154,9 +153,8 @@ void normalise_normals(Exec& ex, ArrayView<Vec3f> normals) {
 }
 
 template <exec::Space Exec>
-exec::Buffer<Facing> sum_facing(Exec& ex, const octree::OctreeData& tree, const Samples& samples) {
-  return sum_hats(ex, tree.view(), counted_depth(tree.depth), samples.positions.cview(),
-                  FacingOf{samples.normals.cview()});
+exec::Buffer<Facing> sum_facing(Exec& ex, const octree::OctreeData& tree, int counted, const Samples& samples) {
+  return sum_hats(ex, tree.view(), counted, samples.positions.cview(), FacingOf{samples.normals.cview()});
 }
 
 template <exec::Space Exec>

@@ -40,11 +40,15 @@ inline int coarsest_splat_depth(std::int64_t points, int depth) {
 template <exec::Space Exec>
 void normalise_normals(Exec& ex, ArrayView<Vec3f> normals);
 
+/// The finest level that samples are counted on, of an octree of this depth.
+constexpr int counted_depth(int depth) { return depth > 2 ? depth - 2 : 0; }
+
 /// The first of the parts of weigh_samples(): sums up normals, which are unit vectors or zero.
-/// @returns shape (nodes of levels 0..max(0, depth - 2)), level-major: right at corners around which all samples are there
+/// @param counted  the finest level: counted_depth() of the whole octree's depth; finer ones need not be there
+/// @returns shape (nodes of levels 0..counted), level-major: right at corners around which all samples are there
 /// O(8 n + 27 nodes of these levels). Defined in density.cpp.
 template <exec::Space Exec>
-exec::Buffer<Facing> sum_facing(Exec& ex, const octree::OctreeData& tree, const Samples& samples);
+exec::Buffer<Facing> sum_facing(Exec& ex, const octree::OctreeData& tree, int counted, const Samples& samples);
 
 /// What the second part knows of every sample, for examine_samples().
 struct Weighed {

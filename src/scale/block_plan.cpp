@@ -234,7 +234,8 @@ CellSet BlockPlan::around_finer_nodes(const BlockRange& own) const {
   const auto at = [&](std::uint64_t finest) {
     return std::lower_bound(near_finer_.begin(), near_finer_.end(), finest >> 3 * finer());
   };
-  return CellSet(level_, std::span(at(own.begin), at(own.end))).grown(setup_.ring);
+  return CellSet(level_, std::span(at(own.begin), at(own.end)))
+      .grown(setup_.ring > 0 ? setup_.ring : solve_ring(setup_.iterations, finer()));
 }
 
 }  // namespace pointskin::scale

@@ -15,10 +15,14 @@
 
 namespace pointskin::scale {
 
-/// Cells that a block needs around its own, of level K: to know what reaches its nodes of that level, and to solve the finer ones
+/// Cells of level K that a block needs around its own: to know what reaches its nodes of that level, and to solve the finer ones
 /// (docs/decisions/0057-blocks.md).
 inline constexpr int kSumRing = 5;
-[[nodiscard]] constexpr int solve_ring(int iterations) { return iterations + 5; }
+/// An iteration reaches a cell of its level: of K's half a one, a quarter, and so on.
+/// @param finer_levels  than K
+[[nodiscard]] constexpr int solve_ring(int iterations, int finer_levels) {
+  return iterations - (iterations >> finer_levels) + 5;
+}
 
 /// Cells of the finest level that a block owns, by key, and its own samples.
 struct BlockRange {
@@ -48,7 +52,8 @@ class BlockPlan {
     int blocks = 0;
     std::int64_t memory_bytes = 0;
     std::int64_t part_samples = 1;
-    int ring = 0;                ///< cells around what is solved
+    int iterations = 8;
+    int ring = 0;                ///< cells around what is solved; 0: solve_ring()
     int lowest_splat_depth = 0;  ///< poisson::coarsest_splat_depth()
   };
   BlockPlan(exec::Cpu& ex, const SortedCloud& cloud, const Setup& setup) : ex_(ex), cloud_(cloud), setup_(setup) {}

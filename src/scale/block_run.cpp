@@ -70,7 +70,8 @@ BlockPlan::Setup plan_setup(std::int64_t samples, const BlockOptions& options) {
   setup.blocks = options.blocks;
   setup.memory_bytes = options.memory_bytes;
   setup.part_samples = options.part_samples;
-  setup.ring = options.ring > 0 ? options.ring : solve_ring(options.iterations);
+  setup.iterations = options.iterations;
+  setup.ring = options.ring;
   setup.lowest_splat_depth = poisson::coarsest_splat_depth(samples, options.depth);
   return setup;
 }
@@ -239,14 +240,15 @@ class BlockRun {
 
   void sum_facing(const BlockRange& own) {
     BlockSamples block = read(own, around_nodes(own), true, {});
-    const OctreeData tree = build(block);
-    coarse_->add_facing(own, poisson::sum_facing(ex_, tree, block.samples).cview());
+    const int counted = poisson::counted_depth(depth_);
+    const OctreeData tree = octree::build_octree_below(ex_, block.keys.cview(), counted, plan_.bricks());
+    coarse_->add_facing(own, poisson::sum_facing(ex_, tree, counted, block.samples).cview());
   }
 
   void weigh(const BlockRange& own) {
     BlockSamples block = read(own, around_nodes(own), true, {});
     const OctreeData tree = build(block);
-    exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, block.samples);
+    exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, poisson::counted_depth(depth_), block.samples);
     give(coarse_->facing(), facing);
     const poisson::Weighed weighed =
         poisson::weigh_by_facing(ex_, tree, options_.samples_per_node, cloud_.size(), facing.cview(), block.samples);

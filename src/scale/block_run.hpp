@@ -34,7 +34,7 @@ struct BlockOptions {
   bool fixed_screening = false;
   int iterations = 8;
   int ring =
-      0;  ///< cells of level K around what is solved; 0: solve_ring(iterations) of block_plan.hpp, and fewer give other bytes
+      0;  ///< cells of level K around what is solved; 0: solve_ring() of block_plan.hpp, and fewer give other bytes
   float curvature = 0.5F;  ///< ExtractOptions::curvature
   bool normals = true;
   Boundary boundary = Boundary::free;

@@ -244,7 +244,7 @@ TEST_F(BlockRun, GivesItWhereSamplesEndAtTheBorderOfABlock) {
 TEST_F(BlockRun, NeedsTheRingThatItTakes) {
   start(sphere_cloud(40000, 8), at_depth(7, 16));
   scale::BlockOptions options = block_options(5, 3);
-  options.ring = 10;  // half of it
+  options.ring = 8;  // half of it
   try {
     EXPECT_GT(differences(options), 0);
   } catch (const Error& error) {  // a vertex that a triangle needs is in no block

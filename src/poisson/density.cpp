@@ -26,13 +26,6 @@ struct TakeCount {
   PSK_HD void operator()(std::int64_t n) const { counts[n] = facing[n].count; }
 };
 
-/// In double: floats of any size have a length.
-PSK_HD double length_of(const Vec3f& n) {
-  const double x = n.x;
-  const double y = n.y;
-  const double z = n.z;
-  return std::sqrt(x * x + y * y + z * z);
-}
 struct RelativeLength {
   ArrayView<const Vec3f> normals;
   double mean;

@@ -22,9 +22,11 @@
 #include "diagnose/spread.hpp"
 #include "diagnose/verdict.hpp"
 #include "exec/cpu_primitives.hpp"
+#include "exec/exact_sum.hpp"
 #include "octree/octree_data.hpp"
 #include "poisson/boundary.hpp"
 #include "poisson/in_blocks.hpp"
+#include "poisson/mean_length.hpp"
 #include "poisson/trust.hpp"
 #include "reconstruct/pieces_by_support.hpp"
 #include "scale/block_looks.hpp"
@@ -317,6 +319,7 @@ class BlockRun {
   }
 
   void examine() {
+    const double mean = options_.confidence ? mean_length() : 0;
     poisson::LookAtCloud look;
     for_parts([&](const poisson::PartOfCloud& part, const Samples& samples, const exec::Buffer<float>& own_side) {
       look.add(poisson::look_at_part(ex_, depth_, part, own_side.cview(), samples));
@@ -326,6 +329,7 @@ class BlockRun {
       values_.read(SampleValues::trust, part.first - part.before, bends.view());
       poisson::examine_part(ex_, depth_, poisson::coarsest_splat_depth(cloud_.size(), depth_), part, look,
                             std::move(own_side), std::move(bends), samples);
+      if (options_.confidence) scale_areas(part, mean, samples.areas.view());
       looks().sums[diagnose::kLonely] += *samples.lonely.data();
       for (std::int64_t i = part.before; i < part.before + part.count; ++i)
         if (samples.areas.data()[i] > 0) report_.inliers.add(samples.positions.data()[i]);
@@ -334,6 +338,45 @@ class BlockRun {
       values_.write(SampleValues::examined_depth, part.first, own(samples.splat_depths));
       values_.write(SampleValues::trust, part.first, own(samples.trust));
     });
+  }
+
+  /// Calls visit(normal) with all normals as they were given.
+  template <class Visit>
+  void for_normals(std::int64_t first, std::int64_t count, const Visit& visit) const {
+    std::vector<Vec3f> normals;
+    for (const std::int64_t end = first + count; first < end; first += std::ssize(normals)) {
+      normals.resize(static_cast<std::size_t>(std::min(options_.part_samples, end - first)));
+      cloud_.read(first, std::ssize(normals), {nullptr, normals.data()});
+      for (const Vec3f& normal : normals) visit(normal);
+    }
+  }
+
+  /// As poisson::mean_length() has it.
+  [[nodiscard]] double mean_length() const {
+    double largest = 0;
+    const auto sum_in = [&](int fraction) {
+      exec::ExactSum sum;
+      for_normals(0, cloud_.size(), [&](const Vec3f& normal) {
+        const double length = poisson::length_of(normal);
+        largest = exec::Largest{}(largest, length);
+        sum = exec::AddExactly{}(sum, exec::exact_term(length, fraction));
+      });
+      return sum;
+    };
+    const auto n = static_cast<double>(cloud_.size());
+    const exec::ExactSum sum = sum_in(poisson::kLengthFraction);
+    if (sum.reliable(cloud_.size())) return sum.value(poisson::kLengthFraction) / n;
+    if (!std::isfinite(largest)) return std::numeric_limits<double>::quiet_NaN();
+    if (largest == 0) return 0;
+    const int fraction = exec::fraction_for(largest);
+    return sum_in(fraction).value(fraction) / n;
+  }
+
+  /// By the lengths of the normals, over their mean.
+  void scale_areas(const poisson::PartOfCloud& part, double mean, ArrayView<float> areas) const {
+    std::int64_t i = part.before;
+    for_normals(part.first, part.count,
+                [&](const Vec3f& normal) { areas[i++] *= static_cast<float>(poisson::length_of(normal) / mean); });
   }
 
   /// Depths become final, and trust.

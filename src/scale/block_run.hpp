@@ -32,6 +32,7 @@ struct BlockOptions {
   double samples_per_node = 1.5;
   double screening = 2;
   bool fixed_screening = false;
+  bool confidence = false;
   int iterations = 8;
   int ring =
       0;  ///< cells of level K around what is solved; 0: solve_ring() of block_plan.hpp, and fewer give other bytes

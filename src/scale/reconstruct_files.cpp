@@ -171,6 +171,7 @@ class FilesRun {
     blocks.samples_per_node = options_.samples_per_node;
     blocks.screening = options_.screening;
     blocks.fixed_screening = options_.fixed_screening;
+    blocks.confidence = options_.confidence;
     blocks.iterations = options_.iterations;
     blocks.curvature = options_.linear_fit ? 0 : detail::kCurvature;
     blocks.normals = options_.normals;
@@ -267,7 +268,6 @@ std::vector<std::string> missing_in_blocks(const Options& options) {
   name(options.point_normals == PointNormals::repair || options.point_normals == PointNormals::estimate,
        "making normals");
   name(options.field != FieldKind::poisson, "the distance field");
-  name(options.confidence, "confidence");
   name(options.envelope != nullptr, "an envelope");
   name(options.offset != 0, "an offset");
   name(options.trim != 0, "trimming");

@@ -186,7 +186,7 @@ def reconstruct(r, command="reconstruct"):
     return case
 
 
-BLOCKS = {**SURFACE, **{name: FIT[name] for name in ("--open", "--largest", "--min-component", "--density")},
+BLOCKS = {**SURFACE, **{name: FIT[name] for name in ("--open", "--confidence", "--largest", "--min-component", "--density")},
           "--normals": (["given"], [])}
 
 

@@ -204,6 +204,19 @@ TEST_F(ReconstructFiles, ObeysBoundariesAndIsovalues) {
   expect_as_whole(options, 60 * kMegabyte);
 }
 
+TEST_F(ReconstructFiles, TakesLengthsOfNormalsForConfidence) {
+  Options options = at_depth(8);
+  options.confidence = true;
+  for (const float unit : {1.0F, 1e-20F}) {  // another unit for the sum of the lengths
+    Cloud cloud = torus_cloud(60000, 15);
+    for (std::size_t i = 0; i < cloud.normals.size(); ++i)
+      cloud.normals[i] = cloud.normals[i] * (unit * (0.5F + static_cast<float>(i % 7)));
+    start(cloud);
+    expect_as_whole(options, 50 * kMegabyte);
+    EXPECT_GT(files_.blocks, 1);
+  }
+}
+
 TEST_F(ReconstructFiles, SaysWhatBlocksCannotDo) {
   start(sphere_cloud(2000, 8));
   write_old_output();

@@ -13,7 +13,7 @@
 namespace pointskin::scale {
 namespace {
 
-constexpr std::int64_t kAtOnce = 64 << 10;  // vertices or triangles
+constexpr std::int64_t kElementsAtOnce = 64 << 10;  // vertices or triangles
 
 }  // namespace
 
@@ -60,7 +60,7 @@ RankedBits BlockMeshes::vertices_that_stay() const {
   RankedBits stays(vertices());
   std::vector<std::int32_t> pieces;
   for (std::int64_t first = 0; first < inner_; first += std::ssize(pieces)) {
-    pieces.resize(static_cast<std::size_t>(std::min(kAtOnce, inner_ - first)));
+    pieces.resize(static_cast<std::size_t>(std::min(kElementsAtOnce, inner_ - first)));
     read_inner(piece_column(), first, std::ssize(pieces), reinterpret_cast<std::byte*>(pieces.data()));
     for (std::size_t i = 0; i < pieces.size(); ++i)
       if (pieces_.stays(pieces[i])) stays.set(first + static_cast<std::int64_t>(i));
@@ -100,8 +100,8 @@ void BlockMeshes::write_columns_that_stay(const Block& block, const RankedBits& 
   for (std::size_t c = 0; c < setup_.columns.size(); ++c) {
     const std::int64_t bytes = setup_.columns[c];
     std::int64_t at = count * column_begins_[c];
-    for (std::int64_t some = 0; some < block.count; some += kAtOnce) {
-      const std::int64_t end = std::min(some + kAtOnce, block.count);
+    for (std::int64_t some = 0; some < block.count; some += kElementsAtOnce) {
+      const std::int64_t end = std::min(some + kElementsAtOnce, block.count);
       values.resize(static_cast<std::size_t>((end - some) * bytes));
       block.spool->read(block.count * column_begins_[c] + some * bytes, values.data(), std::ssize(values));
       std::byte* to = values.data();
@@ -133,8 +133,8 @@ void BlockMeshes::write_triangles_that_stay(std::size_t number, const RankedBits
   for (Chunk& chunk : chunks_) {  // of one block, in the order of its triangles
     if (chunk.block != static_cast<std::int64_t>(number)) continue;
     const std::int64_t first = written;
-    for (std::int64_t some = 0; some < chunk.count; some += kAtOnce) {
-      triangles.resize(static_cast<std::size_t>(std::min(kAtOnce, chunk.count - some)));
+    for (std::int64_t some = 0; some < chunk.count; some += kElementsAtOnce) {
+      triangles.resize(static_cast<std::size_t>(std::min(kElementsAtOnce, chunk.count - some)));
       block.spool->read(triangles_at(block.count) + (chunk.first + some) * kIndexBytes, triangles.data(),
                         std::ssize(triangles) * kIndexBytes);
       std::erase_if(triangles, [&](const Indices& corners) { return !does_stay(corners[0]); });

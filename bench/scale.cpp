@@ -24,9 +24,8 @@ namespace {
 using namespace pointskin;
 
 constexpr const char* kUsage =
-    "usage: pointskin_scale CLOUD [--depth 8] [--memory 1000] [--coarse-level K] [--blocks N] [--ring R] [--threads "
-    "0]\n"
-    "                       [--temp DIR] [-o MESH.ply]\n"
+    "usage: pointskin_scale CLOUD [--depth 8] [--memory 1000] [--coarse-level K] [--blocks N] [--ring R]\n"
+    "                       [--threads 0] [--temp DIR] [-o MESH.ply]\n"
     "\n"
     "Reads a binary PLY or NPY file in parts, sorts its points on the disk, and reconstructs them in blocks, as many\n"
     "as so many MB of memory ask for unless they are named. Prints what each sweep takes, how large blocks are with\n"

@@ -50,8 +50,9 @@ std::vector<std::string> missing_in_blocks(const Options& options);
 /// @param inputs   one binary PLY or NPY file of oriented points
 /// @param output   a PLY file, written whole or not at all
 /// @param options  whose max_memory_bytes and residuals do not count
-/// @throws Error usage for options that missing_in_blocks() names, or a depth below 7; invalid_input if the file cannot be read in parts; over_limit if one cell
-///         with its ring does not fit, which says how much would do; empty_result, no_normals, output_not_written, interrupted
+/// @throws Error usage for options that missing_in_blocks() names, or a depth below 7; invalid_input if the file cannot be read in
+///         parts; over_limit if one cell with its ring does not fit, which says how much would do; empty_result, no_normals,
+///         output_not_written, interrupted
 FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output,
                               const Options& options = {}, const ScaleOptions& scale = {});
 

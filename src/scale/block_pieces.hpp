@@ -31,6 +31,7 @@ struct PiecesOfPart {
   static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
 };
 
+/// Pieces are numbered by their first vertices here. Deterministic: sums are in integers.
 /// O(v + t), 8 bytes a vertex.
 PiecesOfPart find_pieces(const PartOfMesh& part);
 
@@ -51,6 +52,7 @@ class BlockPieces {
   void reaches(std::int32_t piece, std::int64_t vertex);
 
   /// Settles which pieces stay, as surface::keep_pieces() does; once all are there and united. Called once.
+  /// O(pieces), whatever the order in which parts were added and united
   surface::PieceCounts choose(const surface::PieceOptions& options);
 
   /// After choose().

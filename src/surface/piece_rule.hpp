@@ -34,10 +34,11 @@ struct PieceExtent {
 
 /// The whole, and its largest piece. Pieces are known by their first vertices.
 struct WholeOfPieces {
-  std::uint64_t area = 0, largest = 0;
+  std::uint64_t area = 0, largest = 0;  ///< in trim's units: of all, and of the largest piece
   std::int64_t pieces = 0;
-  std::int64_t largest_root = -1;
+  std::int64_t largest_root = -1;  ///< its first vertex; -1: there is none
 };
+/// For reduce(), in any order. Of several pieces that are as large, the one of the first vertex is the largest.
 struct AddWholes {
   PSK_HD WholeOfPieces operator()(const WholeOfPieces& a, const WholeOfPieces& b) const {
     const bool second = a.largest_root < 0 || b.largest > a.largest ||
@@ -47,6 +48,7 @@ struct AddWholes {
   }
 };
 
+/// Which pieces stay.
 struct PieceRule {
   std::int64_t only = -1;    ///< first vertex of the one that stays; -1: those that are large enough
   std::int64_t always = -1;  ///< of one that stays however small it is

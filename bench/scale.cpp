@@ -10,7 +10,10 @@
 #include <string>
 #include <vector>
 
+#include <pointskin/device.hpp>
+
 #include "arguments.hpp"
+#include "exec/any_space.hpp"
 #include "exec/cpu.hpp"
 #include "io/cloud_parts.hpp"
 #include "octree/frame.hpp"
@@ -25,11 +28,11 @@ using namespace pointskin;
 
 constexpr const char* kUsage =
     "usage: pointskin_scale CLOUD [--depth 8] [--memory 1000] [--coarse-level K] [--blocks N] [--ring R]\n"
-    "                       [--threads 0] [--temp DIR] [-o MESH.ply]\n"
+    "                       [--threads 0] [--device cpu] [--temp DIR] [-o MESH.ply]\n"
     "\n"
     "Reads a binary PLY or NPY file in parts, sorts its points on the disk, and reconstructs them in blocks, as many\n"
-    "as so many MB of memory ask for unless they are named. Prints what each sweep takes, how large blocks are with\n"
-    "their rings, and the largest resident set.\n";
+    "as so many MB of memory ask for unless they are named: of the process, or of the GPU that works on them. Prints\n"
+    "what each sweep takes, how large blocks are with their rings, and the largest resident set.\n";
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -44,7 +47,7 @@ double peak_megabytes() {
 int run(const std::vector<std::string>& words) {
   scale::BlockOptions options;
   options.folder = std::filesystem::temp_directory_path().string();
-  std::string path, output;
+  std::string path, output, device = "cpu";
   std::int64_t megabytes = 1000;
   int threads = 0;
   bench::Arguments arguments(words);
@@ -62,6 +65,8 @@ int run(const std::vector<std::string>& words) {
       megabytes = arguments.whole_number();
     else if (*word == "--threads")
       threads = static_cast<int>(arguments.whole_number());
+    else if (*word == "--device")
+      device = arguments.value();
     else if (*word == "-o")
       output = arguments.value();
     else if (*word == "--temp")
@@ -86,7 +91,10 @@ int run(const std::vector<std::string>& words) {
   const scale::SortedCloud cloud(ex, *parts, {options.folder, bytes / 8, frame, extent.strays.indices});
   std::printf("%-14s %8.2f s, %.0f MB resident at most\n", "sort", seconds_since(sort_begin), peak_megabytes());
   scale::BlockReport report;
-  const scale::BlockMeshes meshes = scale::reconstruct_blocks(ex, cloud, options, report);
+  std::optional<exec::AnySpace> gpu;
+  if (device != "cpu") gpu.emplace(Device::parse(device));
+  const scale::BlockMeshes meshes = gpu ? scale::reconstruct_blocks(*gpu, ex, cloud, options, report)
+                                        : scale::reconstruct_blocks(ex, cloud, options, report);
   for (const scale::BlockReport::Sweep& sweep : report.sweeps)
     std::printf("%-14s %8.2f s\n", sweep.name, sweep.seconds);
   const auto write_begin = std::chrono::steady_clock::now();

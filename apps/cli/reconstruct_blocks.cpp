@@ -43,9 +43,16 @@ void refuse_what_is_missing(const ReconstructArgs& args, const Options& options)
                           format_bytes(static_cast<double>(options.max_memory_bytes)), fmt::join(names, ", ")));
 }
 
-ScaleOptions scale_options(const ReconstructArgs& args) {
+/// Of a GPU a limit counts what lies on it; else the process.
+std::int64_t bytes_for_work(const ReconstructArgs& args, const Device& device) {
+  const std::int64_t limit = args.options.max_memory_bytes;
+  return device.kind == DeviceKind::cpu ? bytes_left_of(limit) : limit;
+}
+
+ScaleOptions scale_options(const ReconstructArgs& args, const Device& device) {
   ScaleOptions scale;
-  scale.max_memory_bytes = bytes_left_of(args.options.max_memory_bytes);
+  scale.max_memory_bytes = bytes_for_work(args, device);
+  scale.device = device;
   scale.threads = args.threads;
   scale.shift = parse_shift(args.shift);
   scale.temp_folder = args.temp;
@@ -59,6 +66,8 @@ FilesReport work_in_blocks(const ReconstructArgs& args, const Options& options, 
   } catch (const Error& error) {
     if (error.code() != ErrorCode::over_limit) throw;
     const std::int64_t limit = args.options.max_memory_bytes;
+    if (scale.device.kind != DeviceKind::cpu)
+      throw Error(ErrorCode::over_limit, fmt::format("--max-memory {}: {}", bytes_text(limit), error.what()));
     throw Error(ErrorCode::over_limit,
                 fmt::format("--max-memory {}, of which the program takes {}: {}", bytes_text(limit),
                             bytes_text(limit - scale.max_memory_bytes), error.what()));
@@ -72,19 +81,19 @@ void warn_about_left_out(const FilesReport& files) {
 
 }  // namespace
 
-bool may_work_in_blocks(const ReconstructArgs& args, const Device& device) {
+bool may_work_in_blocks(const ReconstructArgs& args) {
   if (args.options.max_memory_bytes == 0 || args.each || args.dry_run || args.repeat > 0 || args.problems) return false;
   if (args.options.depth != Options::kAutomaticDepth && args.options.depth < kShallowest) return false;
   const bool to_ply = !args.ascii && std::filesystem::path(args.output).extension() == ".ply";
-  if (device.kind != DeviceKind::cpu || args.inputs.size() != 1 || !to_ply || args.given.has("--width")) return false;
+  if (args.inputs.size() != 1 || !to_ply || args.given.has("--width")) return false;
   return reads_in_parts(args.inputs.front());
 }
 
-bool must_work_in_blocks(const ReconstructArgs& args, const Options& options) {
+bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, const Device& device) {
   if (!missing(args, options).empty()) return false;
   std::error_code error;
   const auto bytes = std::filesystem::file_size(args.inputs.front(), error);
-  return !error && static_cast<std::int64_t>(bytes) > bytes_left_of(args.options.max_memory_bytes) / 2;
+  return !error && static_cast<std::int64_t>(bytes) > bytes_for_work(args, device) / 2;
 }
 
 void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, Record& record) {
@@ -100,7 +109,7 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
     return !interrupted();
   };
   const bool was_said = record.points > 0;
-  const ScaleOptions scale = scale_options(args);
+  const ScaleOptions scale = scale_options(args, record.device);
   const FilesReport files = work_in_blocks(args, options, scale);
   line.clear();
   file_was_written();

@@ -7,12 +7,12 @@
 
 namespace pointskin::cli {
 
-/// True if a run whose memory is limited may go on in blocks: on the CPU, from one file that can be read in parts to binary PLY.
-bool may_work_in_blocks(const ReconstructArgs& args, const Device& device);
+/// True if a run whose memory is limited may go on in blocks: from one file that can be read in parts to binary PLY.
+bool may_work_in_blocks(const ReconstructArgs& args);
 
 /// True if reading the points as a whole might take more than the limit, so that the whole is not to be tried; false where blocks do
 /// not do what the options ask for.
-bool must_work_in_blocks(const ReconstructArgs& args, const Options& options);
+bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, const Device& device);
 
 /// Reconstructs in blocks and writes the mesh; measures it where a report is asked for.
 /// @param record  of what was tried as a whole, with the number of points if they were read: then it was said which are left out

@@ -216,7 +216,7 @@ void run_whole(const ReconstructArgs& args, const Stopwatch& watch, std::unique_
 /// @returns false if the whole needs more than --max-memory
 bool run_whole_if_it_fits(const ReconstructArgs& args, const Stopwatch& watch,
                           std::unique_ptr<Reconstructor>& reconstructor, Record& record) {
-  if (must_work_in_blocks(args, record.options)) return false;
+  if (must_work_in_blocks(args, record.options, record.device)) return false;
   try {
     run_whole(args, watch, reconstructor, record);
     return true;
@@ -230,7 +230,7 @@ bool run_whole_if_it_fits(const ReconstructArgs& args, const Stopwatch& watch,
 void run_within_limit(const ReconstructArgs& args, const Stopwatch& watch,
                       std::unique_ptr<Reconstructor>& reconstructor, Record& record) {
   if (record.options.max_memory_bytes > 0) record.device = args.chosen();
-  if (!may_work_in_blocks(args, record.device)) return run_whole(args, watch, reconstructor, record);
+  if (!may_work_in_blocks(args)) return run_whole(args, watch, reconstructor, record);
   if (run_whole_if_it_fits(args, watch, reconstructor, record)) return;
   reconstructor.reset();
   reconstruct_in_blocks(args, watch, record);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <pointskin/device.hpp>
 #include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
 #include <pointskin/reconstruct.hpp>
@@ -14,11 +15,13 @@
 namespace pointskin PSK_EXPORT {
 
 struct ScaleOptions {
-  std::int64_t max_memory_bytes = 0;  ///< that the work may take, beside the program; 0: as much as it likes
+  /// That the work may take, beside the program; with a GPU, of its memory. 0: as much as it likes, or as the GPU has.
+  std::int64_t max_memory_bytes = 0;
   int threads = 0;  ///< CPU threads, 0: all; fewer where their buffers would take too much of the memory
   /// What positions are relative to, as ReadOptions::shift has it; for reconstruct_files().
   std::optional<Vec3d> shift{};
   std::string temp_folder{};  ///< for temporary data, on a disk; empty: that of the system (TMPDIR, or /tmp)
+  Device device{};            ///< that works on the blocks, for reconstruct_files(); its own number of threads does not count
 };
 
 /// What reconstruct_files() did.
@@ -39,20 +42,21 @@ bool reads_in_parts(const std::string& path);
 std::vector<std::string> missing_in_blocks(const Options& options);
 
 /// Reconstructs a cloud that memory does not hold: from a file to a file, with the same bytes that reconstructing the whole in
-/// memory and writing it would give, for any memory and any number of threads.
+/// memory and writing it would give, for any memory, any number of threads and any device.
 ///
 /// Reads the file in parts, twice or three times, sorts its points on the disk, and works on blocks of the octree one after another,
 /// each with a ring of cells around it; the coarse levels are there as a whole. Points whose normal is zero are left out, as `pointskin
 /// reconstruct` does. Normals that point inwards are turned; others that seem wrong are kept, with a warning, as where a limit
 /// leaves no memory for repairing them.
-/// Memory: a third for the coarse levels, the rest for one block with its ring. Disk: 80 bytes a point while they are sorted, then
+/// Memory: a third for the coarse levels, the rest for one block with its ring; with a GPU the limit is for its memory, and the host
+/// has the coarse levels, and the samples and the mesh of one block on their way. Disk: 80 bytes a point while they are sorted, then
 /// 60, and 4 a node of the octree, and the mesh. Time: about three times that of the whole in memory.
 /// @param inputs   one binary PLY or NPY file of oriented points
 /// @param output   a PLY file, written whole or not at all
 /// @param options  whose max_memory_bytes and residuals do not count
 /// @throws Error usage for options that missing_in_blocks() names, or a depth below 7; invalid_input if the file cannot be read in
-///         parts; over_limit if one cell with its ring does not fit, which says how much would do; empty_result, no_normals,
-///         output_not_written, interrupted
+///         parts; over_limit if one cell with its ring does not fit, which says how much would do; device_unavailable,
+///         empty_result, no_normals, output_not_written, interrupted
 FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output,
                               const Options& options = {}, const ScaleOptions& scale = {});
 

@@ -77,6 +77,12 @@ struct Counts {
   std::uint64_t densities[kDensityBins];  ///< samples by the samples around them on a finest cell's face
 };
 
+/// Sums of either.
+inline void add(Counts& to, const Counts& more) {
+  for (int i = 0; i < kSums; ++i) to.sums[i] += more.sums[i];
+  for (int i = 0; i < kDensityBins; ++i) to.densities[i] += more.densities[i];
+}
+
 inline constexpr double kFraction = 0x1p40;
 
 inline double fraction(std::uint64_t sum) { return static_cast<double>(static_cast<std::int64_t>(sum)) / kFraction; }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <pointskin/vector.hpp>
 
 #include "diagnose/counts.hpp"
+#include "exec/any_space.hpp"
 #include "exec/cpu.hpp"
 #include "octree/bounding_box.hpp"
 #include "scale/block_meshes.hpp"
@@ -19,6 +21,9 @@
 #include "surface/pieces.hpp"
 
 namespace pointskin::scale {
+
+class BlockWork;
+struct SharedOfBlocks;
 
 /// How a cloud is divided, and the options of the run as Options has them.
 struct BlockOptions {
@@ -89,5 +94,16 @@ struct BlockReport {
 /// Sweeps over all blocks six times, and builds the octree of a block in each; once more where corners turn out to be lone ones.
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                BlockReport& report);
+
+/// The same with the blocks in another space, such as a GPU, whose memory is what BlockOptions has limits for: the host has the
+/// coarse levels, and one block's samples and mesh on their way.
+BlockMeshes reconstruct_blocks(const exec::AnySpace& space, exec::Cpu& host, const SortedCloud& cloud,
+                               const BlockOptions& options, BlockReport& report);
+
+/// Calls make_block_work() of block_work.hpp with a space of the caller's.
+using MakeBlockWork = std::function<std::unique_ptr<BlockWork>(SharedOfBlocks&)>;
+/// The same with the blocks wherever `make` has them worked on.
+BlockMeshes reconstruct_blocks(const MakeBlockWork& make, exec::Cpu& host, const SortedCloud& cloud,
+                               const BlockOptions& options, BlockReport& report);
 
 }  // namespace pointskin::scale

@@ -70,29 +70,26 @@ void CoarseLevels::finish_facing() {
                  [](const Facing& facing) { return facing.count; });
 }
 
-void CoarseLevels::add_depths(const BlockRange& own, const octree::LevelView& pooled,
+void CoarseLevels::add_depths(const BlockRange& own, int level, ArrayView<const std::uint64_t> bricks,
                               ArrayView<const std::uint32_t> levels) {
-  for (std::int64_t brick = 0; brick < pooled.cell_bricks; ++brick) {
-    const std::uint64_t cell = pooled.brick_key[brick] << 3 * (plan_.depth() - pooled.depth + 1);
+  for (std::int64_t brick = 0; brick < bricks.size; ++brick) {
+    const std::uint64_t cell = bricks[brick] << 3 * (plan_.depth() - level + 1);
     if (cell >= own.begin && cell < own.end) depths_ |= levels[brick];
   }
 }
 
-void CoarseLevels::add_samples(const BlockRange& own, std::int64_t first_own, const poisson::Samples& samples,
-                               std::span<const std::uint64_t> keys) {
-  if (keys.empty()) return;
+void CoarseLevels::add_samples(const BlockRange& own, const OwnSamples& samples) {
+  if (samples.keys.empty()) return;
   const std::vector<std::uint64_t>& cells = plan_.cells();
-  const std::uint64_t first_cell = keys.front() >> 3 * (octree::kPointBits - plan_.level());
+  const std::uint64_t first_cell = samples.keys[0] >> 3 * (octree::kPointBits - plan_.level());
   auto cell = static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), first_cell) - cells.begin());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const std::int64_t at = first_own + static_cast<std::int64_t>(i);
-    const float depth = samples.splat_depths.data()[at];
-    while (plan_.first()[cell + 1] <= own.samples.begin + static_cast<std::int64_t>(i)) ++cell;
+  for (std::int64_t i = 0; i < samples.keys.size; ++i) {
+    const float depth = samples.depths[i];
+    while (plan_.first()[cell + 1] <= own.samples.begin + i) ++cell;
     std::int8_t& finest = resolved_[cell];
     while (finest < plan_.level() && poisson::resolves(depth, finest + 1)) ++finest;
     if (static_cast<int>(depth) > plan_.level()) continue;
-    sparse_.push_back(
-        {keys[i], samples.positions.data()[at], samples.normals.data()[at], samples.areas.data()[at], depth});
+    sparse_.push_back({samples.keys[i], samples.positions[i], samples.normals[i], samples.areas[i], depth});
   }
 }
 
@@ -151,16 +148,12 @@ void CoarseLevels::add_divergence(const BlockRange& own, ArrayView<const float> 
   take_own<float>(own, b, b_.view());
 }
 
-void CoarseLevels::add_collapsed(const BlockRange& own, const OctreeView& tree, const poisson::Screening& screening) {
-  for (int d = plan_.cut_level(); d <= plan_.level(); ++d) {
-    const octree::LevelView& level = tree.levels[d];
-    const poisson::ScreeningView collapsed = screening.view(d);
-    for (std::int64_t cell = 0; cell < level.cells(); ++cell) {
-      const std::uint64_t finest = level.node_key(static_cast<std::int32_t>(cell)) << 3 * (plan_.depth() - d);
-      if (level.point_begin[cell] == level.point_begin[cell + 1] || finest < own.begin || finest >= own.end) continue;
-      collapsed_[static_cast<std::size_t>(d)].push_back(
-          collapsed.samples[8 * std::int64_t{collapsed.brick_index[cell >> 3]} + (cell & 7)]);
-    }
+void CoarseLevels::add_collapsed(const BlockRange& own, int level, ArrayView<const CollapsedSample> cells) {
+  const octree::LevelView here = tree_.view().levels[level];
+  for (std::int64_t cell = 0; cell < here.cells(); ++cell) {
+    const std::uint64_t finest = here.node_key(static_cast<std::int32_t>(cell)) << 3 * (plan_.depth() - level);
+    if (here.point_begin[cell] < here.point_begin[cell + 1] && finest >= own.begin && finest < own.end)
+      collapsed_[static_cast<std::size_t>(level)].push_back(cells[cell]);
   }
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <pointskin/reconstruct.hpp>
@@ -46,19 +45,26 @@ class CoarseLevels {
   void drop_facing() { facing_.reset(); }
 
   /// Notes at which levels own samples are splatted.
-  /// @param levels  poisson::even_out_depths() of the block's octree
-  void add_depths(const BlockRange& own, const octree::LevelView& pooled, ArrayView<const std::uint32_t> levels);
-  /// Keeps what of a block's own samples the levels up to K need.
-  /// @param first_own  of `samples`
-  /// @param keys       (own samples)
-  void add_samples(const BlockRange& own, std::int64_t first_own, const poisson::Samples& samples,
-                   std::span<const std::uint64_t> keys);
+  /// @param bricks  keys of the cell bricks of a level of the block's octree
+  /// @param levels  of that level, from poisson::even_out_depths()
+  void add_depths(const BlockRange& own, int level, ArrayView<const std::uint64_t> bricks,
+                  ArrayView<const std::uint32_t> levels);
+
+  /// Columns of a block's own samples.
+  struct OwnSamples {
+    ArrayView<const std::uint64_t> keys;
+    ArrayView<const Vec3f> positions, normals;
+    ArrayView<const float> areas, depths;
+  };
+  /// Keeps what of them the levels up to K need.
+  void add_samples(const BlockRange& own, const OwnSamples& samples);
   /// When all samples are noted: which bricks are resolved, and the normals that are splatted at these levels.
   void splat();
 
   /// @param b  divergence of a block's octree
   void add_divergence(const BlockRange& own, ArrayView<const float> b);
-  void add_collapsed(const BlockRange& own, const octree::OctreeView& tree, const poisson::Screening& screening);
+  /// @param cells  (cells of the level) collapsed samples in a block's octree
+  void add_collapsed(const BlockRange& own, int level, ArrayView<const poisson::CollapsedSample> cells);
 
   /// Solves these levels, once all is added.
   std::vector<poisson::LevelSolve> solve();

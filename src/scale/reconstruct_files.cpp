@@ -12,6 +12,7 @@
 #include "core/format.hpp"
 #include "diagnose/verdict.hpp"
 #include "diagnose/warnings.hpp"
+#include "exec/any_space.hpp"
 #include "exec/cpu.hpp"
 #include "io/cloud_parts.hpp"
 #include "io/source.hpp"
@@ -50,6 +51,7 @@ class FilesRun {
                   fmt::format("{}: cannot be read in parts; blocks need a binary PLY or NPY file whose rows are of one "
                               "length",
                               io::printable(input)));
+    if (scale_.device.kind != DeviceKind::cpu) gpu_.emplace(scale_.device);
     if (scale_.temp_folder.empty()) scale_.temp_folder = std::filesystem::temp_directory_path().string();
   }
 
@@ -136,7 +138,8 @@ class FilesRun {
     for (int tries = 1;; ++tries) {
       Fit fit;
       try {
-        fit.meshes.emplace(scale::reconstruct_blocks(ex_, cloud, blocks, fit.report));
+        fit.meshes.emplace(gpu_ ? scale::reconstruct_blocks(*gpu_, ex_, cloud, blocks, fit.report)
+                                : scale::reconstruct_blocks(ex_, cloud, blocks, fit.report));
         return fit;
       } catch (const Error& error) {  // of what was planned for
         if (error.code() != ErrorCode::over_limit || fit.report.blocks == 0 || tries == kTries) throw;
@@ -153,7 +156,8 @@ class FilesRun {
 
   [[nodiscard]] std::int64_t bytes() const {
     constexpr std::int64_t kAsMuchAsItLikes = std::int64_t{1} << 50;
-    return scale_.max_memory_bytes > 0 ? scale_.max_memory_bytes : kAsMuchAsItLikes;
+    if (scale_.max_memory_bytes > 0) return scale_.max_memory_bytes;
+    return gpu_ ? scale_.device.available_bytes() : kAsMuchAsItLikes;
   }
 
   [[nodiscard]] std::int64_t planned_bytes() const {
@@ -229,7 +233,7 @@ class FilesRun {
     run.levels = fit.report.levels;
     for (const LevelReport& level : run.levels) run.nodes += level.nodes;
     run.isovalue = fit.report.isovalue;
-    run.device_peak_bytes = ex_.pool()->peak_bytes();
+    run.device_peak_bytes = (gpu_ ? gpu_->pool() : ex_.pool())->peak_bytes();
     for (const scale::BlockReport::Sweep& sweep : fit.report.sweeps) time_of(sweep.phase) += 1000 * sweep.seconds;
     result_.vertices = fit.meshes->vertices();
     result_.triangles = fit.meshes->triangles();
@@ -247,6 +251,7 @@ class FilesRun {
   Options options_;
   ScaleOptions scale_;
   exec::Cpu ex_;
+  std::optional<exec::AnySpace> gpu_;
   std::unique_ptr<io::CloudParts> parts_;
   Place place_;
   FilesReport result_;

@@ -1,0 +1,396 @@
+#include "scale/block_work.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <span>
+#include <utility>
+
+#include "diagnose/in_blocks.hpp"
+#include "diagnose/look.hpp"
+#include "diagnose/look_at.hpp"
+#include "diagnose/spread.hpp"
+#include "exec/this_space.hpp"
+#include "octree/octree_data.hpp"
+#include "poisson/boundary.hpp"
+#include "poisson/trust.hpp"
+#include "scale/staging.hpp"
+#include "surface/extract.hpp"
+
+namespace pointskin::scale {
+namespace {
+
+using octree::OctreeData;
+using octree::OctreeView;
+using poisson::Facing;
+using poisson::Samples;
+
+/// The samples of a block and its ring.
+struct BlockSamples {
+  Samples samples;
+  exec::Buffer<std::uint64_t> keys;
+  std::int64_t first_own = 0, own = 0;  ///< where its own are
+};
+
+/// The collapsed samples of a level, a cell at a time.
+struct CollapsedOfCells {
+  octree::LevelView level;
+  poisson::ScreeningView collapsed;
+  ArrayView<poisson::CollapsedSample> out;  // (cells)
+  PSK_HD void operator()(std::int64_t cell) const {
+    const bool is_empty = level.point_begin[cell] == level.point_begin[cell + 1];
+    out[cell] = is_empty ? poisson::CollapsedSample{}
+                         : collapsed.samples[8 * std::int64_t{collapsed.brick_index[cell >> 3]} + (cell & 7)];
+  }
+};
+
+template <exec::Space Exec>
+class WorkIn final : public BlockWork {
+ public:
+  WorkIn(Exec& ex, SharedOfBlocks& shared)
+      : ex_(ex),
+        shared_(shared),
+        options_(shared.options),
+        plan_(shared.plan),
+        depth_(shared.options.depth),
+        counts_(diagnose::make_counts(ex)) {}
+
+  exec::MemoryPool& pool() override { return *ex_.pool(); }
+
+  void sum_facing(const BlockRange& own) override {
+    BlockSamples block = read(own, around_nodes(own), {});
+    const int counted = poisson::counted_depth(depth_);
+    const OctreeData tree = octree::build_octree_below(ex_, block.keys.cview(), counted, bricks());
+    const exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, counted, block.samples);
+    coarse().add_facing(own, fetched(facing.cview().part(0, coarse().nodes())).view());
+  }
+
+  void weigh(const BlockRange& own) override {
+    BlockSamples block = read(own, around_nodes(own), {});
+    const OctreeData tree = build(block);
+    exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, poisson::counted_depth(depth_), block.samples);
+    give(coarse().facing(), facing);
+    const poisson::Weighed weighed =
+        poisson::weigh_by_facing(ex_, tree, options_.samples_per_node, all_samples(), facing.cview(), block.samples);
+    write_own(own, block, SampleValues::area, block.samples.areas);
+    write_own(own, block, SampleValues::depth, block.samples.splat_depths);
+    write_own(own, block, SampleValues::own_side, weighed.own_side);
+    write_own(own, block, SampleValues::trust, weighed.bends);
+    const exec::Buffer<std::int32_t> chosen =
+        chosen_own(own, diagnose::kSamples, block.first_own, [](std::int64_t s) { return !diagnose::looks_across(s); });
+    diagnose::look_at_densities(ex_, tree.view(), weighed.density, choose(chosen, block.samples.positions).cview(),
+                                counts_);
+  }
+
+  void even_out(const BlockRange& own) override {
+    BlockSamples block = read(own, around_nodes(own),
+                              {{SampleValues::area, &Samples::areas},
+                               {SampleValues::examined_depth, &Samples::splat_depths},
+                               {SampleValues::trust, &Samples::trust}});
+    const exec::Buffer<std::uint64_t> own_keys = part_of(block.keys, block.first_own, block.own);
+    const OctreeData tree = build(block);
+    Samples& samples = block.samples;
+    const exec::Buffer<std::uint32_t> levels = poisson::even_out_depths(ex_, tree, samples);
+    const octree::LevelView pooled = tree.view().levels[depth_ - 1];
+    coarse().add_depths(own, depth_ - 1,
+                        fetched(ArrayView<const std::uint64_t>{pooled.brick_key, pooled.cell_bricks}).view(),
+                        fetched(levels.cview()).view());
+    if (options_.screening > 0 && !options_.fixed_screening) poisson::weigh_trust(ex_, tree, samples);
+    write_own(own, block, SampleValues::depth, samples.splat_depths);
+    write_own(own, block, SampleValues::trust, samples.trust);
+    const auto own_of = [&](const auto& column) { return fetched(column.cview().part(block.first_own, block.own)); };
+    const auto positions = own_of(samples.positions), normals = own_of(samples.normals);
+    const auto areas = own_of(samples.areas), depths = own_of(samples.splat_depths);
+    coarse().add_samples(
+        own, {fetched(own_keys.cview()).view(), positions.view(), normals.view(), areas.view(), depths.view()});
+  }
+
+  void splat(const BlockRange& own) override {
+    BlockSamples block = read_weighed(own, around_nodes(own));
+    const OctreeData tree = build(block);
+    const poisson::Resolution resolution = resolution_of(tree, block.samples);
+    const exec::Buffer<float> b = divergence_of(tree, block.samples, resolution);
+    coarse().add_divergence(own, fetched(b.cview().part(0, coarse().nodes())).view());
+    if (options_.screening <= 0) return;
+    const poisson::Screening collapsed = poisson::collapse_samples(ex_, tree, block.samples.view());
+    for (int d = plan_.cut_level(); d <= plan_.level(); ++d) {
+      const octree::LevelView level = tree.view().levels[d];
+      auto cells = exec::make_buffer<poisson::CollapsedSample>(ex_, level.cells());
+      for_each(ex_, "scale.collapsed", cells.size(), CollapsedOfCells{level, collapsed.view(d), cells.view()});
+      coarse().add_collapsed(own, d, fetched(cells.cview()).view());
+    }
+  }
+
+  std::unique_ptr<Spool> solve(const BlockRange& own, poisson::ValuesOfSamples& values) override {
+    BlockSamples block = read_weighed(own, plan_.around_finer_nodes(own));
+    const OctreeData tree = build(block);
+    const poisson::Resolution resolution = resolution_of(tree, block.samples);
+    const exec::Buffer<float> b = divergence_of(tree, block.samples, resolution);
+    poisson::Screening screening;
+    if (options_.screening > 0) screening = poisson::collapse_samples(ex_, tree, block.samples.view());
+    const OctreeView view = resolution.view(tree);
+    auto u = exec::make_buffer<float>(ex_, view.nodes);
+    give(coarse().u(), u);
+    poisson::SolveOptions solving{options_.screening, options_.iterations};
+    exec::Buffer<std::uint8_t> free;
+    if (options_.boundary == Boundary::dirichlet) free = poisson::free_unknowns(ex_, view, true);
+    solving.free_unknowns = free.cview();
+    report_levels(own, tree.view(),
+                  poisson::solve_below(ex_, view, b.cview(), screening, solving, plan_.level(), u.view()));
+    values.add(poisson::values_at_samples(ex_, tree, u.cview(), block.samples.view(), own.begin, own.end));
+    const std::int64_t given = coarse().u().size;
+    const Fetched<float> finer = fetched(u.cview().part(given, u.size() - given));
+    const std::int64_t bytes = finer.view().size * std::int64_t{sizeof(float)};
+    auto field = std::make_unique<Spool>(options_.folder, bytes);
+    field->write(0, finer.data(), bytes);
+    return field;
+  }
+
+  poisson::ValuesOfSamples sum_values(const BlockRange& own, const Spool& field, int fraction) override {
+    BlockSamples block = read_weighed(own, plan_.around_finer_nodes(own));
+    const OctreeData tree = build(block);
+    const exec::Buffer<float> u = read_field(tree.view(), field);
+    return poisson::values_at_samples(ex_, tree, u.cview(), block.samples.view(), own.begin, own.end, fraction);
+  }
+
+  void extract(const BlockRange& own, const Spool& field, const Extraction& what, BlockMeshes& meshes) override {
+    BlockSamples block = read_weighed(own, plan_.around_finer_nodes(own));
+    const OctreeData tree = build(block);
+    poisson::Density density;
+    if (what.supports || options_.density_face > 0) density = density_of(tree, block.samples);
+    const poisson::Resolution resolution = resolution_of(tree, block.samples);
+    Samples looked_at;
+    if (what.looks) {
+      const exec::Buffer<std::int32_t> chosen =
+          chosen_own(own, diagnose::kSamples / diagnose::kSparse, block.first_own, [](std::int64_t) { return true; });
+      looked_at.positions = choose(chosen, block.samples.positions);
+      looked_at.splat_depths = choose(chosen, block.samples.splat_depths);
+    }
+    block = {};
+    const OctreeView view = resolution.view(tree);
+    exec::Buffer<float> u = read_field(view, field);
+    surface::SurfacePlaces places;
+    surface::ExtractOptions extraction{options_.curvature, options_.normals};
+    extraction.places = &places;
+    extraction.counted = {own.begin, own.end};
+    field::FieldView function{view, u.data(), static_cast<float>(shared_.report.isovalue),
+                              options_.domain_faces == DomainFaces::closed,
+                              resolution.bricks.empty() ? nullptr : resolution.bricks.data()};
+    if (what.looks) diagnose::look_at_field_of_block(ex_, function, looked_at.view(), own.begin, own.end, counts_);
+    if (options_.isovalue) function.isovalue = static_cast<float>(*options_.isovalue);
+    const surface::Surface surface = surface::extract_surface(ex_, function, extraction);
+    if (what.looks) shared_.report.lone_corners += surface.lone_corners;
+    exec::Buffer<float> per_cube, per_world;  // samples per area of the cube's unit, and of the world's
+    if (what.supports) per_cube = density_at(tree, density, surface, std::ldexp(1.0, -2 * depth_));
+    if (options_.density_face > 0) per_world = density_at(tree, density, surface, options_.density_face);
+    add_mesh(own, surface, places, per_cube, per_world, meshes);
+  }
+
+  diagnose::Counts looks() override { return diagnose::read_counts(ex_, counts_); }
+
+ private:
+  [[nodiscard]] CoarseLevels& coarse() { return *shared_.coarse; }
+  [[nodiscard]] std::int64_t all_samples() const { return shared_.cloud.size(); }
+
+  template <class T>
+  Fetched<T> fetched(ArrayView<const T> values) {
+    return Fetched<T>(ex_, shared_.host, values);
+  }
+
+  /// What is given of the levels up to K, to an array over the nodes of a block.
+  template <class T>
+  void give(ArrayView<const T> given, exec::Buffer<T>& nodes) {
+    copy_to_device(ex_, given.data, nodes.view().part(0, given.size));
+  }
+
+  template <class T>
+  exec::Buffer<T> part_of(const exec::Buffer<T>& from, std::int64_t first, std::int64_t count) {
+    auto part = exec::make_buffer<T>(ex_, count);
+    copy(ex_, from.cview().part(first, count), part.view());
+    return part;
+  }
+
+  /// The cell bricks of the coarse levels, in the space.
+  [[nodiscard]] std::span<const ArrayView<const std::uint64_t>> bricks() {
+    if (bricks_.empty())
+      for (const ArrayView<const std::uint64_t>& level : plan_.bricks()) {
+        bricks_.emplace_back(ex_, level);
+        brick_views_.push_back(bricks_.back().view());
+      }
+    return brick_views_;
+  }
+
+  [[nodiscard]] CellSet around_nodes(const BlockRange& own) { return plan_.around_nodes(own, coarse().last_level()); }
+
+  /// Positions, unit normals and keys of the samples in cells of level K, and columns of values.
+  BlockSamples read(const BlockRange& own, const CellSet& cells,
+                    std::initializer_list<std::pair<SampleValues::Column, exec::Buffer<float> Samples::*>> columns) {
+    const std::vector<SampleRun> runs = plan_.samples_in(cells);
+    std::int64_t n = 0;
+    for (const SampleRun& run : runs) n += run.end - run.begin;
+    BlockSamples block{{}, {}, 0, own.samples.end - own.samples.begin};
+    Sent<std::uint64_t> keys(shared_.host, n);
+    Sent<Vec3f> positions(shared_.host, n), normals(shared_.host, n);
+    std::int64_t at = 0;
+    for (const SampleRun& run : runs) {
+      shared_.cloud.read(run.begin, run.end - run.begin,
+                         {positions.data() + at, normals.data() + at, keys.data() + at});
+      if (run.begin <= own.samples.begin && own.samples.begin < run.end)
+        block.first_own = at + own.samples.begin - run.begin;
+      at += run.end - run.begin;
+    }
+    block.keys = keys.to(ex_);
+    block.samples.positions = positions.to(ex_);
+    block.samples.normals = normals.to(ex_);
+    poisson::normalise_normals(ex_, block.samples.normals.view());
+    for (const auto& [column, member] : columns) block.samples.*member = read_column(column, runs, n);
+    shared_.report.most_samples = std::max(shared_.report.most_samples, n);
+    shared_.report.samples_read += n;
+    return block;
+  }
+
+  exec::Buffer<float> read_column(SampleValues::Column column, const std::vector<SampleRun>& runs, std::int64_t n) {
+    Sent<float> values(shared_.host, n);
+    std::int64_t at = 0;
+    for (const SampleRun& run : runs) {
+      shared_.values.read(column, run.begin, values.view().part(at, run.end - run.begin));
+      at += run.end - run.begin;
+    }
+    return values.to(ex_);
+  }
+
+  /// Samples of a block as the solver needs them.
+  BlockSamples read_weighed(const BlockRange& own, const CellSet& cells) {
+    BlockSamples block = read(own, cells,
+                              {{SampleValues::area, &Samples::areas},
+                               {SampleValues::depth, &Samples::splat_depths},
+                               {SampleValues::trust, &Samples::trust}});
+    if (options_.screening <= 0 || options_.fixed_screening) block.samples.trust.reset();
+    coarse().set_depths(block.samples);
+    return block;
+  }
+
+  void write_own(const BlockRange& own, const BlockSamples& block, SampleValues::Column column,
+                 const exec::Buffer<float>& values) {
+    shared_.values.write(column, own.samples.begin, fetched(values.cview().part(block.first_own, block.own)).view());
+  }
+
+  OctreeData build(BlockSamples& block) {
+    OctreeData tree = octree::build_octree_below(ex_, block.keys.cview(), depth_, bricks());
+    block.keys.reset();
+    shared_.report.most_nodes = std::max(shared_.report.most_nodes, tree.nodes());
+    return tree;
+  }
+
+  /// Where samples of the whole cloud that are looked at, evenly spread, lie among those of a block.
+  /// @param first_own  place of the block's first own sample there
+  template <class Choose>
+  exec::Buffer<std::int32_t> chosen_own(const BlockRange& own, std::int64_t some, std::int64_t first_own,
+                                        const Choose& is_chosen) {
+    const diagnose::Spread spread{std::min(all_samples(), some), all_samples()};
+    std::vector<std::int32_t> chosen;
+    for (std::int64_t s = spread.first_from(own.samples.begin); s < spread.some && spread(s) < own.samples.end; ++s)
+      if (is_chosen(s)) chosen.push_back(static_cast<std::int32_t>(first_own + spread(s) - own.samples.begin));
+    auto there = exec::make_buffer<std::int32_t>(ex_, std::ssize(chosen));
+    copy_to_device(ex_, chosen.data(), there.view());
+    return there;
+  }
+
+  template <class T>
+  exec::Buffer<T> choose(const exec::Buffer<std::int32_t>& chosen, const exec::Buffer<T>& from) {
+    auto to = exec::make_buffer<T>(ex_, chosen.size());
+    exec::gather<T>(ex_, from.cview(), chosen.cview(), to.view());
+    return to;
+  }
+
+  poisson::Resolution resolution_of(const OctreeData& tree, const Samples& samples) {
+    if (!coarse().is_sparse()) return {};
+    const Lent<std::uint8_t> given(ex_, coarse().resolved_bricks());
+    return poisson::resolution_of(ex_, tree.view(), poisson::resolved_below(ex_, tree.view(), samples, given.view()));
+  }
+
+  exec::Buffer<float> divergence_of(const OctreeData& tree, const Samples& samples,
+                                    const poisson::Resolution& resolution) {
+    const Lent<float> given(ex_, coarse().field());
+    return poisson::splat_divergence_below(ex_, tree, samples.view(), resolution, plan_.level(), given.view());
+  }
+
+  /// The field of a block's octree.
+  exec::Buffer<float> read_field(const OctreeView& tree, const Spool& field) {
+    const std::int64_t given = coarse().u().size;
+    Sent<float> u(shared_.host, tree.nodes);
+    std::copy_n(coarse().u().data, given, u.data());
+    field.read(0, u.data() + given, field.size());
+    return u.to(ex_);
+  }
+
+  /// Adds what a block has of its own.
+  void report_levels(const BlockRange& own, const OctreeView& tree, const std::vector<poisson::LevelSolve>& solved) {
+    std::vector<LevelReport>& levels = shared_.report.levels;
+    for (const poisson::LevelSolve& found : solved) {
+      const auto place = static_cast<std::size_t>(found.depth);
+      if (levels.size() <= place) levels.push_back({found.depth, 0, 0, found.iterations, 0, 0});
+      const octree::LevelView& level = tree.levels[found.depth];
+      const Fetched<std::uint64_t> bricks = fetched(ArrayView<const std::uint64_t>{level.brick_key, level.cell_bricks});
+      const auto bricks_before = [&](std::uint64_t cell) {
+        return std::lower_bound(bricks.view().begin(), bricks.view().end(), cell >> 3 * (depth_ - found.depth + 1)) -
+               bricks.view().begin();
+      };
+      levels[place].nodes += 8 * (bricks_before(own.end) - bricks_before(own.begin));
+    }
+  }
+
+  /// As the whole has it, at nodes around which all samples are there.
+  poisson::Density density_of(const OctreeData& tree, const Samples& samples) {
+    poisson::Density density = poisson::splat_density(ex_, tree, samples.positions.cview());
+    give(coarse().counts(), density.counts);
+    return density;
+  }
+
+  /// Samples per area.
+  /// @param face  area of a face of a finest cell
+  exec::Buffer<float> density_at(const OctreeData& tree, const poisson::Density& density,
+                                 const surface::Surface& surface, double face) {
+    auto values = exec::make_buffer<float>(ex_, surface.positions.size());
+    poisson::evaluate_density(ex_, tree, density, surface.positions.cview(), values.view());
+    for_each(ex_, "scale.density", values.size(), poisson::PerArea{face, values.view()});
+    return values;
+  }
+
+  void add_mesh(const BlockRange& own, const surface::Surface& surface, const surface::SurfacePlaces& places,
+                const exec::Buffer<float>& per_cube, const exec::Buffer<float>& per_world, BlockMeshes& meshes) {
+    const auto positions = fetched(surface.positions.cview()), normals = fetched(surface.normals.cview());
+    const auto densities = fetched(per_world.cview()), supports = fetched(per_cube.cview());
+    const auto triangles = fetched(surface.triangles.cview());
+    const auto keys = fetched(places.keys.cview()), cells = fetched(places.cells.cview());
+    const auto segments = fetched(places.segments.cview());
+    std::vector<const std::byte*> columns{reinterpret_cast<const std::byte*>(positions.data())};
+    if (options_.normals) columns.push_back(reinterpret_cast<const std::byte*>(normals.data()));
+    if (options_.density_face > 0) columns.push_back(reinterpret_cast<const std::byte*>(densities.data()));
+    const auto span = [](const auto& values) {
+      return std::span(values.data(), static_cast<std::size_t>(values.view().size));
+    };
+    meshes.add({own.begin, own.end, span(keys), columns, span(triangles), span(cells), span(segments), span(supports)});
+  }
+
+  Exec& ex_;
+  SharedOfBlocks& shared_;
+  const BlockOptions& options_;
+  const BlockPlan& plan_;
+  int depth_;
+  exec::Buffer<diagnose::Counts> counts_;
+  std::vector<Lent<std::uint64_t>> bricks_;
+  std::vector<ArrayView<const std::uint64_t>> brick_views_;
+};
+
+}  // namespace
+
+template <exec::Space Exec>
+std::unique_ptr<BlockWork> make_block_work(Exec& ex, SharedOfBlocks& shared) {
+  return std::make_unique<WorkIn<Exec>>(ex, shared);
+}
+
+PSK_INSTANTIATE(make_block_work);
+
+}  // namespace pointskin::scale

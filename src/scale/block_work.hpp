@@ -1,0 +1,75 @@
+// What is done with one block after another, in the space that works on them: its samples, and those of the cells around it, come
+// from the disk, an octree is made of them, and what the block finds of its own goes to the disk or to the coarse levels.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "diagnose/counts.hpp"
+#include "exec/cpu.hpp"
+#include "exec/space.hpp"
+#include "poisson/in_blocks.hpp"
+#include "scale/block_meshes.hpp"
+#include "scale/block_plan.hpp"
+#include "scale/block_run.hpp"
+#include "scale/coarse_levels.hpp"
+#include "scale/sample_values.hpp"
+#include "scale/sorted_cloud.hpp"
+#include "scale/spool.hpp"
+
+namespace pointskin::scale {
+
+/// What all blocks of a run share, in the host's memory and on the disk.
+struct SharedOfBlocks {
+  exec::Cpu& host;
+  const SortedCloud& cloud;
+  const BlockOptions& options;
+  BlockReport& report;
+  BlockPlan plan;
+  SampleValues values;
+  std::optional<CoarseLevels> coarse{};  ///< once blocks are planned
+};
+
+/// Steps of a run in the order in which they are called, each for every block. Every one builds the block's octree.
+/// @throws Error over_limit if the space has no memory left; as SortedCloud::read, Spool
+class BlockWork {
+ public:
+  BlockWork() = default;
+  virtual ~BlockWork() = default;
+  BlockWork(const BlockWork&) = delete;
+  BlockWork& operator=(const BlockWork&) = delete;
+
+  [[nodiscard]] virtual exec::MemoryPool& pool() = 0;
+
+  /// Adds up normals for the coarse levels.
+  virtual void sum_facing(const BlockRange& own) = 0;
+  /// Areas and depths of the samples, and on which side they lie.
+  virtual void weigh(const BlockRange& own) = 0;
+  /// Depths become final, and trust.
+  virtual void even_out(const BlockRange& own) = 0;
+  /// What a block adds to the systems of the coarse levels.
+  virtual void splat(const BlockRange& own) = 0;
+  /// @returns the fields of the finer levels
+  virtual std::unique_ptr<Spool> solve(const BlockRange& own, poisson::ValuesOfSamples& values) = 0;
+  /// What solve() adds up, in another unit.
+  virtual poisson::ValuesOfSamples sum_values(const BlockRange& own, const Spool& field, int fraction) = 0;
+
+  /// What an extraction is for besides the surface.
+  struct Extraction {
+    bool supports = false;  ///< pieces without samples go
+    bool looks = false;     ///< counts what may be wrong
+  };
+  virtual void extract(const BlockRange& own, const Spool& field, const Extraction& what, BlockMeshes& meshes) = 0;
+
+  /// What the blocks have counted so far. Waits.
+  [[nodiscard]] virtual diagnose::Counts looks() = 0;
+};
+
+/// @param ex      the space; shared.host if it is the host
+/// @param shared  outlives what is returned
+template <exec::Space Exec>
+std::unique_ptr<BlockWork> make_block_work(Exec& ex, SharedOfBlocks& shared);
+
+}  // namespace pointskin::scale

@@ -40,7 +40,9 @@ SparseLevel mark_coarse(Exec& ex, const ReachOfParticle& reach_of, std::int64_t 
   const std::int64_t bricks = exec::read_element(ex, before.cview(), words);
   check_bricks(bricks);
   level.brick_key = exec::make_buffer<std::uint64_t>(ex, bricks);
-  for_each(ex, kLabel, words, octree::build::ListKeys{bits.data(), before.data(), 0, level.brick_key.view()});
+  using octree::build::BrickBits;
+  for_each(ex, kLabel, words,
+           octree::build::ListKeys<BrickBits>{{bits.data()}, before.data(), 0, level.brick_key.view()});
   level.neighbours = exec::make_buffer<std::int32_t>(ex, octree::kNeighbours * bricks);
   for_each(
       ex, kLabel, level.neighbours.size(),

@@ -80,14 +80,18 @@ struct BrickBits {
   PSK_HD void insert(std::uint64_t brick) const {
     exec::set_bits(words + brick / kWordBits, 1U << (brick % kWordBits));
   }
+  /// The brick of a bit.
+  PSK_HD std::uint64_t brick_at(std::uint64_t place) const { return place; }
 };
 
 /// The bricks around the cells of the finest level that hold points.
+/// @tparam Bits  BrickBits, or what has such members (local_bricks.hpp)
+template <class Bits>
 struct MarkAroundPoints {
   ArrayView<const std::uint64_t> point_keys;
   int depth;
   TouchedBricks bricks_around;
-  BrickBits bits;
+  Bits bits;
   PSK_HD void operator()(std::int64_t i) const {
     if (!StartsCell{point_keys, depth}(i)) return;
     bricks_around(cell_key(point_keys[i], depth), [&](int, std::uint64_t brick) { bits.insert(brick); });
@@ -106,12 +110,13 @@ struct MarkAroundKeys {
 
 /// The bricks around the cells that have children: a brick's key is that of the cell it divides. A byte of the level
 /// below holds the 8 cells of one brick.
+template <class Bits>
 struct MarkAroundBits {
   const std::uint32_t* below;
   std::int32_t bricks_per_axis;
-  BrickBits bits;
-  PSK_HD void operator()(std::int64_t brick) const {
-    const std::uint32_t cells = below[brick >> 2] >> 8 * (brick & 3) & 0xff;
+  Bits bits;
+  PSK_HD void operator()(std::int64_t place) const {
+    const std::uint32_t cells = below[place >> 2] >> 8 * (place & 3) & 0xff;
     if (cells == 0) return;
     std::uint32_t touched = 0;  // by neighbour index
     PSK_UNROLL
@@ -122,7 +127,7 @@ struct MarkAroundBits {
         touched |= 1U << neighbour_index(slot_x(s) * (2 * slot_x(slot) - 1), slot_y(s) * (2 * slot_y(slot) - 1),
                                          slot_z(s) * (2 * slot_z(slot) - 1));
     }
-    const Coordinates c = decode(static_cast<std::uint64_t>(brick));
+    const Coordinates c = decode(bits.brick_at(static_cast<std::uint64_t>(place)));
     for (; touched != 0; touched &= touched - 1) {
       const int j = lowest_bit(touched);
       const Coordinates other{c.x + j / 9 - 1, c.y + j / 3 % 3 - 1, c.z + j % 3 - 1};
@@ -148,15 +153,17 @@ struct PickBorders {
 };
 
 /// Writes the keys of the bits of one level's words.
+template <class Bits>
 struct ListKeys {
-  const std::uint32_t* words;
+  Bits bits;
   const std::int32_t* before;
   std::int32_t first;  // bricks before the level
   ArrayView<std::uint64_t> keys;
   PSK_HD void operator()(std::int64_t word) const {
     std::int32_t at = before[word] - first;
-    for (std::uint32_t rest = words[word]; rest != 0; rest &= rest - 1)
-      keys[at++] = static_cast<std::uint64_t>(word) * kWordBits + static_cast<unsigned>(lowest_bit(rest));
+    for (std::uint32_t rest = bits.words[word]; rest != 0; rest &= rest - 1)
+      keys[at++] =
+          bits.brick_at(static_cast<std::uint64_t>(word) * kWordBits + static_cast<unsigned>(lowest_bit(rest)));
   }
 };
 
@@ -241,12 +248,17 @@ struct ListGhosts {
 /// Words of the bitmap of level d > kCompleteDepth.
 constexpr std::int64_t bitmap_words(int d) { return (std::int64_t{1} << 3 * (d - 1)) / kWordBits; }
 
-/// Deepest level whose bitmap is worth its memory, 12 bytes a word for a while.
-inline int deepest_bitmap(std::int64_t points, int depth) {
+/// Words of bitmaps that are worth their memory, 12 bytes each for a while.
+inline std::int64_t most_words(std::int64_t points) {
   constexpr std::int64_t kMostWordsPerPoint = 16;
   constexpr std::int64_t kSmall = 1 << 16;
+  return std::max(kSmall, kMostWordsPerPoint * points);
+}
+
+/// Deepest level whose bitmap is worth it.
+inline int deepest_bitmap(std::int64_t points, int depth) {
   int d = kCompleteDepth;
-  while (d < depth && d < 13 && bitmap_words(d + 1) <= std::max(kSmall, kMostWordsPerPoint * points)) ++d;
+  while (d < depth && d < 13 && bitmap_words(d + 1) <= most_words(points)) ++d;
   return d;
 }
 
@@ -340,12 +352,13 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
     const TouchedBricks around{1 << (d - 1)};
     const BrickBits own{words_of(d)};
     if (d == depth)
-      for_each(ex, "octree.mark", point_keys.size, MarkAroundPoints{point_keys, depth, around, own});
+      for_each(ex, "octree.mark", point_keys.size, MarkAroundPoints<BrickBits>{point_keys, depth, around, own});
     else if (d == last)
       for_each(ex, "octree.mark", keys[static_cast<std::size_t>(d) + 1].size(),
                MarkAroundKeys{keys[static_cast<std::size_t>(d) + 1].cview(), around, own});
     else
-      for_each(ex, "octree.mark", 4 * bitmap_words(d + 1), MarkAroundBits{words_of(d + 1), 1 << (d - 1), own});
+      for_each(ex, "octree.mark", 4 * bitmap_words(d + 1),
+               MarkAroundBits<BrickBits>{words_of(d + 1), 1 << (d - 1), own});
   }
 
   auto before = exec::make_buffer<std::int32_t>(ex, words + 1);
@@ -362,7 +375,8 @@ void mark_levels(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
     auto& own = keys[static_cast<std::size_t>(d)];
     own = exec::make_buffer<std::uint64_t>(ex, end - begin);
     check_limit(own.size(), d);
-    for_each(ex, "octree.keys", bitmap_words(d), ListKeys{words_of(d), before.data() + pick.at[i], begin, own.view()});
+    for_each(ex, "octree.keys", bitmap_words(d),
+             ListKeys<BrickBits>{{words_of(d)}, before.data() + pick.at[i], begin, own.view()});
     all.level[i] = {words_of(d), own.data(), 1 << (d - 1), begin};
     first_brick.at[i + 1] = end;
   }

@@ -16,6 +16,7 @@
 #include "octree/brick_links.hpp"
 #include "octree/brick_sets.hpp"
 #include "octree/complete_levels.hpp"
+#include "octree/local_bricks.hpp"
 #include "octree/octree_data.hpp"
 #include "octree/placed.hpp"
 #include "octree/tables.hpp"
@@ -530,14 +531,14 @@ OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int
 
 template <exec::Space Exec>
 OctreeData build_octree_below(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
-                              std::span<const ArrayView<const std::uint64_t>> bricks) {
+                              std::span<const ArrayView<const std::uint64_t>> bricks, int finest) {
   const int level = static_cast<int>(bricks.size()) - 1;
   OctreeData tree;
-  tree.depth = depth;
+  tree.depth = finest;
   tree.levels.resize(static_cast<std::size_t>(depth) + 1);
   BrickSets sets;
-  sets.keys.resize(static_cast<std::size_t>(depth) + 2);
-  sort_levels(ex, point_keys, depth, level, sets.keys);
+  sets.keys.resize(static_cast<std::size_t>(finest) + 2);
+  find_local_levels(ex, point_keys, finest, level, sets.keys);
   build_complete_levels(ex, tree, kCompleteDepth);
   for (int d = kCompleteDepth + 1; d <= level; ++d) {
     const ArrayView<const std::uint64_t> from = bricks[static_cast<std::size_t>(d)];
@@ -545,19 +546,27 @@ OctreeData build_octree_below(Exec& ex, ArrayView<const std::uint64_t> point_key
     own = exec::make_buffer<std::uint64_t>(ex, from.size);
     copy(ex, from, own.view());
   }
-  for (int d = kCompleteDepth + 1; d <= depth; ++d) link_levels(ex, tree, d, d, sets);
+  for (int d = kCompleteDepth + 1; d <= finest; ++d) link_levels(ex, tree, d, d, sets);
   assign_points(ex, tree, point_keys);
+  tree.depth = depth;
+  if (finest == depth) return tree;
+  LevelData& last = tree.levels[static_cast<std::size_t>(finest)];  // without children
+  last.child_brick = exec::make_buffer<std::int32_t>(ex, std::int64_t{8} * last.bricks);
+  exec::fill(ex, last.child_brick.view(), std::int32_t{-1});
   return tree;
 }
 
 template <exec::Space Exec>
-exec::Buffer<std::uint64_t> bricks_around(Exec& ex, ArrayView<const std::uint64_t> cells, int depth) {
-  return sort_bricks_around(ex, cells, depth);
+std::vector<exec::Buffer<std::uint64_t>> bricks_of_points(Exec& ex, ArrayView<const std::uint64_t> point_keys,
+                                                          int depth, int last) {
+  BrickKeys keys(static_cast<std::size_t>(depth) + 1);
+  find_local_levels(ex, point_keys, depth, last, keys);
+  return keys;
 }
 
 PSK_INSTANTIATE(sort_points);
 PSK_INSTANTIATE(build_octree);
 PSK_INSTANTIATE(build_octree_below);
-PSK_INSTANTIATE(bricks_around);
+PSK_INSTANTIATE(bricks_of_points);
 
 }  // namespace pointskin::octree

@@ -78,16 +78,20 @@ OctreeData build_octree(Exec& ex, ArrayView<const std::uint64_t> point_keys, int
 /// neighbours. Levels up to K have the same numbers in every octree that is made here from the same bricks.
 /// @param bricks  (K + 1), kCompleteDepth <= K <= depth: the sorted keys of the cell bricks of every level, as build_octree()
 ///                finds them for the whole cloud; those of the complete levels are not read
+/// @param finest  K < finest <= depth, or K = finest = depth: finer levels are empty, as if their cells were none; its own bricks are
+///                those around its points' cells, which in a deeper octree it may have more of
 /// @throws Error over_limit as build_octree()
 /// As build_octree(); two host round trips for every level.
 template <exec::Space Exec>
 OctreeData build_octree_below(Exec& ex, ArrayView<const std::uint64_t> point_keys, int depth,
-                              std::span<const ArrayView<const std::uint64_t>> bricks);
+                              std::span<const ArrayView<const std::uint64_t>> bricks, int finest);
 
-/// Sorted keys of the cell bricks of one level, by cells of that level with points, or with children.
-/// @param cells  shape (n), ascending keys of cells of level `depth`
-/// O(n)
+/// Sorted keys of the cell bricks of levels last + 1..depth that these points need, by level; those of several parts of a cloud are,
+/// together, those of the cloud.
+/// @param point_keys  shape (n), ascending
+/// O(n); two or three host round trips
 template <exec::Space Exec>
-exec::Buffer<std::uint64_t> bricks_around(Exec& ex, ArrayView<const std::uint64_t> cells, int depth);
+std::vector<exec::Buffer<std::uint64_t>> bricks_of_points(Exec& ex, ArrayView<const std::uint64_t> point_keys,
+                                                          int depth, int last);
 
 }  // namespace pointskin::octree

@@ -3,8 +3,9 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
-#include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -14,7 +15,6 @@ namespace pointskin::scale {
 namespace {
 
 constexpr std::int64_t kTrianglesAtOnce = 64 << 10;
-constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Place of an element among those before it that are equal under `what`, in a sorted array.
 template <class What>
@@ -23,28 +23,6 @@ std::int64_t place_among_equals(std::span<const std::uint64_t> keys, std::size_t
                                           [&](std::uint64_t key) { return what(key) < what(keys[at]); });
   return keys.begin() + static_cast<std::ptrdiff_t>(at) - first;
 }
-
-/// Triangles one after another, written many at once.
-class TriangleWriter {
- public:
-  TriangleWriter(const Spool& spool, std::int64_t at) : spool_(spool), at_(at) {}
-
-  void write(const BlockMeshes::Indices& triangle) {
-    some_.push_back(triangle);
-    if (std::ssize(some_) == kTrianglesAtOnce) flush();
-  }
-  void flush() {
-    const std::int64_t bytes = std::ssize(some_) * std::int64_t{sizeof(BlockMeshes::Indices)};
-    spool_.write(at_, some_.data(), bytes);
-    at_ += bytes;
-    some_.clear();
-  }
-
- private:
-  const Spool& spool_;
-  std::int64_t at_;
-  std::vector<BlockMeshes::Indices> some_;
-};
 
 }  // namespace
 
@@ -60,7 +38,7 @@ std::uint64_t BlockMeshes::owner_of_outer(std::uint64_t key) const {
   return octree::encode({std::min(corner.x, last), std::min(corner.y, last), std::min(corner.z, last)});
 }
 
-void BlockMeshes::add(const BlockMesh& from) {
+void BlockMeshes::add(exec::Cpu& ex, const BlockMesh& from) {
   Block block;
   block.first = inner_;
   const auto first = static_cast<std::size_t>(std::ranges::lower_bound(from.keys, from.begin) - from.keys.begin());
@@ -70,8 +48,8 @@ void BlockMeshes::add(const BlockMesh& from) {
   block.spool = std::make_unique<Spool>(setup_.folder, triangles_at(block.count) + block.triangles * kIndexBytes);
   std::vector<std::int32_t> pieces;
   if (setup_.pieces) pieces = add_pieces(from, first, block);
-  write_vertices(from, first, pieces, block);
-  write_triangles(from, first, pieces, block);
+  write_vertices(ex, from, first, pieces, block);
+  write_triangles(ex, from, first, pieces, block);
   inner_ += block.count;
   triangles_ += block.triangles;
   blocks_.push_back(std::move(block));
@@ -135,10 +113,10 @@ std::vector<std::int32_t> BlockMeshes::add_pieces(const BlockMesh& from, std::si
   return std::move(pieces.piece_of);
 }
 
-void BlockMeshes::write_vertices(const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
-                                 const Block& block) const {
+void BlockMeshes::write_vertices(exec::Cpu& ex, const BlockMesh& from, std::size_t first,
+                                 std::span<const std::int32_t> pieces, const Block& block) const {
   const auto write = [&](std::size_t column, const std::byte* values) {
-    block.spool->write(block.count * column_begins_[column],
+    block.spool->write(ex, block.count * column_begins_[column],
                        values + static_cast<std::int64_t>(first) * setup_.columns[column],
                        block.count * setup_.columns[column]);
   };
@@ -146,26 +124,52 @@ void BlockMeshes::write_vertices(const BlockMesh& from, std::size_t first, std::
   if (!pieces.empty()) write(piece_column(), reinterpret_cast<const std::byte*>(pieces.data()));
 }
 
-void BlockMeshes::write_triangles(const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
-                                  Block& block) const {
-  std::vector<std::uint32_t> other_of(from.keys.size(), kNone);  // place in block.others
-  const auto local = [&](std::int32_t vertex) -> std::uint32_t {
-    const auto v = static_cast<std::size_t>(vertex);
-    if (v >= first && v < first + static_cast<std::size_t>(block.count)) return static_cast<std::uint32_t>(v - first);
-    if (other_of[v] == kNone) {
-      other_of[v] = static_cast<std::uint32_t>(block.others.size());
-      block.others.push_back(reference_to(from.keys, v));
-      if (!pieces.empty()) block.pieces_of_others.push_back(pieces[v]);
-    }
-    return static_cast<std::uint32_t>(block.count) + other_of[v];
+void BlockMeshes::write_triangles(exec::Cpu& ex, const BlockMesh& from, std::size_t first,
+                                  std::span<const std::int32_t> pieces, Block& block) const {
+  const auto all = std::ssize(from.triangles);
+  const std::int64_t parts = (all + kTrianglesAtOnce - 1) / kTrianglesAtOnce;
+  const auto for_own = [&](std::int64_t part, const auto& visit) {
+    const std::int64_t end = std::min(all, (part + 1) * kTrianglesAtOnce);
+    for (std::int64_t t = part * kTrianglesAtOnce; t < end; ++t)
+      if (from.owns(from.cells[static_cast<std::size_t>(t)])) visit(from.triangles[static_cast<std::size_t>(t)]);
   };
-  TriangleWriter out(*block.spool, triangles_at(block.count));
-  for (std::size_t t = 0; t < from.triangles.size(); ++t) {
-    if (!from.owns(from.cells[t])) continue;
-    const Triangle& corners = from.triangles[t];
-    out.write({local(corners[0]), local(corners[1]), local(corners[2])});
+  const auto is_own = [&](std::size_t v) { return v - first < static_cast<std::size_t>(block.count); };
+
+  std::vector<std::int64_t> before(static_cast<std::size_t>(parts) + 1, 0);  // own triangles, of each part
+  std::vector<std::uint8_t> is_needed(from.keys.size(), 0);                  // of others
+  ex.run_blocks(parts, [&](std::int64_t part) {
+    std::int64_t count = 0;
+    for_own(part, [&](const Triangle& corners) {
+      ++count;
+      for (const std::int32_t corner : corners) {
+        const auto v = static_cast<std::size_t>(corner);
+        if (!is_own(v)) std::atomic_ref(is_needed[v]).store(1, std::memory_order_relaxed);
+      }
+    });
+    before[static_cast<std::size_t>(part) + 1] = count;
+  });
+  std::partial_sum(before.begin(), before.end(), before.begin());
+
+  std::vector<std::uint32_t> other_of(from.keys.size(), 0);  // place in block.others
+  for (std::size_t v = 0; v < is_needed.size(); ++v) {
+    if (is_needed[v] == 0) continue;
+    other_of[v] = static_cast<std::uint32_t>(block.others.size());
+    block.others.push_back(reference_to(from.keys, v));
+    if (!pieces.empty()) block.pieces_of_others.push_back(pieces[v]);
   }
-  out.flush();
+  const auto local = [&](std::int32_t corner) {
+    const auto v = static_cast<std::size_t>(corner);
+    return static_cast<std::uint32_t>(is_own(v) ? static_cast<std::int64_t>(v - first) : block.count + other_of[v]);
+  };
+  ex.run_blocks(parts, [&](std::int64_t part) {
+    const std::int64_t at = before[static_cast<std::size_t>(part)];
+    std::vector<Indices> own;
+    own.reserve(static_cast<std::size_t>(before[static_cast<std::size_t>(part) + 1] - at));
+    for_own(part, [&](const Triangle& corners) {
+      own.push_back({local(corners[0]), local(corners[1]), local(corners[2])});
+    });
+    block.spool->write(triangles_at(block.count) + at * kIndexBytes, own.data(), std::ssize(own) * kIndexBytes);
+  });
 }
 
 BlockMeshes::Reference BlockMeshes::reference_to(std::span<const std::uint64_t> keys, std::size_t v) const {

@@ -12,6 +12,7 @@
 
 #include <pointskin/vector.hpp>
 
+#include "exec/cpu.hpp"
 #include "scale/block_pieces.hpp"
 #include "scale/ranked_bits.hpp"
 #include "scale/spool.hpp"
@@ -56,8 +57,8 @@ class BlockMeshes {
   /// Blocks come in ascending order of their cells. Every vertex of a triangle that lies in an own cell must be there, and
   /// all vertices of the cells of `cell_level` that hold one; of those on the upper faces of the cube, all of its corner.
   /// @throws Error output_not_written, interrupted
-  /// O(v + t), 4 bytes a vertex of scratch, and 9 with pieces
-  void add(const BlockMesh& block);
+  /// O(v + t), 5 bytes a vertex of scratch, and 10 with pieces
+  void add(exec::Cpu& ex, const BlockMesh& block);
 
   /// When all blocks are there.
   /// @throws Error over_limit if there are more than 2^32 vertices; internal if a vertex that a triangle needs is in no block
@@ -132,9 +133,9 @@ class BlockMeshes {
   /// @returns own triangles
   std::int64_t count_triangles(const BlockMesh& from);
   /// @param pieces  (v) or empty
-  void write_vertices(const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
+  void write_vertices(exec::Cpu& ex, const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
                       const Block& block) const;
-  void write_triangles(const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
+  void write_triangles(exec::Cpu& ex, const BlockMesh& from, std::size_t first, std::span<const std::int32_t> pieces,
                        Block& block) const;
   void place_chunks();
   void read_inner(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) const;

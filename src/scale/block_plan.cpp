@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/format.hpp"
+#include "exec/cpu_primitives.hpp"
 #include "octree/keys.hpp"
 #include "octree/octree_data.hpp"
 #include "scale/block_cuts.hpp"
@@ -16,9 +17,6 @@ namespace {
 
 /// Keys of points have more bits than those of finest cells.
 constexpr int shift_to(int depth) { return 3 * (octree::kPointBits - depth); }
-
-/// Makes ascending keys single.
-void keep_single(std::vector<std::uint64_t>& keys) { keys.erase(std::unique(keys.begin(), keys.end()), keys.end()); }
 
 /// Bytes that are taken for a node of a block's octree and a sample, while it is solved, and for a node of the coarse levels
 /// from the first to the last block (docs/decisions/0057-blocks.md).
@@ -43,7 +41,7 @@ void BlockPlan::for_keys(const Visit& visit) const {
   std::vector<std::uint64_t> keys;
   for (std::int64_t first = 0; first < cloud_.size(); first += std::ssize(keys)) {
     keys.resize(static_cast<std::size_t>(std::min(setup_.part_samples, cloud_.size() - first)));
-    cloud_.read(first, std::ssize(keys), {.keys = keys.data()});
+    cloud_.read(ex_, first, std::ssize(keys), {.keys = keys.data()});
     visit(first, keys);
   }
 }
@@ -52,12 +50,11 @@ void BlockPlan::for_keys(const Visit& visit) const {
 /// need; of those that several parts need, the bricks of the finest level count several times.
 void BlockPlan::find_bricks() {
   std::size_t most = std::size_t{1} << 17;
-  for_keys([&](std::int64_t /*first*/, std::vector<std::uint64_t> keys) {
-    for (std::uint64_t& key : keys) key >>= shift_to(setup_.depth);
-    keep_single(keys);
-    const ArrayView<const std::uint64_t> cells{keys.data(), std::ssize(keys)};
-    const exec::Buffer<std::uint64_t> finest = octree::bricks_around(ex_, cells, setup_.depth);
-    const exec::Buffer<std::uint64_t> above = octree::bricks_around(ex_, finest.cview(), setup_.depth - 1);
+  for_keys([&](std::int64_t /*first*/, const std::vector<std::uint64_t>& keys) {
+    const auto levels = octree::bricks_of_points(ex_, ArrayView<const std::uint64_t>{keys.data(), std::ssize(keys)},
+                                                 setup_.depth, setup_.depth - 2);
+    const exec::Buffer<std::uint64_t>& finest = levels[static_cast<std::size_t>(setup_.depth)];
+    const exec::Buffer<std::uint64_t>& above = levels[static_cast<std::size_t>(setup_.depth) - 1];
     std::int64_t next = 0;
     for (std::int64_t i = 0; i < above.size(); ++i) {
       SplitCell cell{above.data()[i], 0};
@@ -100,16 +97,17 @@ std::vector<ArrayView<const std::uint64_t>> BlockPlan::bricks() const {
 /// Goes up from level depth - 2 to K, and on to the complete levels.
 void BlockPlan::choose_coarse_level() {
   const int first = setup_.depth - 2;
-  bricks_.resize(static_cast<std::size_t>(first) + 1);
   std::vector<std::vector<SplitCell>> split(static_cast<std::size_t>(first) + 1);
   split[static_cast<std::size_t>(first)] = std::move(split_);
   std::vector<std::int64_t> nodes(static_cast<std::size_t>(first) + 1);  // of each level and all above
+  std::vector<std::uint64_t> keys(split[static_cast<std::size_t>(first)].size());
+  std::transform(split[static_cast<std::size_t>(first)].begin(), split[static_cast<std::size_t>(first)].end(),
+                 keys.begin(), [&](const SplitCell& cell) { return cell.key << shift_to(first); });
+  bricks_ = octree::bricks_of_points(ex_, ArrayView<const std::uint64_t>{keys.data(), std::ssize(keys)}, first,
+                                     octree::kCompleteDepth);
   for (int d = first; d > octree::kCompleteDepth; --d) {
     const std::vector<SplitCell>& below = split[static_cast<std::size_t>(d)];
-    std::vector<std::uint64_t> keys(below.size());
-    std::transform(below.begin(), below.end(), keys.begin(), [](const SplitCell& cell) { return cell.key; });
-    auto& bricks = bricks_[static_cast<std::size_t>(d)];
-    bricks = octree::bricks_around(ex_, ArrayView<const std::uint64_t>{keys.data(), std::ssize(keys)}, d);
+    const auto& bricks = bricks_[static_cast<std::size_t>(d)];
     std::vector<SplitCell>& above = split[static_cast<std::size_t>(d) - 1];
     std::size_t next = 0;
     for (std::int64_t i = 0; i < bricks.size(); ++i) {
@@ -163,9 +161,15 @@ void BlockPlan::choose_blocks() {
   for (int blocks = static_cast<int>(std::clamp(whole / left, 1.0, 1e6));;) {
     cut(blocks);
     std::int64_t most = 0;
-    for (const BlockRange& own : blocks_) {
-      most = std::max(most, planned_bytes(own));
-      if (static_cast<double>(most) > left) break;
+    std::vector<std::int64_t> bytes;
+    for (std::size_t first = 0; first < blocks_.size() && static_cast<double>(most) <= left; first += bytes.size()) {
+      constexpr std::size_t kAtOnce = 4;  // most guesses end at the first of them
+      bytes.resize(std::min(kAtOnce, blocks_.size() - first));
+      for_each_long(ex_, "scale.plan", std::ssize(bytes), [&](std::int64_t i) {
+        const auto block = static_cast<std::size_t>(i);
+        bytes[block] = planned_bytes(blocks_[first + block]);
+      });
+      most = std::max(most, *std::max_element(bytes.begin(), bytes.end()));
     }
     if (planned_coarse_bytes_ + most <= setup_.memory_bytes) return;
     if (std::ssize(blocks_) < blocks)
@@ -173,7 +177,7 @@ void BlockPlan::choose_blocks() {
                   fmt::format("blocks of this cloud need {} bytes or more: one that cannot be cut takes {} with its "
                               "ring, and the levels that all share {}",
                               planned_coarse_bytes_ + most, most, planned_coarse_bytes_));
-    blocks = std::max(blocks + 1, static_cast<int>(std::min(4.0, 0.8 * static_cast<double>(most) / left) * blocks));
+    blocks = std::max(blocks + 1, static_cast<int>(std::min(4.0, static_cast<double>(most) / left) * blocks));
   }
 }
 
@@ -181,8 +185,11 @@ void BlockPlan::choose_blocks() {
 std::int64_t BlockPlan::planned_bytes(const BlockRange& own) const {
   const CellSet cells = around_finer_nodes(own);
   std::int64_t nodes = 0;
-  for (const SplitCell& cell : split_)
-    if (cells.contains(octree::decode(cell.key))) nodes += 8 * cell.bricks;
+  if (!cells.empty()) {
+    auto cell = std::ranges::lower_bound(split_, cells.first_key(), {}, &SplitCell::key);
+    for (; cell != split_.end() && cell->key <= cells.last_key(); ++cell)
+      if (cells.contains(octree::decode(cell->key))) nodes += 8 * cell->bricks;
+  }
   std::int64_t samples = 0;
   for (const SampleRun& run : samples_in(cells)) samples += run.end - run.begin;
   return with_ghosts(nodes) * kNodeBytes + samples * kSampleBytes +

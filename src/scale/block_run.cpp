@@ -205,7 +205,7 @@ class BlockRun {
       Samples samples;
       samples.positions = exec::make_buffer<Vec3f>(ex_, end - begin);
       samples.normals = exec::make_buffer<Vec3f>(ex_, end - begin);
-      cloud_.read(begin, end - begin, {samples.positions.data(), samples.normals.data()});
+      cloud_.read(ex_, begin, end - begin, {samples.positions.data(), samples.normals.data()});
       poisson::normalise_normals(ex_, samples.normals.view());
       samples.areas = column(SampleValues::area);
       samples.splat_depths = column(SampleValues::depth);
@@ -241,7 +241,7 @@ class BlockRun {
     std::vector<Vec3f> normals;
     for (const std::int64_t end = first + count; first < end; first += std::ssize(normals)) {
       normals.resize(static_cast<std::size_t>(std::min(options_.part_samples, end - first)));
-      cloud_.read(first, std::ssize(normals), {nullptr, normals.data()});
+      cloud_.read(ex_, first, std::ssize(normals), {nullptr, normals.data()});
       for (const Vec3f& normal : normals) visit(normal);
     }
   }

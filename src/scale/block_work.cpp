@@ -61,15 +61,16 @@ class WorkIn final : public BlockWork {
   void sum_facing(const BlockRange& own) override {
     BlockSamples block = read(own, around_nodes(own), {});
     const int counted = poisson::counted_depth(depth_);
-    const OctreeData tree = octree::build_octree_below(ex_, block.keys.cview(), counted, bricks());
+    const OctreeData tree = build(block, counted);
     const exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, counted, block.samples);
     coarse().add_facing(own, fetched(facing.cview().part(0, coarse().nodes())).view());
   }
 
   void weigh(const BlockRange& own) override {
     BlockSamples block = read(own, around_nodes(own), {});
-    const OctreeData tree = build(block);
-    exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, poisson::counted_depth(depth_), block.samples);
+    const int counted = poisson::counted_depth(depth_);
+    const OctreeData tree = build(block, counted);
+    exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, counted, block.samples);
     give(coarse().facing(), facing);
     const poisson::Weighed weighed =
         poisson::weigh_by_facing(ex_, tree, options_.samples_per_node, all_samples(), facing.cview(), block.samples);
@@ -89,7 +90,7 @@ class WorkIn final : public BlockWork {
                                {SampleValues::examined_depth, &Samples::splat_depths},
                                {SampleValues::trust, &Samples::trust}});
     const exec::Buffer<std::uint64_t> own_keys = part_of(block.keys, block.first_own, block.own);
-    const OctreeData tree = build(block);
+    const OctreeData tree = build(block, depth_ - 1);
     Samples& samples = block.samples;
     const exec::Buffer<std::uint32_t> levels = poisson::even_out_depths(ex_, tree, samples);
     const octree::LevelView pooled = tree.view().levels[depth_ - 1];
@@ -143,7 +144,7 @@ class WorkIn final : public BlockWork {
     const Fetched<float> finer = fetched(u.cview().part(given, u.size() - given));
     const std::int64_t bytes = finer.view().size * std::int64_t{sizeof(float)};
     auto field = std::make_unique<Spool>(options_.folder, bytes);
-    field->write(0, finer.data(), bytes);
+    field->write(shared_.host, 0, finer.data(), bytes);
     return field;
   }
 
@@ -232,10 +233,11 @@ class WorkIn final : public BlockWork {
     BlockSamples block{{}, {}, 0, own.samples.end - own.samples.begin};
     Sent<std::uint64_t> keys(shared_.host, n);
     Sent<Vec3f> positions(shared_.host, n), normals(shared_.host, n);
+    read_runs(runs, [&](std::int64_t first, std::int64_t count, std::int64_t at) {
+      shared_.cloud.read(first, count, {positions.data() + at, normals.data() + at, keys.data() + at});
+    });
     std::int64_t at = 0;
     for (const SampleRun& run : runs) {
-      shared_.cloud.read(run.begin, run.end - run.begin,
-                         {positions.data() + at, normals.data() + at, keys.data() + at});
       if (run.begin <= own.samples.begin && own.samples.begin < run.end)
         block.first_own = at + own.samples.begin - run.begin;
       at += run.end - run.begin;
@@ -252,12 +254,30 @@ class WorkIn final : public BlockWork {
 
   exec::Buffer<float> read_column(SampleValues::Column column, const std::vector<SampleRun>& runs, std::int64_t n) {
     Sent<float> values(shared_.host, n);
-    std::int64_t at = 0;
-    for (const SampleRun& run : runs) {
-      shared_.values.read(column, run.begin, values.view().part(at, run.end - run.begin));
-      at += run.end - run.begin;
-    }
+    read_runs(runs, [&](std::int64_t first, std::int64_t count, std::int64_t at) {
+      shared_.values.read(column, first, values.view().part(at, count));
+    });
     return values.to(ex_);
+  }
+
+  /// Calls read(first sample, count, place among those of all runs) for parts of all runs, on all threads.
+  template <class Read>
+  void read_runs(const std::vector<SampleRun>& runs, const Read& read) {
+    struct Part {
+      std::int64_t first, count, at;
+    };
+    constexpr std::int64_t kMost = 64 << 10;
+    std::vector<Part> parts;
+    std::int64_t at = 0;
+    for (const SampleRun& run : runs)
+      for (std::int64_t first = run.begin; first < run.end; first += parts.back().count) {
+        parts.push_back({first, std::min(kMost, run.end - first), at});
+        at += parts.back().count;
+      }
+    shared_.host.run_blocks(std::ssize(parts), [&](std::int64_t i) {
+      const Part& part = parts[static_cast<std::size_t>(i)];
+      read(part.first, part.count, part.at);
+    });
   }
 
   /// Samples of a block as the solver needs them.
@@ -276,8 +296,11 @@ class WorkIn final : public BlockWork {
     shared_.values.write(column, own.samples.begin, fetched(values.cview().part(block.first_own, block.own)).view());
   }
 
-  OctreeData build(BlockSamples& block) {
-    OctreeData tree = octree::build_octree_below(ex_, block.keys.cview(), depth_, bricks());
+  OctreeData build(BlockSamples& block) { return build(block, depth_); }
+
+  /// Without levels that are finer than `finest`.
+  OctreeData build(BlockSamples& block, int finest) {
+    OctreeData tree = octree::build_octree_below(ex_, block.keys.cview(), depth_, bricks(), finest);
     block.keys.reset();
     shared_.report.most_nodes = std::max(shared_.report.most_nodes, tree.nodes());
     return tree;
@@ -321,7 +344,7 @@ class WorkIn final : public BlockWork {
     const std::int64_t given = coarse().u().size;
     Sent<float> u(shared_.host, tree.nodes);
     std::copy_n(coarse().u().data, given, u.data());
-    field.read(0, u.data() + given, field.size());
+    field.read(shared_.host, 0, u.data() + given, field.size());
     return u.to(ex_);
   }
 
@@ -371,7 +394,8 @@ class WorkIn final : public BlockWork {
     const auto span = [](const auto& values) {
       return std::span(values.data(), static_cast<std::size_t>(values.view().size));
     };
-    meshes.add({own.begin, own.end, span(keys), columns, span(triangles), span(cells), span(segments), span(supports)});
+    meshes.add(shared_.host,
+               {own.begin, own.end, span(keys), columns, span(triangles), span(cells), span(segments), span(supports)});
   }
 
   Exec& ex_;

@@ -40,6 +40,24 @@ CellSet::CellSet(int level, std::span<const std::uint64_t> keys) : level_(level)
     add_column(columns_, cells[i].x, cells[i].y, column);
     column.clear();
   }
+  find_box();
+}
+
+void CellSet::find_box() {
+  if (columns_.columns.empty()) {
+    upper_ = {-1, -1, -1};
+    return;
+  }
+  lower_ = {columns_.columns.front().x, columns_.columns.front().y, columns_.intervals.front().begin};
+  upper_ = {columns_.columns.back().x, lower_.y, lower_.z};
+  for (const Column& column : columns_.columns) {
+    lower_.y = std::min(lower_.y, column.y);
+    upper_.y = std::max(upper_.y, column.y);
+  }
+  for (const Interval& interval : columns_.intervals) {
+    lower_.z = std::min(lower_.z, interval.begin);
+    upper_.z = std::max(upper_.z, interval.end - 1);
+  }
 }
 
 std::int64_t CellSet::size() const {
@@ -49,6 +67,9 @@ std::int64_t CellSet::size() const {
 }
 
 bool CellSet::contains(const octree::Coordinates& cell) const {
+  if (cell.x < lower_.x || cell.y < lower_.y || cell.z < lower_.z || cell.x > upper_.x || cell.y > upper_.y ||
+      cell.z > upper_.z)
+    return false;
   const auto column = std::lower_bound(
       columns_.columns.begin(), columns_.columns.end(), cell,
       [](const Column& a, const octree::Coordinates& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });

@@ -22,6 +22,10 @@ class CellSet {
   [[nodiscard]] int level() const { return level_; }
   /// Number of cells. O(intervals)
   [[nodiscard]] std::int64_t size() const;
+  /// Keys between which those of all cells lie: [first, last].
+  [[nodiscard]] std::uint64_t first_key() const { return octree::encode(lower_); }
+  [[nodiscard]] std::uint64_t last_key() const { return octree::encode(upper_); }
+  [[nodiscard]] bool empty() const { return columns_.columns.empty(); }
   /// O(log columns)
   [[nodiscard]] bool contains(const octree::Coordinates& cell) const;
   /// The Morton keys of all cells, ascending. O(n log n), 8 bytes a cell
@@ -48,7 +52,8 @@ class CellSet {
     [[nodiscard]] std::span<const Interval> of(std::size_t column) const;
   };
 
-  CellSet(Columns columns, int level) : level_(level), columns_(std::move(columns)) {}
+  CellSet(Columns columns, int level) : level_(level), columns_(std::move(columns)) { find_box(); }
+  void find_box();
 
   /// The intervals longer by `reach` at both ends, within the cube.
   static Columns grown_along_z(const Columns& from, int reach, std::int32_t side);
@@ -61,6 +66,7 @@ class CellSet {
 
   int level_;
   Columns columns_;
+  octree::Coordinates lower_{}, upper_{};  ///< of all cells; most that are asked for lie outside
 };
 
 }  // namespace pointskin::scale

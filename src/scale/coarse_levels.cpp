@@ -41,7 +41,7 @@ CoarseLevels::CoarseLevels(exec::Cpu& ex, const BlockPlan& plan, const Setup& se
   auto points = exec::make_buffer<std::uint64_t>(ex_, std::ssize(plan.cells()));
   std::transform(plan.cells().begin(), plan.cells().end(), points.data(),
                  [&](std::uint64_t cell) { return cell << below; });
-  tree_ = octree::build_octree_below(ex_, points.cview(), plan.level(), plan.bricks());
+  tree_ = octree::build_octree_below(ex_, points.cview(), plan.level(), plan.bricks(), plan.level());
 }
 
 template <class T>
@@ -140,7 +140,7 @@ void CoarseLevels::splat_sparse() {
   }
   sparse_ = {};
   set_depths(samples);
-  sparse_tree_ = octree::build_octree_below(ex_, keys.cview(), plan_.level(), plan_.bricks());
+  sparse_tree_ = octree::build_octree_below(ex_, keys.cview(), plan_.level(), plan_.bricks(), plan_.level());
   field_ = poisson::splat_coarse_levels(ex_, sparse_tree_.view(), plan_.depth(), samples.view());
 }
 

@@ -1,5 +1,7 @@
 #include "scale/sample_runs.hpp"
 
+#include <algorithm>
+
 #include <cstddef>
 
 namespace pointskin::scale {
@@ -7,7 +9,9 @@ namespace pointskin::scale {
 std::vector<SampleRun> runs_in(const CellSet& set, std::span<const std::uint64_t> cells,
                                std::span<const std::int64_t> first) {
   std::vector<SampleRun> runs;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  if (set.empty()) return runs;
+  auto i = static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), set.first_key()) - cells.begin());
+  for (; i < cells.size() && cells[i] <= set.last_key(); ++i) {
     if (first[i] == first[i + 1] || !set.contains(octree::decode(cells[i]))) continue;
     if (!runs.empty() && runs.back().end == first[i])
       runs.back().end = first[i + 1];

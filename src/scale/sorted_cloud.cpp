@@ -108,4 +108,14 @@ void SortedCloud::read(std::int64_t first, std::int64_t count, const Arrays& out
   }
 }
 
+void SortedCloud::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, const Arrays& out) const {
+  constexpr std::int64_t kPart = 64 << 10;
+  const auto from = [](auto* array, std::int64_t i) { return array != nullptr ? array + i : nullptr; };
+  ex.run_blocks((count + kPart - 1) / kPart, [&](std::int64_t part) {
+    const std::int64_t done = part * kPart;
+    read(first + done, std::min(kPart, count - done),
+         {from(out.positions, done), from(out.normals, done), from(out.keys, done)});
+  });
+}
+
 }  // namespace pointskin::scale

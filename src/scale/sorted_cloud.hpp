@@ -44,6 +44,8 @@ class SortedCloud {
   /// Points first .. first + count - 1. For many threads at once.
   /// @throws Error output_not_written if the disk fails, interrupted
   void read(std::int64_t first, std::int64_t count, const Arrays& out) const;
+  /// The same by all threads.
+  void read(exec::Cpu& ex, std::int64_t first, std::int64_t count, const Arrays& out) const;
 
  private:
   std::unique_ptr<Spool> spool_;

@@ -20,6 +20,7 @@ namespace pointskin::scale {
 namespace {
 
 constexpr std::int64_t kAtOnce = std::int64_t{64} << 20;  // bytes; cancelling is looked for in between
+constexpr std::int64_t kOfAThread = 4 << 20;
 
 /// A new file without a name, or -1.
 int make_file(const std::string& folder) {
@@ -86,6 +87,20 @@ void Spool::write(std::int64_t at, const void* data, std::int64_t count) const {
 void Spool::read(std::int64_t at, void* data, std::int64_t count) const {
   move_all(count, "temporary data cannot be read", [&](std::int64_t done, std::size_t bytes) {
     return ::pread(file_.get(), static_cast<char*>(data) + done, bytes, at + done);
+  });
+}
+
+void Spool::write(exec::Cpu& ex, std::int64_t at, const void* data, std::int64_t count) const {
+  ex.run_blocks((count + kOfAThread - 1) / kOfAThread, [&](std::int64_t block) {
+    const std::int64_t done = block * kOfAThread;
+    write(at + done, static_cast<const char*>(data) + done, std::min(kOfAThread, count - done));
+  });
+}
+
+void Spool::read(exec::Cpu& ex, std::int64_t at, void* data, std::int64_t count) const {
+  ex.run_blocks((count + kOfAThread - 1) / kOfAThread, [&](std::int64_t block) {
+    const std::int64_t done = block * kOfAThread;
+    read(at + done, static_cast<char*>(data) + done, std::min(kOfAThread, count - done));
   });
 }
 

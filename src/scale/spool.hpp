@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "exec/cpu.hpp"
 #include "io/file_descriptor.hpp"
 
 namespace pointskin::scale {
@@ -25,6 +26,9 @@ class Spool {
   ///         interrupted
   void write(std::int64_t at, const void* data, std::int64_t count) const;
   void read(std::int64_t at, void* data, std::int64_t count) const;
+  /// The same by all threads: one alone copies to and from the system's pages slower than memory does.
+  void write(exec::Cpu& ex, std::int64_t at, const void* data, std::int64_t count) const;
+  void read(exec::Cpu& ex, std::int64_t at, void* data, std::int64_t count) const;
 
  private:
   [[noreturn]] void fail(const char* what, int error) const;

@@ -412,10 +412,61 @@ TYPED_TEST_P(OctreeOn, SortsPointsThatAreNearlyTheSame) {
   }
 }
 
+/// The cell bricks of a level, which come before its ghosts.
+inline std::vector<std::uint64_t> cell_brick_keys(const octree::HostLevel& level) {
+  return {level.brick_key.begin(), level.brick_key.begin() + level.cell_bricks};
+}
+
+TYPED_TEST_P(OctreeOn, FindsTheBricksOfPoints) {
+  auto& ex = this->space();
+  for_each_octree(ex, {6, 8, 9, 11, 13}, [&](const TestCloud&, int depth, const BuiltOctree& built) {
+    for (const int last : {octree::kCompleteDepth, depth - 3, depth - 1}) {
+      if (last < octree::kCompleteDepth) continue;
+      const auto bricks = octree::bricks_of_points(ex, built.sorted.keys.cview(), depth, last);
+      for (int d = last + 1; d <= depth; ++d)
+        EXPECT_EQ(to_host(ex, bricks[static_cast<std::size_t>(d)]),
+                  cell_brick_keys(built.host.levels[static_cast<std::size_t>(d)]))
+            << "level " << d << " below " << last;
+    }
+  });
+}
+
+/// All points, or without the finest level, whose children then nobody sees.
+TYPED_TEST_P(OctreeOn, BuildsLevelsBelowGivenOnes) {
+  auto& ex = this->space();
+  for_each_octree(ex, {8, 10}, [&](const TestCloud&, int depth, const BuiltOctree& built) {
+    const int coarse = depth - 2;
+    std::vector<ArrayView<const std::uint64_t>> given;
+    for (int d = 0; d <= coarse; ++d) {
+      const octree::LevelData& level = built.data.levels[static_cast<std::size_t>(d)];
+      given.push_back(level.brick_key.cview().part(0, level.cell_bricks));
+    }
+    for (const int finest : {depth, depth - 1}) {
+      const octree::OctreeData below = octree::build_octree_below(ex, built.sorted.keys.cview(), depth, given, finest);
+      const octree::HostOctree host = octree::download(ex, below);
+      EXPECT_EQ(below.depth, depth);
+      for (int d = 0; d <= finest; ++d) {
+        const octree::HostLevel& level = host.levels[static_cast<std::size_t>(d)];
+        const octree::HostLevel& whole = built.host.levels[static_cast<std::size_t>(d)];
+        if (d < depth - 1 || finest == depth) {
+          EXPECT_EQ(cell_brick_keys(level), cell_brick_keys(whole)) << "level " << d;
+          EXPECT_EQ(level.point_begin, whole.point_begin) << "level " << d;
+        }
+        EXPECT_LE(level.cell_bricks, whole.cell_bricks) << "level " << d;
+      }
+      if (finest < depth) {
+        EXPECT_EQ(host.levels.back().bricks, 0);
+        const std::vector<std::int32_t>& children = host.levels[static_cast<std::size_t>(finest)].child_brick;
+        EXPECT_TRUE(std::all_of(children.begin(), children.end(), [](std::int32_t child) { return child < 0; }));
+      }
+    }
+  });
+}
+
 REGISTER_TYPED_TEST_SUITE_P(OctreeOn, HoldsTheCellsOfItsDefinition, CountsThePointsOfEveryCell, KeepsEveryInvariant,
                             CountsItsNodesAndCells, LocatesTheDeepestCellOfAPoint, InterpolatesInTheDeepestCellOfAPoint,
                             ReproducesLinearFunctions, ProlongsLinearFunctionsExactly,
                             RestrictsByTheTransposeOfProlongation, SortsPointsByKeyAndTieBreakFromAnyOrder,
-                            SortsPointsThatAreNearlyTheSame);
+                            SortsPointsThatAreNearlyTheSame, FindsTheBricksOfPoints, BuildsLevelsBelowGivenOnes);
 
 }  // namespace pointskin::test

@@ -153,7 +153,8 @@ void add(BlockMeshes& meshes, const Whole& part, std::uint64_t begin, std::uint6
          std::span<const float> density = {}) {
   const std::array columns{reinterpret_cast<const std::byte*>(part.positions.data()),
                            reinterpret_cast<const std::byte*>(part.labels.data())};
-  meshes.add({begin, end, part.keys, columns, part.triangles, part.cells, part.segments, density});
+  exec::Cpu ex(2);
+  meshes.add(ex, {begin, end, part.keys, columns, part.triangles, part.cells, part.segments, density});
 }
 
 /// The same with the density of all vertices of the whole.

@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -121,7 +122,7 @@ void BlockPlan::choose_coarse_level() {
         d <= octree::kCompleteDepth ? (std::int64_t{1} << 3 * d) : 8 * bricks_[static_cast<std::size_t>(d)].size();
     nodes[static_cast<std::size_t>(d)] = own + (d > 0 ? nodes[static_cast<std::size_t>(d) - 1] : 0);
   }
-  level_ = setup_.coarse_level > 0 ? setup_.coarse_level : first;
+  level_ = setup_.coarse_level > 0 ? setup_.coarse_level : std::max(octree::kCompleteDepth, first - 1);
   if (setup_.coarse_level <= 0)
     while (level_ > octree::kCompleteDepth &&
            with_ghosts(nodes[static_cast<std::size_t>(level_)]) * kCoarseBytes > setup_.memory_bytes / kCoarseShare)
@@ -155,10 +156,7 @@ void BlockPlan::find_cells_near_finer() {
 void BlockPlan::choose_blocks() {
   if (setup_.blocks > 0) return cut(setup_.blocks);
   const double left = std::max(1.0, static_cast<double>(setup_.memory_bytes - planned_coarse_bytes_));
-  std::int64_t bricks = 0;
-  for (const SplitCell& cell : split_) bricks += cell.bricks;
-  const double whole = 8 * static_cast<double>(with_ghosts(bricks)) * static_cast<double>(kNodeBytes);
-  for (int blocks = static_cast<int>(std::clamp(whole / left, 1.0, 1e6));;) {
+  for (int blocks = guess_blocks(left);;) {
     cut(blocks);
     std::int64_t most = 0;
     std::vector<std::int64_t> bytes;
@@ -179,6 +177,24 @@ void BlockPlan::choose_blocks() {
                               planned_coarse_bytes_ + most, most, planned_coarse_bytes_));
     blocks = std::max(blocks + 1, static_cast<int>(std::min(4.0, static_cast<double>(most) / left) * blocks));
   }
+}
+
+/// Somewhat too few: for a block that is a square of a surface, with a ring around it.
+int BlockPlan::guess_blocks(double left) const {
+  constexpr double kTooMuch = 1.1;
+  constexpr int kMost = 1'000'000;
+  std::int64_t bricks = 0;
+  for (const SplitCell& cell : split_) bricks += cell.bricks;
+  const double whole = static_cast<double>(8 * with_ghosts(bricks) * kNodeBytes + cloud_.size() * kSampleBytes);
+  const auto coarse = static_cast<double>(planned_coarse_bytes_ / kCoarseBytes * kNodeBytes);
+  const auto bytes_of_one = [&](int blocks) {
+    const double side = std::sqrt(static_cast<double>(split_.size()) / blocks);
+    const double wider = 1 + (blocks > 1 ? 2 * ring() / side : 0);
+    return coarse + std::min(whole, whole / blocks * wider * wider);
+  };
+  int blocks = 1;
+  while (blocks < kMost && bytes_of_one(blocks) > kTooMuch * left && coarse < left) blocks += 1 + blocks / 16;
+  return blocks;
 }
 
 /// Of a block with the cells around it, and what working on it takes.
@@ -241,8 +257,7 @@ CellSet BlockPlan::around_finer_nodes(const BlockRange& own) const {
   const auto at = [&](std::uint64_t finest) {
     return std::lower_bound(near_finer_.begin(), near_finer_.end(), finest >> 3 * finer());
   };
-  return CellSet(level_, std::span(at(own.begin), at(own.end)))
-      .grown(setup_.ring > 0 ? setup_.ring : solve_ring(setup_.iterations, finer()));
+  return CellSet(level_, std::span(at(own.begin), at(own.end))).grown(ring());
 }
 
 }  // namespace pointskin::scale

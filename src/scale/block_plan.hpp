@@ -103,9 +103,11 @@ class BlockPlan {
   void find_cells();
   void find_cells_near_finer();
   void choose_blocks();
+  [[nodiscard]] int guess_blocks(double left) const;
   void cut(int blocks);
   [[nodiscard]] std::int64_t planned_bytes(const BlockRange& own) const;
   [[nodiscard]] int finer() const { return setup_.depth - level_; }
+  [[nodiscard]] int ring() const { return setup_.ring > 0 ? setup_.ring : solve_ring(setup_.iterations, finer()); }
 
   exec::Cpu& ex_;
   const SortedCloud& cloud_;

@@ -59,10 +59,11 @@ ScaleOptions scale_options(const ReconstructArgs& args, const Device& device) {
   return scale;
 }
 
-/// @throws Error as reconstruct_files(); of too little memory, with what the program takes beside it
-FilesReport work_in_blocks(const ReconstructArgs& args, const Options& options, const ScaleOptions& scale) {
+/// Calls work(). @throws Error as it does; of too little memory, with what the program takes beside it
+template <class Work>
+auto within_limit(const ReconstructArgs& args, const ScaleOptions& scale, const Work& work) {
   try {
-    return reconstruct_files(args.inputs, args.output, options, scale);
+    return work();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::over_limit) throw;
     const std::int64_t limit = args.options.max_memory_bytes;
@@ -82,9 +83,10 @@ void warn_about_left_out(const FilesReport& files) {
 }  // namespace
 
 bool may_work_in_blocks(const ReconstructArgs& args) {
-  if (args.options.max_memory_bytes == 0 || args.each || args.dry_run || args.repeat > 0 || args.problems) return false;
+  if (args.options.max_memory_bytes == 0 || args.each || args.repeat > 0 || args.problems) return false;
   if (args.options.depth != Options::kAutomaticDepth && args.options.depth < kShallowest) return false;
-  const bool to_ply = !args.ascii && std::filesystem::path(args.output).extension() == ".ply";
+  const bool to_ply = !args.ascii && (std::filesystem::path(args.output).extension() == ".ply" ||
+                                      (args.dry_run && args.output.empty()));
   if (args.inputs.size() != 1 || !to_ply || args.given.has("--width")) return false;
   return reads_in_parts(args.inputs.front());
 }
@@ -94,6 +96,20 @@ bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, co
   std::error_code error;
   const auto bytes = std::filesystem::file_size(args.inputs.front(), error);
   return !error && static_cast<std::int64_t>(bytes) > bytes_for_work(args, device) / 2;
+}
+
+void print_plan(const ReconstructArgs& args, const Record& record) {
+  refuse_what_is_missing(args, record.options);
+  const ScaleOptions scale = scale_options(args, record.device);
+  const FilesPlan plan = within_limit(args, scale, [&] { return plan_files(args.inputs, record.options, scale); });
+  const std::string text = fmt::format(
+      "points {}, depth {}, device {}: in {} blocks, each with {} cells of level {} around it, {:.2f} times the "
+      "octree's "
+      "nodes in all; {} passes; estimate {}, temporary data {}",
+      plan.points, record.options.depth, record.device.name(), plan.blocks, plan.ring, plan.coarse_level, plan.overlap,
+      plan.passes, bytes_text(plan.memory_bytes), bytes_text(plan.temp_bytes));
+  if (args.output == "-") return print_note(text);  // stdout is kept for PLY
+  write_stdout(text + "\n");
 }
 
 void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, Record& record) {
@@ -110,7 +126,8 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
   };
   const bool was_said = record.points > 0;
   const ScaleOptions scale = scale_options(args, record.device);
-  const FilesReport files = work_in_blocks(args, options, scale);
+  const FilesReport files =
+      within_limit(args, scale, [&] { return reconstruct_files(args.inputs, args.output, options, scale); });
   line.clear();
   file_was_written();
   if (!was_said) warn_about_left_out(files);

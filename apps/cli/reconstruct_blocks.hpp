@@ -14,6 +14,10 @@ bool may_work_in_blocks(const ReconstructArgs& args);
 /// not do what the options ask for.
 bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, const Device& device);
 
+/// Prints what that would take: blocks, memory and temporary data.
+/// @throws Error as reconstruct_in_blocks()
+void print_plan(const ReconstructArgs& args, const Record& record);
+
 /// Reconstructs in blocks and writes the mesh; measures it where a report is asked for.
 /// @param record  of what was tried as a whole, with the number of points if they were read: then it was said which are left out
 /// @throws Error usage if the options ask for what blocks do not do yet; as reconstruct_files()

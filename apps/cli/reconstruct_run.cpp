@@ -233,6 +233,7 @@ void run_within_limit(const ReconstructArgs& args, const Stopwatch& watch,
   if (!may_work_in_blocks(args)) return run_whole(args, watch, reconstructor, record);
   if (run_whole_if_it_fits(args, watch, reconstructor, record)) return;
   reconstructor.reset();
+  if (args.dry_run) return print_plan(args, record);
   reconstruct_in_blocks(args, watch, record);
 }
 

@@ -82,11 +82,24 @@ void BlockPlan::join_split() {
   split_.resize(joined);
 }
 
+/// With level depth - 3, planning is faster, and every block's octree smaller. With depth - 2, rings are half as wide: where memory
+/// holds no block with the wider one, this one may do.
 void BlockPlan::divide() {
-  choose_coarse_level();
-  find_cells_near_finer();
-  find_cells();
-  choose_blocks();
+  const int finest = setup_.depth - 2;
+  const std::vector<SplitCell> cells = split_;
+  for (int deepest = std::max(octree::kCompleteDepth, finest - 1);; ++deepest) {
+    split_ = cells;
+    choose_coarse_level(deepest);
+    find_cells_near_finer();
+    find_cells();
+    const std::int64_t largest = choose_blocks();
+    if (planned_coarse_bytes_ + largest <= setup_.memory_bytes || setup_.blocks > 0) return;
+    if (level_ == deepest && deepest < finest && setup_.coarse_level <= 0) continue;
+    throw Error(ErrorCode::over_limit,
+                fmt::format("blocks of this cloud need {} bytes or more: one that cannot be cut takes {} with its "
+                            "ring, and the levels that all share {}",
+                            planned_coarse_bytes_ + largest, largest, planned_coarse_bytes_));
+  }
 }
 
 std::vector<ArrayView<const std::uint64_t>> BlockPlan::bricks() const {
@@ -96,7 +109,7 @@ std::vector<ArrayView<const std::uint64_t>> BlockPlan::bricks() const {
 }
 
 /// Goes up from level depth - 2 to K, and on to the complete levels.
-void BlockPlan::choose_coarse_level() {
+void BlockPlan::choose_coarse_level(int deepest) {
   const int first = setup_.depth - 2;
   std::vector<std::vector<SplitCell>> split(static_cast<std::size_t>(first) + 1);
   split[static_cast<std::size_t>(first)] = std::move(split_);
@@ -122,7 +135,7 @@ void BlockPlan::choose_coarse_level() {
         d <= octree::kCompleteDepth ? (std::int64_t{1} << 3 * d) : 8 * bricks_[static_cast<std::size_t>(d)].size();
     nodes[static_cast<std::size_t>(d)] = own + (d > 0 ? nodes[static_cast<std::size_t>(d) - 1] : 0);
   }
-  level_ = setup_.coarse_level > 0 ? setup_.coarse_level : std::max(octree::kCompleteDepth, first - 1);
+  level_ = setup_.coarse_level > 0 ? setup_.coarse_level : deepest;
   if (setup_.coarse_level <= 0)
     while (level_ > octree::kCompleteDepth &&
            with_ghosts(nodes[static_cast<std::size_t>(level_)]) * kCoarseBytes > setup_.memory_bytes / kCoarseShare)
@@ -134,6 +147,8 @@ void BlockPlan::choose_coarse_level() {
 }
 
 void BlockPlan::find_cells() {
+  cells_.clear();
+  first_.clear();
   for_keys([&](std::int64_t first, const std::vector<std::uint64_t>& keys) {
     for (std::size_t i = 0; i < keys.size(); ++i) {
       const std::uint64_t cell = keys[i] >> shift_to(level_);
@@ -153,8 +168,12 @@ void BlockPlan::find_cells_near_finer() {
 }
 
 /// As many as are asked for; or the fewest, as far as estimates tell, that memory holds one by one.
-void BlockPlan::choose_blocks() {
-  if (setup_.blocks > 0) return cut(setup_.blocks);
+/// @returns bytes of the largest, more than there are if none of them can be cut
+std::int64_t BlockPlan::choose_blocks() {
+  if (setup_.blocks > 0) {
+    cut(setup_.blocks);
+    return 0;
+  }
   const double left = std::max(1.0, static_cast<double>(setup_.memory_bytes - planned_coarse_bytes_));
   for (int blocks = guess_blocks(left);;) {
     cut(blocks);
@@ -165,16 +184,11 @@ void BlockPlan::choose_blocks() {
       bytes.resize(std::min(kAtOnce, blocks_.size() - first));
       for_each_long(ex_, "scale.plan", std::ssize(bytes), [&](std::int64_t i) {
         const auto block = static_cast<std::size_t>(i);
-        bytes[block] = planned_bytes(blocks_[first + block]);
+        bytes[block] = plan_block(blocks_[first + block]).bytes;
       });
       most = std::max(most, *std::max_element(bytes.begin(), bytes.end()));
     }
-    if (planned_coarse_bytes_ + most <= setup_.memory_bytes) return;
-    if (std::ssize(blocks_) < blocks)
-      throw Error(ErrorCode::over_limit,
-                  fmt::format("blocks of this cloud need {} bytes or more: one that cannot be cut takes {} with its "
-                              "ring, and the levels that all share {}",
-                              planned_coarse_bytes_ + most, most, planned_coarse_bytes_));
+    if (planned_coarse_bytes_ + most <= setup_.memory_bytes || std::ssize(blocks_) < blocks) return most;
     blocks = std::max(blocks + 1, static_cast<int>(std::min(4.0, static_cast<double>(most) / left) * blocks));
   }
 }
@@ -197,8 +211,22 @@ int BlockPlan::guess_blocks(double left) const {
   return blocks;
 }
 
-/// Of a block with the cells around it, and what working on it takes.
-std::int64_t BlockPlan::planned_bytes(const BlockRange& own) const {
+BlockPlan::Sizes BlockPlan::sizes() const {
+  std::vector<Planned> blocks(blocks_.size());
+  for_each_long(ex_, "scale.plan", std::ssize(blocks_), [&](std::int64_t i) {
+    blocks[static_cast<std::size_t>(i)] = plan_block(blocks_[static_cast<std::size_t>(i)]);
+  });
+  Sizes sizes;
+  for (const SplitCell& cell : split_) sizes.own_nodes += 8 * cell.bricks;
+  for (const Planned& block : blocks) {
+    sizes.nodes += block.nodes;
+    sizes.largest_bytes = std::max(sizes.largest_bytes, block.bytes);
+  }
+  sizes.largest_bytes += planned_coarse_bytes_;
+  return sizes;
+}
+
+BlockPlan::Planned BlockPlan::plan_block(const BlockRange& own) const {
   const CellSet cells = around_finer_nodes(own);
   std::int64_t nodes = 0;
   if (!cells.empty()) {
@@ -208,8 +236,8 @@ std::int64_t BlockPlan::planned_bytes(const BlockRange& own) const {
   }
   std::int64_t samples = 0;
   for (const SampleRun& run : samples_in(cells)) samples += run.end - run.begin;
-  return with_ghosts(nodes) * kNodeBytes + samples * kSampleBytes +
-         planned_coarse_bytes_ / kCoarseBytes * kNodeBytes;  // every block's octree has the coarse levels
+  return {nodes, with_ghosts(nodes) * kNodeBytes + samples * kSampleBytes +
+                     planned_coarse_bytes_ / kCoarseBytes * kNodeBytes};  // every octree has the coarse levels
 }
 
 /// At most so many.

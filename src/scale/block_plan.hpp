@@ -86,6 +86,16 @@ class BlockPlan {
   /// the nodes on its upper faces, too.
   [[nodiscard]] CellSet around_finer_nodes(const BlockRange& own) const;
 
+  /// What the blocks have with their rings, as far as it follows from the octree's bricks.
+  struct Sizes {
+    std::int64_t nodes = 0;          ///< of levels below K in all blocks
+    std::int64_t own_nodes = 0;      ///< of the whole octree there
+    std::int64_t largest_bytes = 0;  ///< of the coarse levels and the largest block
+  };
+  /// As planned, once divided. O(blocks cells)
+  [[nodiscard]] Sizes sizes() const;
+  [[nodiscard]] int ring() const { return setup_.ring > 0 ? setup_.ring : solve_ring(setup_.iterations, finer()); }
+
   [[nodiscard]] std::vector<SampleRun> samples_in(const CellSet& set) const { return runs_in(set, cells_, first_); }
 
  private:
@@ -99,15 +109,18 @@ class BlockPlan {
   template <class Visit>
   void for_keys(const Visit& visit) const;
   void join_split();
-  void choose_coarse_level();
+  void choose_coarse_level(int deepest);
   void find_cells();
   void find_cells_near_finer();
-  void choose_blocks();
+  std::int64_t choose_blocks();
   [[nodiscard]] int guess_blocks(double left) const;
   void cut(int blocks);
-  [[nodiscard]] std::int64_t planned_bytes(const BlockRange& own) const;
+  /// Of a block with the cells around it, and what working on it takes.
+  struct Planned {
+    std::int64_t nodes = 0, bytes = 0;
+  };
+  [[nodiscard]] Planned plan_block(const BlockRange& own) const;
   [[nodiscard]] int finer() const { return setup_.depth - level_; }
-  [[nodiscard]] int ring() const { return setup_.ring > 0 ? setup_.ring : solve_ring(setup_.iterations, finer()); }
 
   exec::Cpu& ex_;
   const SortedCloud& cloud_;

@@ -72,8 +72,8 @@ class BlockRun {
         values_(shared.values) {}
 
   BlockMeshes run() {
-    sweep({"bricks", "octree", 0.05}, [&] { plan_.find_bricks(); });
-    sweep({"plan", "octree", 0.08}, [&] {
+    sweep({"bricks", "octree", 0.03}, [&] { plan_.find_bricks(); });
+    sweep({"plan", "octree", 0.04}, [&] {
       plan_.divide();
       shared_.coarse.emplace(ex_, plan_,
                              CoarseLevels::Setup{options_.screening, options_.iterations, options_.boundary,
@@ -83,20 +83,21 @@ class BlockRun {
       report_.coarse_nodes = coarse().nodes();
     });
     const LimitOfPool limit(work_.pool(), options_.holds_to_memory ? options_.memory_bytes : 0);
-    over_blocks({"sums", "splat", 0.1}, [&](const BlockRange& own) { work_.sum_facing(own); });
+    over_blocks({"sums", "splat", 0.06, 0.1}, [&](const BlockRange& own) { work_.sum_facing(own); });
     coarse().finish_facing();
-    over_blocks({"weights", "splat", 0.16}, [&](const BlockRange& own) { work_.weigh(own); });
+    over_blocks({"weights", "splat", 0.1, 0.15}, [&](const BlockRange& own) { work_.weigh(own); });
     coarse().drop_facing();
-    sweep({"examine", "splat", 0.22}, [&] { examine(); });
-    over_blocks({"depths", "splat", 0.23}, [&](const BlockRange& own) { work_.even_out(own); });
+    sweep({"examine", "splat", 0.15}, [&] { examine(); });
+    over_blocks({"depths", "splat", 0.16, 0.19}, [&](const BlockRange& own) { work_.even_out(own); });
     const KeyIndex index(cloud_, plan_.level(), plan_.cells(), plan_.first());
-    sweep({"look at samples", "splat", 0.27}, [&] { look_at_pairs(ex_, cloud_, values_, index, depth_, counts_); });
-    sweep({"coarse field", "splat", 0.27}, [&] { coarse().splat(); });
-    over_blocks({"splat", "splat", 0.27}, [&](const BlockRange& own) { work_.splat(own); });
-    sweep({"coarse solve", "solve", 0.4}, [&] { solve_coarse(); });
+    sweep({"look at samples", "splat", 0.19}, [&] { look_at_pairs(ex_, cloud_, values_, index, depth_, counts_); });
+    sweep({"coarse field", "splat", 0.19}, [&] { coarse().splat(); });
+    over_blocks({"splat", "splat", 0.19, 0.36}, [&](const BlockRange& own) { work_.splat(own); });
+    sweep({"coarse solve", "solve", 0.36}, [&] { solve_coarse(); });
     poisson::ValuesOfSamples values;
     std::vector<std::unique_ptr<Spool>> fields;
-    over_blocks({"solve", "solve", 0.4}, [&](const BlockRange& own) { fields.push_back(work_.solve(own, values)); });
+    over_blocks({"solve", "solve", 0.36, 0.8},
+                [&](const BlockRange& own) { fields.push_back(work_.solve(own, values)); });
     report_.isovalue = mean_of(values, fields);
     BlockMeshes meshes = extract_all(fields);
     sweep({"look at triangles", "extract", 0.98}, [&] {
@@ -131,7 +132,7 @@ class BlockRun {
     const bool may_come_again = picks_by_support() && !looks_for_pieces();
     BlockMeshes meshes = start_meshes(looks_for_pieces());
     std::size_t block = 0;
-    over_blocks({"extract", "extract", 0.8}, [&](const BlockRange& own) {
+    over_blocks({"extract", "extract", 0.8, 0.98}, [&](const BlockRange& own) {
       work_.extract(own, *fields[block], {pieces.least_samples > 0, true}, meshes);
       if (!may_come_again) fields[block].reset();
       ++block;
@@ -140,7 +141,7 @@ class BlockRun {
     if (may_come_again && looks_for_pieces()) {
       meshes = start_meshes(true);
       block = 0;
-      over_blocks({"extract again", "extract", 0.9}, [&](const BlockRange& own) {
+      over_blocks({"extract again", "extract", 0.98, 0.98}, [&](const BlockRange& own) {
         work_.extract(own, *fields[block++], {true, false}, meshes);
       });
     }
@@ -167,11 +168,12 @@ class BlockRun {
   struct Pass {
     const char* name;   ///< in the report
     const char* phase;  ///< as callers of Options::progress know it
-    double fraction;    ///< of the run that is done when it begins
+    double begin;       ///< of the run that is done then
+    double end = 1;     ///< of a pass over blocks
   };
   template <class Work>
   void sweep(const Pass& pass, const Work& work) {
-    announce(options_.progress, pass.phase, pass.fraction);
+    announce(options_.progress, pass.phase, pass.begin);
     ex_.pool()->trim();  // what another pass left, in other sizes, is no use
     work_.pool().trim();
     const auto begin = std::chrono::steady_clock::now();
@@ -182,9 +184,11 @@ class BlockRun {
   template <class Work>
   void over_blocks(const Pass& pass, const Work& work) {
     sweep(pass, [&] {
-      for (const BlockRange& own : plan_.blocks()) {
-        announce(options_.progress, pass.phase, pass.fraction);
-        work(own);
+      const std::vector<BlockRange>& blocks = plan_.blocks();
+      for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const double share = static_cast<double>(i) / static_cast<double>(blocks.size());
+        announce(options_.progress, pass.phase, pass.begin + share * (pass.end - pass.begin));
+        work(blocks[i]);
       }
     });
   }
@@ -288,7 +292,7 @@ class BlockRun {
     const int fraction = exec::fraction_for(values.largest);
     poisson::ValuesOfSamples again;
     std::size_t number = 0;
-    over_blocks({"sum again", "solve", 0.79},
+    over_blocks({"sum again", "solve", 0.8, 0.8},
                 [&](const BlockRange& own) { again.add(work_.sum_values(own, *fields[number++], fraction)); });
     return again.mean(fraction);
   }
@@ -318,6 +322,25 @@ void check_options(const BlockOptions& options) {
 }
 
 }  // namespace
+
+BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options) {
+  constexpr int kPasses = 6;
+  constexpr std::int64_t kMesh = 6;  // bytes a node: 0.26 triangles for a sphere, half as many vertices with normals
+  check_options(options);
+  BlockPlan plan(ex, cloud, plan_setup(cloud.size(), options));
+  plan.find_bricks();
+  plan.divide();
+  const BlockPlan::Sizes sizes = plan.sizes();
+  const std::int64_t values = SampleValues::kColumns * cloud.size() + sizes.nodes;
+  return {static_cast<int>(plan.blocks().size()),
+          plan.level(),
+          plan.ring(),
+          kPasses,
+          sizes.nodes,
+          sizes.own_nodes,
+          sizes.largest_bytes,
+          values * std::int64_t{sizeof(float)} + kMesh * sizes.own_nodes};
+}
 
 BlockMeshes reconstruct_blocks(const MakeBlockWork& make, exec::Cpu& host, const SortedCloud& cloud,
                                const BlockOptions& options, BlockReport& report) {

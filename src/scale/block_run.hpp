@@ -85,6 +85,19 @@ struct BlockReport {
   std::vector<Sweep> sweeps;
 };
 
+/// What reconstruct_blocks() would take.
+struct BlockEstimate {
+  int blocks = 0, coarse_level = 0;
+  int ring = 0;                      ///< cells of the coarse level
+  int passes = 0;                    ///< over all blocks
+  std::int64_t nodes = 0;            ///< of the finer levels, in all blocks with their rings
+  std::int64_t own_nodes = 0;        ///< of the whole octree there
+  std::int64_t memory_bytes = 0;     ///< as planned, of the coarse levels and the largest block
+  std::int64_t temporary_bytes = 0;  ///< beside the sorted cloud
+};
+/// @throws Error as reconstruct_blocks()
+BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options);
+
 /// The surface that detail::fit_field() and detail::extract() make of the same samples, without trimming and attributes of
 /// samples, with the same bits for any number of blocks and any coarse level: positions in the unit cube and, if asked for,
 /// normals and density are the columns.

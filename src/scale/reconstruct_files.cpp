@@ -55,6 +55,22 @@ class FilesRun {
     if (scale_.temp_folder.empty()) scale_.temp_folder = std::filesystem::temp_directory_path().string();
   }
 
+  FilesPlan plan() {
+    place_cloud();
+    const scale::SortedCloud cloud = sorted();
+    const scale::BlockEstimate blocks = scale::estimate_blocks(ex_, cloud, block_options());
+    FilesPlan plan;
+    plan.points = cloud.size();
+    plan.blocks = blocks.blocks;
+    plan.coarse_level = blocks.coarse_level;
+    plan.ring = blocks.ring;
+    plan.overlap = static_cast<double>(blocks.nodes) / static_cast<double>(blocks.own_nodes);
+    plan.passes = blocks.passes;
+    plan.memory_bytes = blocks.memory_bytes;
+    plan.temp_bytes = std::max(2 * cloud.bytes(), cloud.bytes() + blocks.temporary_bytes);
+    return plan;
+  }
+
   FilesReport run(const std::string& output) {
     place_cloud();
     Fit fit = fit_cloud();
@@ -129,11 +145,14 @@ class FilesRun {
     return detail::core_in(report.inliers.box, place_.frame, options_.scale);
   }
 
+  [[nodiscard]] scale::SortedCloud sorted() {
+    return {ex_, *parts_, {scale_.temp_folder, bytes() / kSortShare, place_.frame, place_.left_out.indices, turned_}};
+  }
+
   Fit fit_in_cube() {
     constexpr int kTries = 4;
     scale::BlockOptions blocks = block_options();
-    const scale::SortedCloud cloud(
-        ex_, *parts_, {scale_.temp_folder, bytes() / kSortShare, place_.frame, place_.left_out.indices, turned_});
+    const scale::SortedCloud cloud = sorted();
     points_ = cloud.size();
     for (int tries = 1;; ++tries) {
       Fit fit;
@@ -281,14 +300,27 @@ std::vector<std::string> missing_in_blocks(const Options& options) {
   return missing;
 }
 
-FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output, const Options& options,
-                              const ScaleOptions& scale) {
+namespace {
+
+void check_request(const std::vector<std::string>& inputs, const Options& options) {
   validate(options);
   const std::vector<std::string> missing = missing_in_blocks(options);
   if (!missing.empty())
     throw Error(ErrorCode::usage, fmt::format("in blocks there is not yet: {}", fmt::join(missing, ", ")));
   if (inputs.size() != 1)
     throw Error(ErrorCode::usage, fmt::format("blocks are made of one file, not of {}", inputs.size()));
+}
+
+}  // namespace
+
+FilesPlan plan_files(const std::vector<std::string>& inputs, const Options& options, const ScaleOptions& scale) {
+  check_request(inputs, options);
+  return FilesRun(inputs.front(), options, scale).plan();
+}
+
+FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output, const Options& options,
+                              const ScaleOptions& scale) {
+  check_request(inputs, options);
   return FilesRun(inputs.front(), options, scale).run(output);
 }
 

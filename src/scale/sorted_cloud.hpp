@@ -40,6 +40,8 @@ class SortedCloud {
   SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup);
 
   [[nodiscard]] std::int64_t size() const { return size_; }
+  /// On the disk.
+  [[nodiscard]] std::int64_t bytes() const { return spool_->size(); }
 
   /// Points first .. first + count - 1. For many threads at once.
   /// @throws Error output_not_written if the disk fails, interrupted

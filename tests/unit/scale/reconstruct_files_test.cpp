@@ -126,6 +126,30 @@ TEST_F(ReconstructFiles, WritesTheFileOfTheWhole) {
   EXPECT_EQ(files_.blocks, 1);
 }
 
+TEST_F(ReconstructFiles, IsPlannedAsItIsDone) {
+  start(torus_cloud(60000, 1));
+  write_old_output();
+  for (const std::int64_t megabytes : {50, 150}) {
+    const FilesPlan plan = plan_files({input_}, at_depth(8), scale(megabytes * kMegabyte));
+    EXPECT_EQ(bytes_of_file(output_), "what was there");
+    EXPECT_EQ(temporary_.file_count(), 0U);
+    const FilesReport files =
+        reconstruct_files({input_}, folder_.file("other.ply"), at_depth(8), scale(megabytes * kMegabyte));
+    EXPECT_EQ(plan.points, 60000);
+    EXPECT_EQ(plan.blocks, files.blocks);
+    EXPECT_EQ(plan.coarse_level, files.coarse_level);
+    EXPECT_GE(plan.overlap, 1);
+    EXPECT_LE(plan.memory_bytes, megabytes * kMegabyte);
+    EXPECT_GE(plan.memory_bytes, files.run.device_peak_bytes);
+    EXPECT_GE(plan.temp_bytes, 80 * plan.points);
+  }
+  expect_error(ErrorCode::usage, "trimming", [&] {
+    Options options = at_depth(8);
+    options.trim = 0.1;
+    (void)plan_files({input_}, options, scale(50 * kMegabyte));
+  });
+}
+
 TEST_F(ReconstructFiles, KeepsTheOriginOfCoordinatesThatAreFar) {
   start(translated(sphere_cloud(20000, 2), {3e5F, -2e5F, 0}));
   expect_as_whole(at_depth(7), 40 * kMegabyte);
@@ -193,15 +217,15 @@ TEST_F(ReconstructFiles, ObeysBoundariesAndIsovalues) {
   start(cloud);
   Options options = at_depth(8);
   options.boundary = Boundary::dirichlet;
-  expect_as_whole(options, 60 * kMegabyte);
+  expect_as_whole(options, 50 * kMegabyte);
   options.boundary = Boundary::free;
   options.domain_faces = DomainFaces::open;
-  expect_as_whole(options, 60 * kMegabyte);
+  expect_as_whole(options, 50 * kMegabyte);
   EXPECT_GT(files_.blocks, 1);
   options.isovalue = 0.4;
-  expect_as_whole(options, 60 * kMegabyte);
+  expect_as_whole(options, 50 * kMegabyte);
   options.domain_faces = DomainFaces::closed;
-  expect_as_whole(options, 60 * kMegabyte);
+  expect_as_whole(options, 50 * kMegabyte);
 }
 
 TEST_F(ReconstructFiles, TakesLengthsOfNormalsForConfidence) {

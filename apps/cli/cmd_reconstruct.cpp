@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "file_plan.hpp"
 #include "output_check.hpp"
 #include "reconstruct_args.hpp"
+#include "reconstruct_blocks.hpp"
 #include "reconstruct_each.hpp"
 #include "reconstruct_run.hpp"
 #include "report.hpp"
@@ -23,6 +25,28 @@
 
 namespace pointskin::cli {
 namespace {
+
+/// True if a file may be one of those that --split writes.
+bool is_a_split_output(const std::string& file, const std::string& output) {
+  const std::filesystem::path path(file), named(output);
+  std::error_code error;
+  const std::string begin = named.stem().string() + "_", stem = path.stem().string();
+  const auto folder_of = [&](const std::filesystem::path& of) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(of, error).parent_path(), error);
+  };
+  return path.extension() == named.extension() && stem.starts_with(begin) &&
+         stem.find_first_not_of("0123456789", begin.size()) == std::string::npos && folder_of(path) == folder_of(named);
+}
+
+void check_split(const ReconstructArgs& args) {
+  if (args.options.max_memory_bytes == 0) throw_usage("--split needs --max-memory: blocks are what it holds");
+  if (!args.report.empty()) throw_usage("--split and --report exclude each other: a report measures one mesh");
+  if (!may_work_in_blocks(args))
+    throw_usage("--split needs one binary PLY or NPY file as input, .ply as output, and a depth of at least 7");
+  for (const std::string& input : args.inputs)
+    if (is_a_split_output(input, args.output))
+      throw_usage(fmt::format("{}: --split with -o {} may write this file", input, args.output));
+}
 
 /// Everything that can be found wrong before the input is opened.
 void check_files(const ReconstructArgs& args) {
@@ -35,6 +59,7 @@ void check_files(const ReconstructArgs& args) {
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
   check_problem_pictures(args.pictures);
+  if (args.split) check_split(args);
   if (!args.temp.empty() && !std::filesystem::is_directory(args.temp))
     throw_usage(fmt::format("--temp {}: is no folder", args.temp));
 }

@@ -64,6 +64,7 @@ OptionGroup limits(ReconstructArgs& args) {
                   "what may be taken, e.g. 8G; in blocks where the whole needs more [default no limit]",
                   memory_limit(args.options.max_memory_bytes)),
            option("--temp DIR", "folder for temporary data of work in blocks [default that of the system]", &args.temp),
+           option("--split", "with --max-memory: a file for each block, OUT_0000.ply, OUT_0001.ply, ...", &args.split),
            option("--dry-run", "print the memory estimate and stop", &args.dry_run)}};
 }
 

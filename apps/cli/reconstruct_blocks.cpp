@@ -56,6 +56,7 @@ ScaleOptions scale_options(const ReconstructArgs& args, const Device& device) {
   scale.threads = args.threads;
   scale.shift = parse_shift(args.shift);
   scale.temp_folder = args.temp;
+  scale.split = args.split;
   return scale;
 }
 
@@ -92,6 +93,7 @@ bool may_work_in_blocks(const ReconstructArgs& args) {
 }
 
 bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, const Device& device) {
+  if (args.split) return true;
   if (!missing(args, options).empty()) return false;
   std::error_code error;
   const auto bytes = std::filesystem::file_size(args.inputs.front(), error);
@@ -139,7 +141,8 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
   record.dropped = files.dropped + files.without_normal;
   record.points = files.run.points + files.run.strays + record.dropped;
   record.mesh.triangles = files.triangles;
-  record.shape = fmt::format("{} blocks", files.blocks);
+  record.shape = args.split ? fmt::format("{} blocks in {} files", files.blocks, files.outputs.size())
+                            : fmt::format("{} blocks", files.blocks);
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
   if (args.report.empty()) return;

@@ -212,6 +212,7 @@ void check_each(const ReconstructArgs& args) {
   refuse_with_each(args.dry_run, "--dry-run");
   refuse_with_each(args.given.has("--repeat"), "--repeat");
   refuse_with_each(args.verbose, "--verbose");
+  refuse_with_each(args.split, "--split");
   refuse_with_each(args.options.max_memory_bytes > 0, "--max-memory");
   if (args.output.empty()) throw_usage("no output; name it with -o, {} where the input's name goes");
   needs_name(args.output, "-o");

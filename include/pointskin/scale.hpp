@@ -21,6 +21,7 @@ struct ScaleOptions {
   /// What positions are relative to, as ReadOptions::shift has it; for reconstruct_files().
   std::optional<Vec3d> shift{};
   std::string temp_folder{};  ///< for temporary data, on a disk; empty: that of the system (TMPDIR, or /tmp)
+  bool split = false;         ///< reconstruct_files() writes a file for each block instead of one
   Device device{};  ///< that works on the blocks, for reconstruct_files(); its own number of threads does not count
 };
 
@@ -30,8 +31,9 @@ struct FilesReport {
   std::int64_t dropped = 0;         ///< rows of the file whose coordinates are not finite
   std::int64_t without_normal = 0;  ///< points that were left out because their normal is zero
   std::int64_t vertices = 0, triangles = 0;
-  int blocks = 0;        ///< that the cloud was worked on in, one after another
-  int coarse_level = 0;  ///< levels of the octree up to this one were there as a whole
+  int blocks = 0;                    ///< that the cloud was worked on in, one after another
+  int coarse_level = 0;              ///< levels of the octree up to this one were there as a whole
+  std::vector<std::string> outputs;  ///< that were written
 };
 
 /// Whether the points of a file can be read in parts: a binary PLY or NPY file whose rows are of one length.
@@ -52,7 +54,9 @@ std::vector<std::string> missing_in_blocks(const Options& options);
 /// has the coarse levels, and the samples and the mesh of one block on their way. Disk: 80 bytes a point while they are sorted, then
 /// 60, and 4 a node of the octree, and the mesh. Time: about three times that of the whole in memory.
 /// @param inputs   one binary PLY or NPY file of oriented points
-/// @param output   a PLY file, written whole or not at all
+/// @param output   a PLY file, written whole or not at all; with ScaleOptions::split one for each block that has triangles, named by
+///                 it and a number from 0 on before the extension, such as mesh_0003.ply: each has its own triangles, and the
+///                 vertices that they have, those at borders with the same bytes in several
 /// @param options  whose max_memory_bytes and residuals do not count
 /// @throws Error usage for options that missing_in_blocks() names, or a depth below 7; invalid_input if the file cannot be read in
 ///         parts; over_limit if one cell with its ring does not fit, which says how much would do; device_unavailable,

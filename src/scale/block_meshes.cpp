@@ -259,4 +259,29 @@ void BlockMeshes::read_triangles(std::int64_t first, std::int64_t count, Indices
   }
 }
 
+BlockMeshes::MeshOfBlock BlockMeshes::read_block(std::int64_t number) const {
+  const Block& block = blocks_[static_cast<std::size_t>(number)];
+  const auto own = static_cast<std::size_t>(block.count);
+  MeshOfBlock mesh;
+  mesh.triangles.resize(static_cast<std::size_t>(block.triangles));
+  block.spool->read(triangles_at(block.count), mesh.triangles.data(), block.triangles * kIndexBytes);
+  std::vector<std::int32_t> place_of(own + block.numbers.size(), 0);
+  for (const Triangle& corners : mesh.triangles)
+    for (const std::int32_t v : corners) place_of[static_cast<std::size_t>(v)] = 1;
+  const auto number_in_whole = [&](std::size_t v) {
+    return v < own ? block.first + static_cast<std::int64_t>(v) : std::int64_t{block.numbers[v - own]};
+  };
+  std::vector<std::size_t> used;
+  for (std::size_t v = 0; v < place_of.size(); ++v)
+    if (place_of[v] != 0) used.push_back(v);
+  std::ranges::sort(used, {}, number_in_whole);
+  for (const std::size_t v : used) {
+    place_of[v] = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(number_in_whole(v));
+  }
+  for (Triangle& corners : mesh.triangles)
+    for (std::int32_t& v : corners) v = place_of[static_cast<std::size_t>(v)];
+  return mesh;
+}
+
 }  // namespace pointskin::scale

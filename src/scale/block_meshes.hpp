@@ -75,9 +75,22 @@ class BlockMeshes {
   [[nodiscard]] std::int64_t triangles() const { return triangles_; }
   [[nodiscard]] std::int64_t columns() const { return std::ssize(setup_.columns) - (setup_.pieces ? 1 : 0); }
 
+  [[nodiscard]] std::int64_t column_bytes(std::size_t column) const { return setup_.columns[column]; }
+
   /// Column `column` of vertices first .. first + count - 1; for many threads at once, after finish().
   /// @throws Error output_not_written if the disk fails, interrupted
   void read_column(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) const;
+
+  [[nodiscard]] std::int64_t blocks() const { return std::ssize(blocks_); }
+
+  /// The triangles of one block, and the vertices that they have.
+  struct MeshOfBlock {
+    std::vector<std::int64_t> vertices;  ///< (v) their numbers in the whole, ascending
+    std::vector<Triangle> triangles;     ///< (t) numbers in `vertices`, in the order of the whole
+  };
+  /// After finish(). All of it is in memory: 12 bytes a triangle and 16 a vertex.
+  /// @throws Error output_not_written if the disk fails, interrupted
+  [[nodiscard]] MeshOfBlock read_block(std::int64_t block) const;
 
   /// Triangles first .. first + count - 1; for many threads at once, after finish().
   /// @throws Error output_not_written if the disk fails, interrupted

@@ -86,7 +86,13 @@ class FilesRun {
     }
     warn(fit);
     announce(options_.progress, "write", 0.99);
-    scale::write_ply(ex_, *fit.meshes, {options_.normals, options_.density}, place_.frame, parts_->origin(), output);
+    const scale::VertexColumns columns{options_.normals, options_.density};
+    if (scale_.split) {
+      result_.outputs = scale::write_split_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
+    } else {
+      scale::write_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
+      result_.outputs = {output};
+    }
     report(fit);
     return std::move(result_);
   }

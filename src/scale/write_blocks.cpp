@@ -1,8 +1,12 @@
 #include "scale/write_blocks.hpp"
 
 #include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <system_error>
 #include <vector>
 
+#include "core/format.hpp"
 #include "io/output.hpp"
 #include "io/writers.hpp"
 
@@ -11,40 +15,100 @@ namespace {
 
 static_assert(sizeof(Triangle) == sizeof(BlockMeshes::Indices));
 
+/// Reads values of a column, for vertices first..first + count - 1 of a file.
+using ReadColumn = std::function<void(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out)>;
+
 template <class T>
-void read_values(const BlockMeshes& meshes, std::size_t column, std::size_t first, std::size_t last,
+void read_values(const ReadColumn& read, std::size_t column, std::size_t first, std::size_t last,
                  std::vector<T>& part) {
   part.resize(last - first);
-  meshes.read_column(column, static_cast<std::int64_t>(first), std::ssize(part),
-                     reinterpret_cast<std::byte*>(part.data()));
+  read(column, static_cast<std::int64_t>(first), std::ssize(part), reinterpret_cast<std::byte*>(part.data()));
+}
+
+/// The vertices of a file.
+io::MeshParts vertex_parts(const ReadColumn& read, const VertexColumns& columns, const octree::Frame& frame,
+                           const Vec3d& origin) {
+  io::MeshParts parts;
+  parts.origin = origin;
+  parts.positions = [=](std::size_t first, std::size_t last, std::vector<Vec3f>& part) {
+    read_values(read, 0, first, last, part);
+    for (Vec3f& position : part) position = frame.to_world(position);
+  };
+  if (columns.normals)
+    parts.normals = [=](std::size_t first, std::size_t last, std::vector<Vec3f>& part) {
+      read_values(read, 1, first, last, part);
+    };
+  if (columns.density)
+    parts.attributes.push_back(
+        {"density", AttributeType::float32, [=](std::size_t first, std::size_t last) -> AttributeValues {
+           std::vector<float> part;
+           read_values(read, columns.normals ? 2 : 1, first, last, part);
+           return part;
+         }});
+  return parts;
+}
+
+/// Of vertices by their numbers, those that follow each other at once.
+ReadColumn of_vertices(const BlockMeshes& meshes, const std::vector<std::int64_t>& vertices) {
+  return [&](std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) {
+    const auto number = [&](std::int64_t i) { return vertices[static_cast<std::size_t>(i)]; };
+    const std::int64_t last = first + count;
+    for (std::int64_t begin = first, end = first; begin < last; begin = end) {
+      while (end < last && number(end) - number(begin) == end - begin) ++end;
+      meshes.read_column(column, number(begin), end - begin, out);
+      out += (end - begin) * meshes.column_bytes(column);
+    }
+  };
 }
 
 }  // namespace
 
 void write_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& columns, const octree::Frame& frame,
                const Vec3d& origin, const std::string& path) {
-  io::MeshParts parts{origin, meshes.vertices(), meshes.triangles()};
-  parts.positions = [&](std::size_t first, std::size_t last, std::vector<Vec3f>& part) {
-    read_values(meshes, 0, first, last, part);
-    for (Vec3f& position : part) position = frame.to_world(position);
+  const ReadColumn read = [&](std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) {
+    meshes.read_column(column, first, count, out);
   };
-  if (columns.normals)
-    parts.normals = [&](std::size_t first, std::size_t last, std::vector<Vec3f>& part) {
-      read_values(meshes, 1, first, last, part);
-    };
-  if (columns.density)
-    parts.attributes.push_back(
-        {"density", AttributeType::float32, [&](std::size_t first, std::size_t last) -> AttributeValues {
-           std::vector<float> part;
-           read_values(meshes, columns.normals ? 2 : 1, first, last, part);
-           return part;
-         }});
+  io::MeshParts parts = vertex_parts(read, columns, frame, origin);
+  parts.vertices = meshes.vertices();
+  parts.triangles = meshes.triangles();
   parts.corners = [&](std::size_t first, std::size_t last, std::vector<Triangle>& part) {
     part.resize(last - first);
     meshes.read_triangles(static_cast<std::int64_t>(first), std::ssize(part),
                           reinterpret_cast<BlockMeshes::Indices*>(part.data()));
   };
   io::write_blocks(ex, path, io::format_ply_parts(parts, false));
+}
+
+std::string split_name(const std::string& path, std::int64_t number) {
+  std::filesystem::path name(path);
+  return name.replace_filename(fmt::format("{}_{:04}{}", name.stem().string(), number, name.extension().string()))
+      .string();
+}
+
+std::vector<std::string> write_split_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& columns,
+                                         const octree::Frame& frame, const Vec3d& origin, const std::string& path) {
+  std::vector<std::string> written;
+  try {
+    for (std::int64_t block = 0; block < meshes.blocks(); ++block) {
+      const BlockMeshes::MeshOfBlock mesh = meshes.read_block(block);
+      if (mesh.triangles.empty()) continue;
+      io::MeshParts parts = vertex_parts(of_vertices(meshes, mesh.vertices), columns, frame, origin);
+      parts.vertices = std::ssize(mesh.vertices);
+      parts.triangles = std::ssize(mesh.triangles);
+      parts.corners = [&](std::size_t first, std::size_t last, std::vector<Triangle>& part) {
+        part.assign(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first),
+                    mesh.triangles.begin() + static_cast<std::ptrdiff_t>(last));
+      };
+      const std::string name = split_name(path, std::ssize(written));
+      io::write_blocks(ex, name, io::format_ply_parts(parts, false));
+      written.push_back(name);
+    }
+  } catch (...) {
+    std::error_code ignored;
+    for (const std::string& name : written) std::filesystem::remove(name, ignored);
+    throw;
+  }
+  return written;
 }
 
 }  // namespace pointskin::scale

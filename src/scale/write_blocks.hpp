@@ -1,7 +1,9 @@
 // The mesh of blocks, as a file.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <pointskin/vector.hpp>
 
@@ -24,5 +26,17 @@ struct VertexColumns {
 ///         was
 void write_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& columns, const octree::Frame& frame,
                const Vec3d& origin, const std::string& path);
+
+/// Writes a file for each block that has triangles: `path` with _0000, _0001, ... before its extension. Each has its own triangles, in
+/// the order of the whole, and the vertices that they have: those at borders are in several files, with the same bytes. What was
+/// written is removed if a later one cannot be.
+/// @returns the names
+/// @throws Error as write_ply()
+/// One block's triangles, and 16 bytes for each of its vertices, are in memory.
+std::vector<std::string> write_split_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& columns,
+                                         const octree::Frame& frame, const Vec3d& origin, const std::string& path);
+
+/// The name of file `number` there.
+std::string split_name(const std::string& path, std::int64_t number);
 
 }  // namespace pointskin::scale

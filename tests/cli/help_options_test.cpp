@@ -222,6 +222,7 @@ Trials reconstruct_trials() {
                    {"--estimate-normals=iterate", "--random-start", "--report", "r.json"}}},
                  {"--max-memory", {{"--max-memory", "1"}, {}, true}},
                  {"--temp", {{"--temp", "nowhere"}, {}, true}},
+                 {"--split", {{"--split"}, {}, true}},
                  {"--dry-run", {{"--dry-run"}}},
                  {"--repeat", {{"--repeat", "2", "--report", "r.json"}, {"--report", "r.json"}}},
                  {"--verbose", {{"-v", "--report", "r.json"}, {"-q", "--report", "r.json"}}},

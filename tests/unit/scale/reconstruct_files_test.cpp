@@ -7,12 +7,16 @@
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/scale.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -148,6 +152,54 @@ TEST_F(ReconstructFiles, IsPlannedAsItIsDone) {
     options.trim = 0.1;
     (void)plan_files({input_}, options, scale(50 * kMegabyte));
   });
+}
+
+/// What several files have is what one has: put together, and vertices that are the same made one again.
+TEST_F(ReconstructFiles, WritesAFileForEachBlock) {
+  start(torus_cloud(60000, 1));
+  ScaleOptions in_files = scale(50 * kMegabyte);
+  in_files.split = true;
+  Options options = at_depth(8);
+  options.density = true;
+  files_ = reconstruct_files({input_}, output_, options, in_files);
+  EXPECT_FALSE(std::filesystem::exists(output_));
+  EXPECT_GT(files_.outputs.size(), 1U);
+  EXPECT_LE(std::ssize(files_.outputs), files_.blocks);
+  using Corner = std::array<float, 7>;  // position, normal, density
+  const auto corners_of = [](const Mesh& mesh, std::multiset<std::array<Corner, 3>>& all) {
+    const std::vector<float>& density = mesh.attributes.at(0).values.as<float>();
+    const auto corner = [&](std::int32_t vertex) {
+      const auto v = static_cast<std::size_t>(vertex);
+      const Vec3f &p = mesh.vertices[v], &n = mesh.normals[v];
+      return Corner{p.x, p.y, p.z, n.x, n.y, n.z, density[v]};
+    };
+    for (const Triangle& t : mesh.triangles)
+      all.insert(std::array<Corner, 3>{corner(t[0]), corner(t[1]), corner(t[2])});
+  };
+  std::multiset<std::array<Corner, 3>> parts, whole;
+  for (std::size_t i = 0; i < files_.outputs.size(); ++i) {
+    EXPECT_EQ(files_.outputs[i], folder_.file("blocks_000" + std::to_string(i) + ".ply"));
+    const Mesh mesh = read_mesh(files_.outputs[i]);
+    std::vector<bool> is_used(mesh.vertices.size(), false);
+    for (const Triangle& t : mesh.triangles)
+      for (const std::int32_t v : t) is_used[static_cast<std::size_t>(v)] = true;
+    EXPECT_TRUE(std::all_of(is_used.begin(), is_used.end(), [](bool used) { return used; })) << i;
+    corners_of(mesh, parts);
+  }
+  corners_of(Reconstructor(Device::cpu(2)).reconstruct(read_cloud(input_), options), whole);
+  EXPECT_TRUE(parts == whole);
+  EXPECT_EQ(std::ssize(parts), files_.triangles);
+}
+
+/// A folder in the way of the second file.
+TEST_F(ReconstructFiles, LeavesNoFilesWhereOneCannotBeWritten) {
+  start(torus_cloud(60000, 1));
+  ScaleOptions in_files = scale(50 * kMegabyte);
+  in_files.split = true;
+  std::filesystem::create_directory(folder_.file("blocks_0001.ply"));
+  expect_error(ErrorCode::output_not_written, "blocks_0001.ply",
+               [&] { (void)reconstruct_files({input_}, output_, at_depth(8), in_files); });
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("blocks_0000.ply")));
 }
 
 TEST_F(ReconstructFiles, KeepsTheOriginOfCoordinatesThatAreFar) {

@@ -4,8 +4,8 @@
     bench/out_of_core.py CLOUD.ply:DEPTH ... --bin build/bin [--limits 1G,2G] [--device cpu] [--temp DIR] [--no-whole]
 
 Reconstructs each cloud in memory, unless --no-whole, and within each limit, and prints a row for each run: blocks, the peak of the
-process (of a GPU the buffers there), what was read and written through the system, temporary data, and the wall clock. Numbers in
-brackets are the estimates. All meshes of a cloud must have one sha256: else the exit code is 1; 2 on usage.
+process (of a GPU the buffers there), what was read and written by calls of the system, what the disk held at most with the mesh, and
+the wall clock. Numbers in brackets are the estimates. All meshes of a cloud must have one sha256: else the exit code is 1; 2 on usage.
 """
 import argparse
 import hashlib
@@ -19,7 +19,7 @@ import tempfile
 import threading
 import time
 
-COLUMNS = ("points", "depth", "limit", "blocks", "peak", "read", "written", "temporary", "time")
+COLUMNS = ("points", "depth", "limit", "blocks", "peak", "read", "written", "disk", "time")
 
 
 def sha256(path):
@@ -76,7 +76,7 @@ def run(program, cloud, depth, device, temp, folder, limit):
     if status != 0:
         sys.exit(f"{' '.join(map(str, words))}: exit code {os.waitstatus_to_exitcode(status)}")
     row = {"seconds": seconds, "peak": 1024 * usage.ru_maxrss, "read": watch.read, "written": watch.written,
-           "temporary": watch.most - watch.before}
+           "disk": watch.most - watch.before, "mesh": mesh.stat().st_size}
     if device != "cpu":  # the limit is for the GPU; a report costs time
         subprocess.run([*words, "--report", report], check=True)
         row["peak"] = json.loads(report.read_text())["memory"]["device_peak_bytes"]
@@ -114,10 +114,10 @@ def main():
                 plan = planned(program, cloud, depth, args.device, args.temp, limit) if limit else None
                 row, sha = run(program, cloud, depth, args.device, args.temp, pathlib.Path(folder), limit)
             shas.add(sha)
-            estimates = [f" ({gib(size)})" for size in plan[1:]] if plan else ["", ""]
+            estimates = [f" ({gib(size)})" for size in (plan[1], plan[2] + row["mesh"])] if plan else ["", ""]
             print(f"| {points.group(1).decode() if points else '?'} | {depth} | {limit or 'none'} | {plan[0] if plan else 'whole'} "
                   f"| {gib(row['peak'])}{estimates[0]} | {gib(row['read'])} | {gib(row['written'])} "
-                  f"| {gib(row['temporary'])}{estimates[1]} | {row['seconds']:.1f} s |", flush=True)
+                  f"| {gib(row['disk'])}{estimates[1]} | {row['seconds']:.1f} s |", flush=True)
         print(f"\n{cloud}: sha256 {', '.join(sorted(sha[:12] for sha in shas))}", flush=True)
         all_same = all_same and len(shas) == 1
     return 0 if all_same else 1

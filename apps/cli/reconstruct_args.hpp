@@ -22,7 +22,7 @@ struct ReconstructArgs : FitArgs, DeviceArgs {
   std::string report;                     ///< empty: none
   std::string shift = "auto";
   bool split = false;  ///< a file for each block
-  std::string temp;  ///< for temporary data; empty: that of the system
+  std::string temp;    ///< for temporary data; empty: that of the system
   NormalArgs normals;
   double width_world = 0;  ///< > 0: chooses the depth
   int repeat = 0;

@@ -80,8 +80,8 @@ COMMANDS = {
     "reconstruct-each": command(
         "reconstruct @a.ply @b.ply @c.ply @d.ply --each -o out_{}.ply --report r_{}.json --depth 4 --threads 2",
         "out_a.ply out_b.ply out_c.ply out_d.ply", "r_a.json r_b.json r_c.json r_d.json", at_once=2),
-    "reconstruct-blocks": command(  # 4 blocks
-        "reconstruct @larger.ply -o out.ply --report report.json --depth 8 --iterations 1 --max-memory 44M --temp . --threads 2",
+    "reconstruct-blocks": command(  # some 8 blocks
+        "reconstruct @larger.ply -o out.ply --report report.json --depth 8 --iterations 1 --max-memory 40M --temp . --threads 2",
         "out.ply", "report.json", slow=True),
     "orient": command("orient @bare.xyz -o out.ply --threads 2", "out.ply"),
     "boolean": command("boolean @a.ply @b.ply --op union -o out.obj --cloud points.ply --depth 4 --threads 2", "out.obj points.ply"),

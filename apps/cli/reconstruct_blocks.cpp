@@ -105,11 +105,11 @@ void print_plan(const ReconstructArgs& args, const Record& record) {
   const ScaleOptions scale = scale_options(args, record.device);
   const FilesPlan plan = within_limit(args, scale, [&] { return plan_files(args.inputs, record.options, scale); });
   const std::string text = fmt::format(
-      "points {}, depth {}, device {}: in {} blocks, each with {} cells of level {} around it, {:.2f} times the "
+      "points {}, depth {}, device {}: in {}, each with {} cells of level {} around it, {:.2f} times the "
       "octree's "
       "nodes in all; {} passes; estimate {}, temporary data {}",
-      plan.points, record.options.depth, record.device.name(), plan.blocks, plan.ring, plan.coarse_level, plan.overlap,
-      plan.passes, bytes_text(plan.memory_bytes), bytes_text(plan.temp_bytes));
+      plan.points, record.options.depth, record.device.name(), counted(plan.blocks, "block"), plan.ring,
+      plan.coarse_level, plan.overlap, plan.passes, bytes_text(plan.memory_bytes), bytes_text(plan.temp_bytes));
   if (args.output == "-") return print_note(text);  // stdout is kept for PLY
   write_stdout(text + "\n");
 }
@@ -141,13 +141,13 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
   record.dropped = files.dropped + files.without_normal;
   record.points = files.run.points + files.run.strays + record.dropped;
   record.mesh.triangles = files.triangles;
-  record.shape = args.split ? fmt::format("{} blocks in {} files", files.blocks, files.outputs.size())
-                            : fmt::format("{} blocks", files.blocks);
+  record.shape = counted(files.blocks, "block");
+  if (args.split) record.shape += " in " + counted(std::ssize(files.outputs), "file");
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
   if (args.report.empty()) return;
   record.mesh = measure_file(args.output, {.max_memory_bytes = scale.max_memory_bytes, .threads = args.threads});
-  record.shape = fmt::format("{}; {} blocks", shape_words(record.mesh), files.blocks);
+  record.shape = fmt::format("{}; {}", shape_words(record.mesh), counted(files.blocks, "block"));
 }
 
 }  // namespace pointskin::cli

@@ -114,6 +114,37 @@ TEST_F(ProcessMemory, StaysBelowTheLimitWhateverIsAllowed) {
   }
 }
 
+TEST_F(ProcessMemory, OfBlocksIsSaidByTheDryRun) {
+  const std::string cloud = write(sphere_cloud(200'000, 7), "cloud.ply");
+  const std::int64_t needed = peak(cloud, "8");
+  std::filesystem::remove(output_);
+  const std::string limit = std::to_string(needed * 4 / 5);
+  const Result said = run(cloud, "8", {"--max-memory", limit, "--dry-run"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("blocks, each with"), std::string::npos) << said.out;
+  EXPECT_FALSE(std::filesystem::exists(output_));
+  const Result refused = run(cloud, "8", {"--max-memory", limit, "--dry-run", "--weakness"});
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_EQ(run(cloud, "8", {"--max-memory", "20M", "--dry-run"}).exit_code, 6);
+}
+
+TEST_F(ProcessMemory, IsWhatSplitMakesBlocksFor) {
+  const std::string cloud = write(sphere_cloud(20'000, 8), "cloud.ply");
+  const std::string first = folder_ / "mesh_0000.ply";
+  const Result result = run(cloud, "7", {"--max-memory", "2G", "--split"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("1 block in 1 file"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(output_));
+  ASSERT_TRUE(std::filesystem::exists(first));
+  EXPECT_EQ(run(cloud, "7", {}).exit_code, 0);
+  EXPECT_EQ(read_mesh(first).triangles.size(), read_mesh(output_).triangles.size());  // the whole, as it fits
+  expect_error(run(cloud, "7", {"--split"}), 2, "--split needs --max-memory");
+  expect_error(run(cloud, "5", {"--max-memory", "2G", "--split"}), 2, "a depth of at least 7");
+  expect_error(run(cloud, "7", {"--max-memory", "2G", "--split", "--report", folder_ / "r.json"}), 2, "--report");
+  const std::string alike = write(sphere_cloud(2'000, 9), "mesh_0003.ply");
+  expect_error(run(alike, "7", {"--max-memory", "2G", "--split"}), 2, "may write this file");
+}
+
 TEST_F(ProcessMemory, TooSmallForAWholeIsNoReasonToIgnoreWhatBlocksCannotDo) {
   const std::string cloud = write(sphere_cloud(400'000, 6), "cloud.ply");  // too large to be read within the limit
   write_mesh(folder_ / "box.ply", box_mesh({-2, -2, -2}, {2, 2, 2}));

@@ -34,7 +34,7 @@ bool is_a_split_output(const std::string& file, const std::string& output) {
   const auto folder_of = [&](const std::filesystem::path& of) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(of, error).parent_path(), error);
   };
-  return path.extension() == named.extension() && stem.starts_with(begin) &&
+  return path.extension() == named.extension() && stem.starts_with(begin) && stem.size() > begin.size() &&
          stem.find_first_not_of("0123456789", begin.size()) == std::string::npos && folder_of(path) == folder_of(named);
 }
 

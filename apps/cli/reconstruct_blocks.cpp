@@ -105,9 +105,8 @@ void print_plan(const ReconstructArgs& args, const Record& record) {
   const ScaleOptions scale = scale_options(args, record.device);
   const FilesPlan plan = within_limit(args, scale, [&] { return plan_files(args.inputs, record.options, scale); });
   const std::string text = fmt::format(
-      "points {}, depth {}, device {}: in {}, each with {} cells of level {} around it, {:.2f} times the "
-      "octree's "
-      "nodes in all; {} passes; estimate {}, temporary data {}",
+      "points {}, depth {}, device {}: in {}, each with {} cells of level {} around it, "
+      "{:.2f} times the octree's nodes in all; {} passes; estimate {}, temporary data {}",
       plan.points, record.options.depth, record.device.name(), counted(plan.blocks, "block"), plan.ring,
       plan.coarse_level, plan.overlap, plan.passes, bytes_text(plan.memory_bytes), bytes_text(plan.temp_bytes));
   if (args.output == "-") return print_note(text);  // stdout is kept for PLY

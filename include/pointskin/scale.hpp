@@ -56,7 +56,7 @@ std::vector<std::string> missing_in_blocks(const Options& options);
 /// @param inputs   one binary PLY or NPY file of oriented points
 /// @param output   a PLY file, written whole or not at all; with ScaleOptions::split one for each block that has triangles, named by
 ///                 it and a number from 0 on before the extension, such as mesh_0003.ply: each has its own triangles, and the
-///                 vertices that they have, those at borders with the same bytes in several
+///                 vertices that they have, those at borders with the same bytes in several; all appear when all are written
 /// @param options  whose max_memory_bytes and residuals do not count
 /// @throws Error usage for options that missing_in_blocks() names, or a depth below 7; invalid_input if the file cannot be read in
 ///         parts; over_limit if one cell with its ring does not fit, which says how much would do; device_unavailable,

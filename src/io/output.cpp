@@ -113,65 +113,6 @@ class MakingFile {
   MakingFile& operator=(const MakingFile&) = delete;
 };
 
-/// A new file next to `target` that vanishes unless it is renamed.
-class TemporaryFile {
- public:
-  TemporaryFile(const std::string& path, const std::string& target) : path_(path), fd_(create(target)) {}
-  ~TemporaryFile() {
-    if (!name_.empty()) ::unlink(name_.c_str());
-    if (place_ != nullptr) place_->store(nullptr);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  [[nodiscard]] int fd() const { return fd_.get(); }
-
-  /// Takes over owner and permissions. Changing the owner may be forbidden and is then left out.
-  void inherit(const struct stat& old) const {
-    const bool same_owner = old.st_uid == ::geteuid() && old.st_gid == ::getegid();
-    if (!same_owner && ::fchown(fd(), old.st_uid, old.st_gid) != 0) errno = 0;
-    if (::fchmod(fd(), old.st_mode & 0777) != 0) fail_to_write(path_, errno);
-  }
-
-  /// Brings the bytes to the disk before the name: a crash in between must not leave an empty file.
-  void rename_to(const std::string& target) {
-    while (::fsync(fd()) != 0 && errno != EINVAL)  // EINVAL: nothing to synchronise
-      if (errno != EINTR) fail_to_write(path_, errno);
-    exec::throw_if_cancelled();
-    if (fd_.close() != 0 && errno != EINTR) fail_to_write(path_, errno);
-    if (::rename(name_.c_str(), target.c_str()) != 0) fail_to_write(path_, errno);
-    if (place_ != nullptr) place_->store(nullptr);
-    place_ = nullptr;
-    name_.clear();
-  }
-
- private:
-  int create(const std::string& target) {
-    constexpr int kTries = 100;
-    constexpr std::size_t kLongestBase = 180;  // leaves room for the rest within the 255 bytes of a file name
-    const std::string folder = folder_of(target);
-    const std::string base = target.substr(folder.size(), kLongestBase);
-    const MakingFile making;
-    if (process_ends) fail_to_write(path_, ECANCELED);
-    for (int i = 0; i < kTries; ++i) {
-      std::string name = fmt::format("{}.{}.{}-{:016x}.tmp", folder, base, ::getpid(), random_number());
-      const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (fd >= 0) {
-        name_ = std::move(name);
-        place_ = remember_unfinished(name_.c_str());
-        return fd;
-      }
-      if (errno != EEXIST && errno != EINTR) fail_to_write(path_, errno);
-    }
-    fail_to_write(path_, EEXIST);
-  }
-
-  const std::string& path_;
-  std::string name_;
-  std::atomic<const char*>* place_ = nullptr;
-  FileDescriptor fd_;
-};
-
 /// Runs the writer; what the system refuses becomes an Error about `path`.
 void write_to(exec::Cpu& ex, const std::string& path, BlockWriter&& writer) {
   try {
@@ -211,18 +152,100 @@ bool is_stream(const std::string& path) {
   return status && !S_ISREG(status->st_mode) && !S_ISDIR(status->st_mode);
 }
 
-void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
-  if (is_stream(path)) return write_stream(ex, path, blocks);
+/// A new file next to `target`, which `path` names; it vanishes unless it is renamed.
+class FilesTogether::TemporaryFile {
+ public:
+  TemporaryFile(const std::string& path, std::string target) : path_(path), target_(std::move(target)), fd_(create()) {}
+  ~TemporaryFile() {
+    if (!name_.empty()) ::unlink(name_.c_str());
+    if (place_ != nullptr) place_->store(nullptr);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  [[nodiscard]] int fd() const { return fd_.get(); }
+
+  /// Takes over owner and permissions. Changing the owner may be forbidden and is then left out.
+  void inherit(const struct stat& old) const {
+    const bool same_owner = old.st_uid == ::geteuid() && old.st_gid == ::getegid();
+    if (!same_owner && ::fchown(fd(), old.st_uid, old.st_gid) != 0) errno = 0;
+    if (::fchmod(fd(), old.st_mode & 0777) != 0) fail_to_write(path_, errno);
+  }
+
+  /// Brings the bytes to the disk before the name: a crash in between must not leave an empty file.
+  void finish() {
+    while (::fsync(fd()) != 0 && errno != EINVAL)  // EINVAL: nothing to synchronise
+      if (errno != EINTR) fail_to_write(path_, errno);
+    exec::throw_if_cancelled();
+    if (fd_.close() != 0 && errno != EINTR) fail_to_write(path_, errno);
+  }
+
+  void replace() {
+    if (::rename(name_.c_str(), target_.c_str()) != 0) fail_to_write(path_, errno);
+    if (place_ != nullptr) place_->store(nullptr);
+    place_ = nullptr;
+    name_.clear();
+  }
+
+ private:
+  int create() {
+    constexpr int kTries = 100;
+    constexpr std::size_t kLongestBase = 180;  // leaves room for the rest within the 255 bytes of a file name
+    const std::string folder = folder_of(target_);
+    const std::string base = target_.substr(folder.size(), kLongestBase);
+    const MakingFile making;
+    if (process_ends) fail_to_write(path_, ECANCELED);
+    for (int i = 0; i < kTries; ++i) {
+      std::string name = fmt::format("{}.{}.{}-{:016x}.tmp", folder, base, ::getpid(), random_number());
+      const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (fd >= 0) {
+        name_ = std::move(name);
+        place_ = remember_unfinished(name_.c_str());
+        return fd;
+      }
+      if (errno != EEXIST && errno != EINTR) fail_to_write(path_, errno);
+    }
+    fail_to_write(path_, EEXIST);
+  }
+
+  const std::string path_;
+  const std::string target_;
+  std::string name_;
+  std::atomic<const char*>* place_ = nullptr;
+  FileDescriptor fd_;
+};
+
+FilesTogether::FilesTogether() = default;
+FilesTogether::~FilesTogether() = default;
+
+std::unique_ptr<FilesTogether::TemporaryFile> FilesTogether::written(exec::Cpu& ex, const std::string& path,
+                                                                     const Blocks& blocks) {
   if (path.empty()) fail_to_write(path, ENOENT);
   const std::string target = follow_links(path);
   const auto old = status_of(target);
   if ((old && S_ISDIR(old->st_mode)) || target.ends_with('/')) fail_to_write(path, EISDIR);
   // A rename would replace a write-protected file without asking.
   if (old && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail_to_write(path, errno);
-  TemporaryFile file(path, target);
-  write_to(ex, path, {blocks, file.fd(), BlockWriter::Target::file});
-  if (old) file.inherit(*old);
-  file.rename_to(target);
+  auto file = std::make_unique<TemporaryFile>(path, target);
+  write_to(ex, path, {blocks, file->fd(), BlockWriter::Target::file});
+  if (old) file->inherit(*old);
+  file->finish();
+  return file;
+}
+
+void FilesTogether::write(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
+  if (is_stream(path)) return write_stream(ex, path, blocks);
+  files_.push_back(written(ex, path, blocks));
+}
+
+void FilesTogether::replace() {
+  for (const auto& file : files_) file->replace();
+  files_.clear();
+}
+
+void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
+  if (is_stream(path)) return write_stream(ex, path, blocks);
+  FilesTogether::written(ex, path, blocks)->replace();
 }
 
 }  // namespace pointskin::io

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "exec/cpu.hpp"
 
@@ -25,5 +27,28 @@ bool is_stream(const std::string& path);
 /// @throws Error output_not_written with the reason of the operating system, or whatever `make` throws; a regular file
 ///         is then what it was
 void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks);
+
+/// Several files that appear together: all are written under temporary names before the first one gets its own.
+class FilesTogether {
+ public:
+  FilesTogether();
+  ~FilesTogether();  ///< removes what has not been given its name
+  FilesTogether(const FilesTogether&) = delete;
+  FilesTogether& operator=(const FilesTogether&) = delete;
+
+  /// As write_blocks(), but that the file `path` stays what it was until replace(). Streams are written at once.
+  void write(exec::Cpu& ex, const std::string& path, const Blocks& blocks);
+
+  /// Gives all files their names. Nothing but a rename can fail here; the files after that one stay what they were.
+  /// @throws Error output_not_written
+  void replace();
+
+ private:
+  class TemporaryFile;
+  friend void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks);
+  static std::unique_ptr<TemporaryFile> written(exec::Cpu& ex, const std::string& path, const Blocks& blocks);
+
+  std::vector<std::unique_ptr<TemporaryFile>> files_;
+};
 
 }  // namespace pointskin::io

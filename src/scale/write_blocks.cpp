@@ -88,26 +88,21 @@ std::string split_name(const std::string& path, std::int64_t number) {
 std::vector<std::string> write_split_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& columns,
                                          const octree::Frame& frame, const Vec3d& origin, const std::string& path) {
   std::vector<std::string> written;
-  try {
-    for (std::int64_t block = 0; block < meshes.blocks(); ++block) {
-      const BlockMeshes::MeshOfBlock mesh = meshes.read_block(block);
-      if (mesh.triangles.empty()) continue;
-      io::MeshParts parts = vertex_parts(of_vertices(meshes, mesh.vertices), columns, frame, origin);
-      parts.vertices = std::ssize(mesh.vertices);
-      parts.triangles = std::ssize(mesh.triangles);
-      parts.corners = [&](std::size_t first, std::size_t last, std::vector<Triangle>& part) {
-        part.assign(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first),
-                    mesh.triangles.begin() + static_cast<std::ptrdiff_t>(last));
-      };
-      const std::string name = split_name(path, std::ssize(written));
-      io::write_blocks(ex, name, io::format_ply_parts(parts, false));
-      written.push_back(name);
-    }
-  } catch (...) {
-    std::error_code ignored;
-    for (const std::string& name : written) std::filesystem::remove(name, ignored);
-    throw;
+  io::FilesTogether files;
+  for (std::int64_t block = 0; block < meshes.blocks(); ++block) {
+    const BlockMeshes::MeshOfBlock mesh = meshes.read_block(block);
+    if (mesh.triangles.empty()) continue;
+    io::MeshParts parts = vertex_parts(of_vertices(meshes, mesh.vertices), columns, frame, origin);
+    parts.vertices = std::ssize(mesh.vertices);
+    parts.triangles = std::ssize(mesh.triangles);
+    parts.corners = [&](std::size_t first, std::size_t last, std::vector<Triangle>& part) {
+      part.assign(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first),
+                  mesh.triangles.begin() + static_cast<std::ptrdiff_t>(last));
+    };
+    written.push_back(split_name(path, std::ssize(written)));
+    files.write(ex, written.back(), io::format_ply_parts(parts, false));
   }
+  files.replace();
   return written;
 }
 

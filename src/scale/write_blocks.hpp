@@ -28,8 +28,8 @@ void write_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& co
                const Vec3d& origin, const std::string& path);
 
 /// Writes a file for each block that has triangles: `path` with _0000, _0001, ... before its extension. Each has its own triangles, in
-/// the order of the whole, and the vertices that they have: those at borders are in several files, with the same bytes. Files of
-/// these names are replaced one after another; what was written is removed if a later one cannot be.
+/// the order of the whole, and the vertices that they have: those at borders are in several files, with the same bytes. All are
+/// written before the first one replaces a file of its name.
 /// @returns the names
 /// @throws Error as write_ply()
 /// One block's triangles, and 16 bytes for each of its vertices, are in memory.

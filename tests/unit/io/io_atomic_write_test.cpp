@@ -7,6 +7,7 @@
 #include <csignal>
 #include <thread>
 
+#include "io/output.hpp"
 #include "support/io_files.hpp"
 
 namespace pointskin {
@@ -28,6 +29,42 @@ TEST(AtomicWrite, ReplacesTheFileAndLeavesNothingElse) {
   make_file(folder.file("a"), "old and longer");
   write_file_atomically(folder.file("a"), "new");
   EXPECT_EQ(bytes_of_file(folder.file("a")), "new");
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+io::Blocks one_block(const std::string& bytes) {
+  return {1, [bytes](std::int64_t /*block*/, std::string& to) { to = bytes; }};
+}
+
+TEST(AtomicWrite, ReplacesFilesTogether) {
+  const TemporaryFolder folder;
+  make_file(folder.file("a"), "old");
+  exec::Cpu ex(2);
+  {
+    io::FilesTogether files;
+    files.write(ex, folder.file("a"), one_block("first"));
+    files.write(ex, folder.file("b"), one_block("second"));
+    EXPECT_EQ(bytes_of_file(folder.file("a")), "old");
+    EXPECT_FALSE(std::filesystem::exists(folder.file("b")));
+    files.replace();
+  }
+  EXPECT_EQ(bytes_of_file(folder.file("a")), "first");
+  EXPECT_EQ(bytes_of_file(folder.file("b")), "second");
+  EXPECT_EQ(folder.file_count(), 2u);
+}
+
+TEST(AtomicWrite, KeepsAllFilesWhereOneOfSeveralCannotBeWritten) {
+  const TemporaryFolder folder;
+  make_file(folder.file("a"), "old");
+  exec::Cpu ex(2);
+  {
+    io::FilesTogether files;
+    files.write(ex, folder.file("a"), one_block("first"));
+    EXPECT_NE(
+        story_of(ErrorCode::output_not_written, [&] { files.write(ex, folder.file("none/b"), one_block("second")); }),
+        "");
+  }
+  EXPECT_EQ(bytes_of_file(folder.file("a")), "old");
   EXPECT_EQ(folder.file_count(), 1u);
 }
 

@@ -192,14 +192,17 @@ TEST_F(ReconstructFiles, WritesAFileForEachBlock) {
 }
 
 /// A folder in the way of the second file.
-TEST_F(ReconstructFiles, LeavesNoFilesWhereOneCannotBeWritten) {
+TEST_F(ReconstructFiles, KeepsOldFilesWhereOneCannotBeWritten) {
   start(torus_cloud(60000, 1));
   ScaleOptions in_files = scale(50 * kMegabyte);
   in_files.split = true;
+  test::make_file(folder_.file("blocks_0000.ply"), "old");
+  const std::size_t count = folder_.file_count() + 1;  // and the folder
   std::filesystem::create_directory(folder_.file("blocks_0001.ply"));
   expect_error(ErrorCode::output_not_written, "blocks_0001.ply",
                [&] { (void)reconstruct_files({input_}, output_, at_depth(8), in_files); });
-  EXPECT_FALSE(std::filesystem::exists(folder_.file("blocks_0000.ply")));
+  EXPECT_EQ(test::bytes_of_file(folder_.file("blocks_0000.ply")), "old");
+  EXPECT_EQ(folder_.file_count(), count);
 }
 
 TEST_F(ReconstructFiles, KeepsTheOriginOfCoordinatesThatAreFar) {

@@ -40,7 +40,7 @@ struct FilesReport {
 /// @throws Error invalid_input if it cannot be opened, or its header is garbled
 bool reads_in_parts(const std::string& path);
 
-/// What of these options cannot be worked on in blocks yet, in words: "trim", "an envelope". Empty if all can.
+/// What of these options cannot be worked on in blocks yet, in words: "weakness", "an envelope". Empty if all can.
 std::vector<std::string> missing_in_blocks(const Options& options);
 
 /// Reconstructs a cloud that memory does not hold: from a file to a file, with the same bytes that reconstructing the whole in

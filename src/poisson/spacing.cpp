@@ -1,6 +1,5 @@
 #include "poisson/spacing.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -48,8 +47,8 @@ float spacing_of_sparsest(Exec& ex, const octree::OctreeData& tree, const Densit
   for_each(ex, "trim.limit", n,
            EvaluateBits{tree.view(), {density.depth, density.counts.data()}, positions, normals, keys.view()});
   sort_keys(ex, "trim.limit", keys, 32);
-  const auto above = std::min(n - 1, static_cast<std::int64_t>(sparsest * static_cast<double>(n)));
-  return std::bit_cast<float>(static_cast<std::uint32_t>(exec::read_element(ex, keys.cview(), n - 1 - above)));
+  const std::int64_t place = place_of_sparsest(n, sparsest);
+  return std::bit_cast<float>(static_cast<std::uint32_t>(exec::read_element(ex, keys.cview(), place)));
 }
 
 PSK_INSTANTIATE(evaluate_spacing);

@@ -76,6 +76,12 @@ template <exec::Space Exec>
 void evaluate_spacing(Exec& ex, const octree::OctreeData& tree, const Density& density, ArrayView<const Vec3f> points,
                       ArrayView<const Vec3f> normals, ArrayView<float> out);
 
+/// Place, in ascending order, of the spacing that a share `sparsest` in [0, 1) of n samples exceeds.
+inline std::int64_t place_of_sparsest(std::int64_t n, double sparsest) {
+  const auto above = static_cast<std::int64_t>(sparsest * static_cast<double>(n));
+  return n - 1 - (above < n - 1 ? above : n - 1);
+}
+
 /// The spacing, in finest cells, that a share `sparsest` in [0, 1) of the samples exceeds: at the samples themselves.
 /// @param normals  shape (n), unit length or zero
 /// O(n depth) and a sort of n keys; waits; 16 n bytes of scratch. Deterministic, does not depend on the order.

@@ -54,10 +54,9 @@ TrimRule trim_rule(Exec& ex, const FieldData& field, const Options& options) {
 /// False if the trim was to be chosen, and the surface is near the samples everywhere.
 template <exec::Space Exec>
 bool is_worth_trimming(Exec& ex, const FieldData& field, const surface::Surface& surface, const Options& options) {
-  constexpr double kLittle = 0.005;  // of the area
   if (options.trim != Options::kAutomaticTrim) return true;
   const diagnose::Findings findings = diagnose::findings_of(field.seen);
-  if (diagnose::runs_into_faces(findings) && findings.faces_inside < 1) return true;
+  if (is_cut_by_faces(findings)) return true;
   exec::Buffer<diagnose::Counts> own;  // of this surface, where others may follow
   if (field.keeps_all) {
     own = exec::make_buffer<diagnose::Counts>(ex, field.counts.size());
@@ -65,7 +64,7 @@ bool is_worth_trimming(Exec& ex, const FieldData& field, const surface::Surface&
   }
   const exec::Buffer<diagnose::Counts>& counts = field.keeps_all ? own : field.counts;
   diagnose::look_at_surface(ex, field.tree.view(), diagnose::far_depth(findings, field.tree.depth), surface, counts);
-  return diagnose::findings_of(diagnose::read_counts(ex, counts)).far >= kLittle;
+  return diagnose::findings_of(diagnose::read_counts(ex, counts)).far >= kLittleFar;
 }
 
 /// Samples per area of the cube's unit at the vertices.

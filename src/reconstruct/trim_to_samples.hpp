@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "diagnose/verdict.hpp"
 #include "octree/frame.hpp"
 #include "octree/octree_data.hpp"
 #include "poisson/spacing.hpp"
@@ -17,6 +18,14 @@ namespace pointskin::detail {
 /// Just outside of a border of even samples the distance rises from 1.2 to twice what it is inside within two samples;
 /// farther out the octree's coarser levels make it uneven (docs/decisions/0014-trim.md).
 inline constexpr float kTrimSpacing = 1.75F;
+
+/// A trim that was to be chosen leaves a surface as it is of which less is far from samples.
+inline constexpr double kLittleFar = 0.005;
+
+/// Of such a trim: the surface runs into the faces of the cube, and does not wrap all of it.
+inline bool is_cut_by_faces(const diagnose::Findings& findings) {
+  return diagnose::runs_into_faces(findings) && findings.faces_inside < 1;
+}
 
 /// Largest spacing of samples, in finest cells, that the surface keeps.
 /// @param normals  of the samples, of unit length

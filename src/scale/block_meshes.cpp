@@ -71,13 +71,26 @@ void BlockMeshes::add_outer(const BlockMesh& from) {
   for (auto key = first; key != from.keys.end(); ++key) {
     const std::uint64_t owner = owner_of_outer(*key);
     if (!from.owns(owner)) continue;
-    Outer vertex{*key, std::vector<std::byte>(static_cast<std::size_t>(column_begins_.back()))};
+    outer_.keys.push_back(*key);
+    outer_.values.resize(static_cast<std::size_t>(outer_.size() * column_begins_.back()));
     const std::int64_t v = key - from.keys.begin();
     for (std::size_t c = 0; c < from.columns.size(); ++c)
-      std::memcpy(vertex.values.data() + column_begins_[c], from.columns[c] + v * setup_.columns[c],
+      std::memcpy(outer_values(outer_.size() - 1) + column_begins_[c], from.columns[c] + v * setup_.columns[c],
                   static_cast<std::size_t>(setup_.columns[c]));
-    outer_.push_back(std::move(vertex));
   }
+}
+
+void BlockMeshes::sort_outer() {
+  std::vector<std::int64_t> order(outer_.keys.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::int64_t i) { return outer_.keys[static_cast<std::size_t>(i)]; });
+  Outer sorted;
+  sorted.values.reserve(outer_.values.size());
+  for (const std::int64_t i : order) {
+    sorted.keys.push_back(outer_.keys[static_cast<std::size_t>(i)]);
+    sorted.values.insert(sorted.values.end(), outer_values(i), outer_values(i) + column_begins_.back());
+  }
+  outer_ = std::move(sorted);
 }
 
 std::int64_t BlockMeshes::count_triangles(const BlockMesh& from) {
@@ -102,6 +115,11 @@ std::vector<std::int32_t> BlockMeshes::add_pieces(const BlockMesh& from, std::si
                                      from.density,
                                      first,
                                      static_cast<std::size_t>(block.count)});
+  keep_found(pieces, block, first);
+  return std::move(pieces.piece_of);
+}
+
+void BlockMeshes::keep_found(PiecesOfPart& pieces, const Block& block, std::size_t first) {
   const std::int32_t before = pieces_.size();
   for (std::size_t p = 0; p < pieces.extents.size(); ++p) {
     const std::int64_t own = pieces.first_own_vertex[p];
@@ -110,7 +128,6 @@ std::vector<std::int32_t> BlockMeshes::add_pieces(const BlockMesh& from, std::si
   }
   for (std::int32_t& piece : pieces.piece_of)
     if (piece >= 0) piece += before;
-  return std::move(pieces.piece_of);
 }
 
 void BlockMeshes::write_vertices(exec::Cpu& ex, const BlockMesh& from, std::size_t first,
@@ -182,7 +199,7 @@ void BlockMeshes::finish() {
   if (vertices() > std::int64_t{1} << 32)
     throw Error(ErrorCode::over_limit,
                 "the mesh has " + std::to_string(vertices()) + " vertices, more than 32-bit indices reach");
-  std::ranges::stable_sort(outer_, {}, &Outer::key);
+  sort_outer();
   for (Block& block : blocks_) {
     block.numbers.reserve(block.others.size());
     for (const Reference& vertex : block.others) block.numbers.push_back(number_of(vertex));
@@ -205,9 +222,8 @@ std::uint32_t BlockMeshes::number_of(const Reference& vertex) const {
   std::int64_t number = -1;
   if ((vertex.key & kOuter) != 0) {
     const std::uint64_t key = vertex.key & ~kOuter;
-    const std::int64_t first = std::ranges::lower_bound(outer_, key, {}, &Outer::key) - outer_.begin();
-    const std::int64_t last = std::ranges::upper_bound(outer_, key, {}, &Outer::key) - outer_.begin();
-    if (vertex.place < last - first) number = inner_ + first + vertex.place;
+    const auto [first, last] = std::equal_range(outer_.keys.begin(), outer_.keys.end(), key);
+    if (vertex.place < last - first) number = inner_ + (first - outer_.keys.begin()) + vertex.place;
   } else {
     const auto cell = std::ranges::lower_bound(cells_, vertex.key, {}, &Cell::key);
     if (cell != cells_.end() && cell->key == vertex.key && vertex.place < cell->count)
@@ -222,9 +238,22 @@ void BlockMeshes::read_column(std::size_t column, std::int64_t first, std::int64
   const std::int64_t inner = std::clamp<std::int64_t>(inner_ - first, 0, count);
   read_inner(column, first, inner, out);
   for (std::int64_t i = inner; i < count; ++i)
-    std::memcpy(out + i * bytes,
-                outer_[static_cast<std::size_t>(first + i - inner_)].values.data() + column_begins_[column],
+    std::memcpy(out + i * bytes, outer_values(first + i - inner_) + column_begins_[column],
                 static_cast<std::size_t>(bytes));
+}
+
+void BlockMeshes::read_column(std::size_t column, std::span<const std::int64_t> vertices, std::byte* out) const {
+  const auto number = [&](std::int64_t i) { return vertices[static_cast<std::size_t>(i)]; };
+  for (std::int64_t begin = 0, end = 0; begin < std::ssize(vertices); begin = end) {
+    while (end < std::ssize(vertices) && number(end) - number(begin) == end - begin) ++end;
+    read_column(column, number(begin), end - begin, out);
+    out += (end - begin) * setup_.columns[column];
+  }
+}
+
+void BlockMeshes::mark_shared(RankedBits& vertices) const {
+  for (const Block& block : blocks_)
+    for (const std::uint32_t vertex : block.numbers) vertices.set(vertex);
 }
 
 void BlockMeshes::read_inner(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) const {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ struct BlockMesh {
 
   [[nodiscard]] bool owns(std::uint64_t cell) const { return cell >= begin && cell < end; }
 };
+
+struct BlockCut;
 
 /// Takes own vertices and triangles of block after block. What lies in the ring is not kept, but tells the numbers of
 /// vertices in other blocks: by the cell of a coarser level that they lie in, and their place among the vertices of this
@@ -65,13 +68,19 @@ class BlockMeshes {
   /// O(blocks + border vertices log cells)
   void finish();
 
-  /// Leaves out pieces, as surface::keep_pieces() does; after finish(), once, if Setup::pieces is true. The options' density is
-  /// that of the blocks.
+  /// Leaves what a cut leaves, as surface::trim_surface() does; after finish(), once. @see block_trim.hpp
+  /// @param supports  column with the density of BlockMesh, if there are pieces and it is needed
+  /// @throws Error over_limit, output_not_written, interrupted
+  /// Writes all blocks anew, while the old ones are there still. One block is in memory: 24 bytes a triangle, 64 a vertex.
+  void cut(exec::Cpu& ex, const BlockCut& cut, bool pieces, std::optional<std::size_t> supports);
+
+  /// Leaves out pieces, as surface::keep_pieces() does; after finish(), once, if Setup::pieces is true or cut() has found them. The
+  /// options' density is that of the blocks.
   /// @throws Error output_not_written, interrupted
   /// Reads the pieces of all vertices, and writes anew the blocks that lose some. A byte for 5 vertices of scratch.
   surface::PieceCounts keep_pieces(const surface::PieceOptions& options);
 
-  [[nodiscard]] std::int64_t vertices() const { return inner_ + outer_count(); }
+  [[nodiscard]] std::int64_t vertices() const { return inner_ + outer_.size(); }
   [[nodiscard]] std::int64_t triangles() const { return triangles_; }
   [[nodiscard]] std::int64_t columns() const { return std::ssize(setup_.columns) - (setup_.pieces ? 1 : 0); }
 
@@ -80,6 +89,11 @@ class BlockMeshes {
   /// Column `column` of vertices first .. first + count - 1; for many threads at once, after finish().
   /// @throws Error output_not_written if the disk fails, interrupted
   void read_column(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) const;
+  /// The same of some vertices, by their numbers; those that follow each other are read at once.
+  void read_column(std::size_t column, std::span<const std::int64_t> vertices, std::byte* out) const;
+
+  /// Sets the bits of vertices that triangles of several blocks may have; after finish().
+  void mark_shared(RankedBits& vertices) const;
 
   [[nodiscard]] std::int64_t blocks() const { return std::ssize(blocks_); }
 
@@ -111,9 +125,11 @@ class BlockMeshes {
     std::uint64_t key = 0;
     std::int64_t first = 0, count = 0;
   };
+  /// Vertices that follow the inner ones: on upper faces of the cube, by key after finish(), and then those that a cut made.
   struct Outer {
-    std::uint64_t key = 0;
-    std::vector<std::byte> values;  ///< of all columns
+    std::vector<std::uint64_t> keys;
+    std::vector<std::byte> values;  ///< of all columns, vertex after vertex
+    [[nodiscard]] std::int64_t size() const { return std::ssize(keys); }
   };
   /// Triangles that follow each other both in the whole mesh and in a block.
   struct Chunk {
@@ -136,13 +152,17 @@ class BlockMeshes {
   [[nodiscard]] std::uint64_t cell_of(std::uint64_t key) const { return key >> 3 * (setup_.depth - setup_.cell_level); }
   /// Key of the cell inside the cube beside which a corner on an upper face lies.
   [[nodiscard]] std::uint64_t owner_of_outer(std::uint64_t key) const;
-  [[nodiscard]] std::int64_t outer_count() const { return static_cast<std::int64_t>(outer_.size()); }
   /// @param keys  of all vertices of a block
   [[nodiscard]] Reference reference_to(std::span<const std::uint64_t> keys, std::size_t vertex) const;
   [[nodiscard]] std::uint32_t number_of(const Reference& vertex) const;
 
   void count_vertices(const BlockMesh& from, std::size_t first, Block& block);
   void add_outer(const BlockMesh& from);
+  void sort_outer();
+  [[nodiscard]] std::byte* outer_values(std::int64_t i) { return outer_.values.data() + i * column_begins_.back(); }
+  [[nodiscard]] const std::byte* outer_values(std::int64_t i) const {
+    return outer_.values.data() + i * column_begins_.back();
+  }
   /// @returns own triangles
   std::int64_t count_triangles(const BlockMesh& from);
   /// @param pieces  (v) or empty
@@ -159,8 +179,17 @@ class BlockMeshes {
   [[nodiscard]] std::size_t piece_column() const { return setup_.columns.size() - 1; }
   /// Adds the pieces of a block. @returns (v) their numbers among those of all blocks, or -1
   [[nodiscard]] std::vector<std::int32_t> add_pieces(const BlockMesh& from, std::size_t first, const Block& block);
+  /// Adds them to those of all blocks, and renumbers them.
+  /// @param first  vertex of the part that is the block's first own one
+  void keep_found(PiecesOfPart& pieces, const Block& block, std::size_t first);
   void join_pieces();
+  /// What cut() makes of one block.
+  struct BlockThatIsCut;
+  [[nodiscard]] BlockThatIsCut cut_block(exec::Cpu& ex, std::int64_t number, const BlockCut& cut, bool pieces,
+                                         std::optional<std::size_t> supports);
+  void cut_outer(const BlockCut& cut, bool pieces);
   [[nodiscard]] RankedBits vertices_that_stay() const;
+  void leave_out_outer(const RankedBits& stays);
   /// Of one block: what does not stay.
   void leave_out(std::size_t number, const RankedBits& stays);
   /// @param count  own vertices that stay
@@ -172,8 +201,8 @@ class BlockMeshes {
   Setup setup_;
   std::vector<std::int64_t> column_begins_;  ///< bytes of the columns before each
   std::vector<Block> blocks_;
-  std::vector<Cell> cells_;        ///< ascending
-  std::vector<Outer> outer_;       ///< by key after finish()
+  std::vector<Cell> cells_;  ///< ascending
+  Outer outer_;
   std::vector<Chunk> chunks_;      ///< in the order of the whole after finish()
   BlockPieces pieces_;             ///< of all blocks, and after join_pieces() one for each outer vertex
   std::int32_t outer_pieces_ = 0;  ///< the first of these

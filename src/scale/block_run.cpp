@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -16,15 +17,20 @@
 #include "diagnose/verdict.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "exec/exact_sum.hpp"
+#include "octree/keys.hpp"
 #include "octree/view.hpp"
 #include "poisson/in_blocks.hpp"
 #include "poisson/mean_length.hpp"
+#include "poisson/spacing.hpp"
 #include "reconstruct/pieces_by_support.hpp"
+#include "reconstruct/trim_to_samples.hpp"
 #include "scale/block_looks.hpp"
 #include "scale/block_plan.hpp"
+#include "scale/block_trim.hpp"
 #include "scale/block_work.hpp"
 #include "scale/coarse_levels.hpp"
 #include "scale/key_index.hpp"
+#include "scale/kth_value.hpp"
 #include "scale/sample_values.hpp"
 #include "scale/spool.hpp"
 
@@ -75,9 +81,10 @@ class BlockRun {
     sweep({"bricks", "octree", 0.03}, [&] { plan_.find_bricks(); });
     sweep({"plan", "octree", 0.04}, [&] {
       plan_.divide();
-      shared_.coarse.emplace(ex_, plan_,
-                             CoarseLevels::Setup{options_.screening, options_.iterations, options_.boundary,
-                                                 picks_by_support() || options_.density_face > 0});
+      shared_.coarse.emplace(
+          ex_, plan_,
+          CoarseLevels::Setup{options_.screening, options_.iterations, options_.boundary,
+                              picks_by_support() || options_.trim != 0 || options_.density_face > 0});
       report_.blocks = static_cast<int>(plan_.blocks().size());
       report_.coarse_level = plan_.level();
       report_.coarse_nodes = coarse().nodes();
@@ -91,6 +98,7 @@ class BlockRun {
     over_blocks({"depths", "splat", 0.16, 0.19}, [&](const BlockRange& own) { work_.even_out(own); });
     const KeyIndex index(cloud_, plan_.level(), plan_.cells(), plan_.first());
     sweep({"look at samples", "splat", 0.19}, [&] { look_at_pairs(ex_, cloud_, values_, index, depth_, counts_); });
+    if (options_.trim != 0) sweep({"trim limit", "splat", 0.19}, [&] { settle_trim(); });
     sweep({"coarse field", "splat", 0.19}, [&] { coarse().splat(); });
     over_blocks({"splat", "splat", 0.19, 0.36}, [&](const BlockRange& own) { work_.splat(own); });
     sweep({"coarse solve", "solve", 0.36}, [&] { solve_coarse(); });
@@ -100,20 +108,45 @@ class BlockRun {
                 [&](const BlockRange& own) { fields.push_back(work_.solve(own, values)); });
     report_.isovalue = mean_of(values, fields);
     BlockMeshes meshes = extract_all(fields);
-    sweep({"look at triangles", "extract", 0.98}, [&] {
-      look_at_triangles(meshes, index, diagnose::far_depth(diagnose::findings_of(looks()), depth_), counts_);
-    });
+    sweep({"look at triangles", "extract", 0.98}, [&] { look_at(meshes); });
     report_.looks = looks();
     return meshes;
   }
 
  private:
+  /// A pass over all samples or blocks.
+  struct Pass {
+    const char* name;   ///< in the report
+    const char* phase;  ///< as callers of Options::progress know it
+    double begin;       ///< of the run that is done then
+    double end = 1;     ///< of a pass over blocks
+  };
+
   [[nodiscard]] CoarseLevels& coarse() { return *shared_.coarse; }
 
-  [[nodiscard]] std::vector<std::int64_t> columns() const {
-    std::vector<std::int64_t> columns{sizeof(Vec3f)};
-    if (options_.normals) columns.push_back(sizeof(Vec3f));
-    if (options_.density_face > 0) columns.push_back(sizeof(float));
+  [[nodiscard]] bool trims() const { return report_.trim > 0; }
+  [[nodiscard]] bool chooses_trim() const { return options_.trim == Options::kAutomaticTrim; }
+
+  /// As detail::fit_field() settles it.
+  void settle_trim() {
+    report_.trim = chooses_trim() ? diagnose::fitting_trim(diagnose::findings_of(looks())) : options_.trim;
+    if (!trims()) return;
+    const std::int64_t place = poisson::place_of_sparsest(cloud_.size(), report_.trim);
+    report_.trim_limit = detail::kTrimSpacing * kth_value(values_, SampleValues::spacing, place, options_.part_samples);
+  }
+
+  [[nodiscard]] MeshColumns columns() const {
+    MeshColumns columns;
+    const auto add = [&](std::size_t& place, std::int64_t bytes) {
+      place = columns.bytes.size();
+      columns.bytes.push_back(bytes);
+    };
+    if (options_.normals) add(columns.normals, sizeof(Vec3f));
+    if (options_.density_face > 0) add(columns.density, sizeof(float));
+    if (!trims()) return columns;
+    if (!options_.normals) add(columns.normals, sizeof(Vec3f));
+    add(columns.spacing, sizeof(float));
+    if (picks_by_support()) add(columns.supports, sizeof(float));
     return columns;
   }
 
@@ -125,36 +158,116 @@ class BlockRun {
     return detail::fewest_samples(diagnose::findings_of(looks()).lonely > 0, report_.lone_corners);
   }
 
-  /// Whether pieces without samples go is known once all is extracted: then once more, with pieces.
+  [[nodiscard]] surface::PieceOptions pieces_that_stay() {
+    return {options_.largest, options_.min_component, fewest_samples()};
+  }
+  static bool looks_for_pieces(const surface::PieceOptions& pieces) {
+    return pieces.largest || pieces.least > 0 || pieces.least_samples > 0;
+  }
+
+  /// Whether pieces without samples go, and whether the surface is open at the faces of the cube, may be known once all is
+  /// extracted: then once more.
   BlockMeshes extract_all(std::vector<std::unique_ptr<Spool>>& fields) {
-    surface::PieceOptions pieces{options_.largest, options_.min_component, fewest_samples()};
-    const auto looks_for_pieces = [&] { return pieces.largest || pieces.least > 0 || pieces.least_samples > 0; };
-    const bool may_come_again = picks_by_support() && !looks_for_pieces();
-    BlockMeshes meshes = start_meshes(looks_for_pieces());
-    std::size_t block = 0;
-    over_blocks({"extract", "extract", 0.8, 0.98}, [&](const BlockRange& own) {
-      work_.extract(own, *fields[block], {pieces.least_samples > 0, true}, meshes);
-      if (!may_come_again) fields[block].reset();
-      ++block;
-    });
-    pieces.least_samples = fewest_samples();
-    if (may_come_again && looks_for_pieces()) {
-      meshes = start_meshes(true);
-      block = 0;
-      over_blocks({"extract again", "extract", 0.98, 0.98}, [&](const BlockRange& own) {
-        work_.extract(own, *fields[block++], {true, false}, meshes);
-      });
+    shared_.columns = columns();
+    surface::PieceOptions pieces = pieces_that_stay();
+    const bool waits_for_pieces = !trims() && picks_by_support() && !looks_for_pieces(pieces);
+    const bool waits_for_faces = chooses_trim() && options_.domain_faces == DomainFaces::closed;
+    BlockWork::Extraction what{trims() ? picks_by_support() : pieces.least_samples > 0, true, options_.domain_faces};
+    BlockMeshes meshes = extract_once({"extract", "extract", 0.8, 0.98}, what, !trims() && looks_for_pieces(pieces),
+                                      fields, !waits_for_pieces && !waits_for_faces);
+    what.looks = false;
+    if (waits_for_faces && diagnose::runs_into_faces(diagnose::findings_of(looks()))) {
+      what.faces = DomainFaces::open;
+      meshes = extract_once({"extract open", "extract", 0.98, 0.98}, what, !trims() && looks_for_pieces(pieces), fields,
+                            !waits_for_pieces);
+    }
+    pieces = pieces_that_stay();
+    if (waits_for_pieces && looks_for_pieces(pieces)) {
+      what.supports = true;
+      meshes = extract_once({"extract again", "extract", 0.98, 0.98}, what, true, fields, true);
     }
     fields.clear();
-    sweep({"join", "extract", 0.98}, [&] {
-      meshes.finish();
-      if (looks_for_pieces() && meshes.triangles() > 0) report_.pieces = meshes.keep_pieces(pieces);
+    sweep({"join", "extract", 0.98}, [&] { meshes.finish(); });
+    if (trims() && meshes.triangles() > 0) trim(meshes, looks_for_pieces(pieces));
+    sweep({"pieces", "extract", 0.98}, [&] {
+      if (looks_for_pieces(pieces) && meshes.triangles() > 0) report_.pieces = meshes.keep_pieces(pieces);
     });
     return meshes;
   }
 
-  [[nodiscard]] BlockMeshes start_meshes(bool pieces) const {
-    return BlockMeshes({options_.folder, depth_, plan_.level(), columns(), pieces});
+  /// @param last  nobody needs the fields after this
+  BlockMeshes extract_once(const Pass& pass, const BlockWork::Extraction& what, bool pieces,
+                           std::vector<std::unique_ptr<Spool>>& fields, bool last) {
+    BlockMeshes meshes({options_.folder, depth_, plan_.level(), shared_.columns.bytes, pieces});
+    report_.lone_corners = 0;
+    std::size_t block = 0;
+    over_blocks(pass, [&](const BlockRange& own) {
+      work_.extract(own, *fields[block], what, meshes);
+      if (last) fields[block].reset();
+      ++block;
+    });
+    return meshes;
+  }
+
+  /// As detail::extract() does.
+  void trim(BlockMeshes& meshes, bool pieces) {
+    const MeshColumns& columns = shared_.columns;
+    const CutColumns from{0, columns.normals, columns.spacing};
+    const std::optional<std::size_t> supports =
+        columns.supports == MeshColumns::kNone ? std::nullopt : std::optional(columns.supports);
+    if (!is_worth_trimming(meshes)) {
+      report_.trim = 0;
+      if (pieces) meshes.cut(ex_, BlockCut::of_nothing(meshes, from), pieces, supports);
+      return;
+    }
+    BlockCut cut;
+    sweep({"trim", "extract", 0.98}, [&] {
+      cut = find_cut(meshes, from, {report_.trim_limit, options_.island_ratio}, report_.cut);
+    });
+    std::vector<double> faces;
+    std::vector<std::size_t> densities;
+    const auto add = [&](bool needs, std::size_t column, double face) {
+      if (!needs) return;
+      densities.push_back(column);
+      faces.push_back(face);
+    };
+    add(columns.density != MeshColumns::kNone, columns.density, options_.density_face);
+    add(pieces && supports, columns.supports, std::ldexp(1.0, -2 * depth_));
+    cut.others.resize(columns.bytes.size());
+    for (const std::size_t column : densities) cut.others[column].resize(cut.edges.size());
+    if (!faces.empty() && !cut.edges.empty()) find_densities(faces, densities, cut);
+    sweep({"cut", "extract", 0.98}, [&] { meshes.cut(ex_, cut, pieces, supports); });
+  }
+
+  /// Of the vertices on the line.
+  void find_densities(const std::vector<double>& faces, const std::vector<std::size_t>& columns, BlockCut& cut) {
+    std::vector<std::pair<std::uint64_t, std::size_t>> places;  // cell of the finest level, vertex
+    for (const Vec3f& p : cut.positions)
+      places.emplace_back(octree::cell_key(octree::point_key(p.x, p.y, p.z), depth_), places.size());
+    std::ranges::sort(places);
+    auto at = places.begin();
+    over_blocks({"density of the cut", "extract", 0.98, 0.98}, [&](const BlockRange& own) {
+      const auto end = std::find_if(at, places.end(), [&](const auto& place) { return place.first >= own.end; });
+      if (at == end) return;
+      std::vector<Vec3f> points;
+      std::transform(at, end, std::back_inserter(points),
+                     [&](const auto& place) { return cut.positions[place.second]; });
+      const std::vector<std::vector<float>> found = work_.densities(own, points, faces);
+      for (std::size_t i = 0; i < points.size(); ++i, ++at)
+        for (std::size_t face = 0; face < faces.size(); ++face) cut.others[columns[face]][at->second] = found[face][i];
+    });
+  }
+
+  /// As detail::extract() has it.
+  bool is_worth_trimming(const BlockMeshes& meshes) {
+    if (!chooses_trim() || detail::is_cut_by_faces(diagnose::findings_of(looks()))) return true;
+    sweep({"look at what may be cut", "extract", 0.98}, [&] { look_at(meshes); });
+    return diagnose::findings_of(looks()).far >= detail::kLittleFar;
+  }
+
+  void look_at(const BlockMeshes& meshes) {
+    const KeyIndex index(cloud_, plan_.level(), plan_.cells(), plan_.first());
+    look_at_triangles(meshes, index, diagnose::far_depth(diagnose::findings_of(looks()), depth_), counts_);
   }
 
   /// What has been counted so far.
@@ -164,13 +277,6 @@ class BlockRun {
     return all;
   }
 
-  /// A pass over all samples or blocks.
-  struct Pass {
-    const char* name;   ///< in the report
-    const char* phase;  ///< as callers of Options::progress know it
-    double begin;       ///< of the run that is done then
-    double end = 1;     ///< of a pass over blocks
-  };
   template <class Work>
   void sweep(const Pass& pass, const Work& work) {
     announce(options_.progress, pass.phase, pass.begin);
@@ -331,7 +437,7 @@ BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const Blo
   plan.find_bricks();
   plan.divide();
   const BlockPlan::Sizes sizes = plan.sizes();
-  const std::int64_t values = SampleValues::kColumns * cloud.size() + sizes.nodes;
+  const std::int64_t values = SampleValues::columns(options.trim != 0) * cloud.size() + sizes.nodes;
   return {static_cast<int>(plan.blocks().size()),
           plan.level(),
           plan.ring(),
@@ -345,8 +451,12 @@ BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const Blo
 BlockMeshes reconstruct_blocks(const MakeBlockWork& make, exec::Cpu& host, const SortedCloud& cloud,
                                const BlockOptions& options, BlockReport& report) {
   check_options(options);
-  SharedOfBlocks shared{
-      host, cloud, options, report, {host, cloud, plan_setup(cloud.size(), options)}, {options.folder, cloud.size()}};
+  SharedOfBlocks shared{host,
+                        cloud,
+                        options,
+                        report,
+                        {host, cloud, plan_setup(cloud.size(), options)},
+                        {options.folder, cloud.size(), options.trim != 0}};
   const std::unique_ptr<BlockWork> work = make(shared);
   return BlockRun(shared, *work).run();
 }

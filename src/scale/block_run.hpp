@@ -19,6 +19,7 @@
 #include "scale/block_meshes.hpp"
 #include "scale/sorted_cloud.hpp"
 #include "surface/pieces.hpp"
+#include "surface/trim.hpp"
 
 namespace pointskin::scale {
 
@@ -48,8 +49,10 @@ struct BlockOptions {
   std::optional<double> isovalue{};  ///< of the surface; unset: the mean at the samples
   bool largest = false;              ///< as Options has them
   double min_component = 0;
+  double trim = 0;
+  double island_ratio = 0;
   double density_face =
-      0;  ///< area of a face of a finest cell in world units^2: samples per area are the last column; 0: none
+      0;  ///< area of a face of a finest cell in world units^2: samples per area are a column then; 0: none
   std::function<bool(const Progress&)> progress{};  ///< as Options has it, called for every block of every sweep
 };
 
@@ -67,11 +70,14 @@ struct BlockReport {
   int blocks = 0;
   int coarse_level = 0;
   double isovalue = 0;
-  diagnose::Counts looks{};                       ///< what the fit of the whole counts, and its surface
-  BoxOfPoints inliers;                            ///< in the unit cube: of the samples that are no outliers
-  std::int64_t lone_corners = 0;                  ///< as surface::Surface has them
-  surface::PieceCounts pieces;                    ///< what keep_pieces() found, if they were looked for
-  std::vector<LevelReport> levels;                ///< depth 0 first, without unknowns and residuals
+  diagnose::Counts looks{};         ///< what the fit of the whole counts, and its surface
+  BoxOfPoints inliers;              ///< in the unit cube: of the samples that are no outliers
+  std::int64_t lone_corners = 0;    ///< as surface::Surface has them
+  double trim = 0;                  ///< share of the samples that were too sparse, where the surface was cut
+  float trim_limit = 0;             ///< spacing in finest cells that it was cut at
+  surface::TrimCounts cut;          ///< what was cut
+  surface::PieceCounts pieces;      ///< what keep_pieces() found, if they were looked for
+  std::vector<LevelReport> levels;  ///< depth 0 first, without unknowns and residuals
   std::int64_t most_samples = 0, most_nodes = 0;  ///< of a block with its ring
   std::int64_t coarse_nodes = 0;                  ///< of levels up to K
   std::int64_t samples_read = 0;                  ///< by all sweeps
@@ -98,13 +104,14 @@ struct BlockEstimate {
 /// @throws Error as reconstruct_blocks()
 BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options);
 
-/// The surface that detail::fit_field() and detail::extract() make of the same samples, without trimming and attributes of
-/// samples, with the same bits for any number of blocks and any coarse level: positions in the unit cube and, if asked for,
-/// normals and density are the columns.
+/// The surface that detail::fit_field() and detail::extract() make of the same samples, without attributes of samples, with the
+/// same bits for any number of blocks and any coarse level: positions in the unit cube and, if asked for, normals and density are
+/// the first columns.
 /// @param cloud  of at least one point
 /// @throws Error usage for levels and numbers beyond their ranges; over_limit if no number of blocks does with the memory, which
 ///         says how much one that cannot be cut takes; output_not_written, over_limit, interrupted
-/// Sweeps over all blocks six times, and builds the octree of a block in each; once more where corners turn out to be lone ones.
+/// Sweeps over all blocks six times, and builds the octree of a block in each; once more where corners turn out to be lone ones, or
+/// an automatic trim opens the faces of the cube, and once more for the density on the line of a cut.
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                BlockReport& report);
 

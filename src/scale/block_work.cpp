@@ -14,6 +14,7 @@
 #include "exec/this_space.hpp"
 #include "octree/octree_data.hpp"
 #include "poisson/boundary.hpp"
+#include "poisson/spacing.hpp"
 #include "poisson/trust.hpp"
 #include "scale/staging.hpp"
 #include "surface/extract.hpp"
@@ -78,6 +79,7 @@ class WorkIn final : public BlockWork {
     write_own(own, block, SampleValues::depth, block.samples.splat_depths);
     write_own(own, block, SampleValues::own_side, weighed.own_side);
     write_own(own, block, SampleValues::trust, weighed.bends);
+    if (options_.trim != 0) write_spacing(own, block, tree, weighed.density);
     const exec::Buffer<std::int32_t> chosen =
         chosen_own(own, diagnose::kSamples, block.first_own, [](std::int64_t s) { return !diagnose::looks_across(s); });
     diagnose::look_at_densities(ex_, tree.view(), weighed.density, choose(chosen, block.samples.positions).cview(),
@@ -159,7 +161,9 @@ class WorkIn final : public BlockWork {
     BlockSamples block = read_weighed(own, plan_.around_finer_nodes(own));
     const OctreeData tree = build(block);
     poisson::Density density;
-    if (what.supports || options_.density_face > 0) density = density_of(tree, block.samples);
+    const MeshColumns& columns = shared_.columns;
+    const bool trims = columns.spacing != MeshColumns::kNone;
+    if (what.supports || trims || options_.density_face > 0) density = density_of(tree, block.samples);
     const poisson::Resolution resolution = resolution_of(tree, block.samples);
     Samples looked_at;
     if (what.looks) {
@@ -172,20 +176,41 @@ class WorkIn final : public BlockWork {
     const OctreeView view = resolution.view(tree);
     exec::Buffer<float> u = read_field(view, field);
     surface::SurfacePlaces places;
-    surface::ExtractOptions extraction{options_.curvature, options_.normals};
+    surface::ExtractOptions extraction{options_.curvature, columns.normals != MeshColumns::kNone};
     extraction.places = &places;
     extraction.counted = {own.begin, own.end};
     field::FieldView function{view, u.data(), static_cast<float>(shared_.report.isovalue),
-                              options_.domain_faces == DomainFaces::closed,
+                              what.faces == DomainFaces::closed,
                               resolution.bricks.empty() ? nullptr : resolution.bricks.data()};
     if (what.looks) diagnose::look_at_field_of_block(ex_, function, looked_at.view(), own.begin, own.end, counts_);
     if (options_.isovalue) function.isovalue = static_cast<float>(*options_.isovalue);
     const surface::Surface surface = surface::extract_surface(ex_, function, extraction);
-    if (what.looks) shared_.report.lone_corners += surface.lone_corners;
+    shared_.report.lone_corners += surface.lone_corners;
     exec::Buffer<float> per_cube, per_world;  // samples per area of the cube's unit, and of the world's
-    if (what.supports) per_cube = density_at(tree, density, surface, std::ldexp(1.0, -2 * depth_));
-    if (options_.density_face > 0) per_world = density_at(tree, density, surface, options_.density_face);
-    add_mesh(own, surface, places, per_cube, per_world, meshes);
+    exec::Buffer<float> spacing;
+    const ArrayView<const Vec3f> vertices = surface.positions.cview();
+    if (what.supports) per_cube = density_at(tree, density, vertices, std::ldexp(1.0, -2 * depth_));
+    if (options_.density_face > 0) per_world = density_at(tree, density, vertices, options_.density_face);
+    if (trims) {
+      spacing = exec::make_buffer<float>(ex_, surface.positions.size());
+      poisson::evaluate_spacing(ex_, tree, density, surface.positions.cview(), surface.normals.cview(), spacing.view());
+    }
+    add_mesh(own, surface, places, {std::move(per_cube), std::move(per_world), std::move(spacing)}, meshes);
+  }
+
+  std::vector<std::vector<float>> densities(const BlockRange& own, std::span<const Vec3f> points,
+                                            std::span<const double> faces) override {
+    BlockSamples block = read(own, plan_.around_finer_nodes(own), {});
+    const OctreeData tree = build(block);
+    const poisson::Density density = density_of(tree, block.samples);
+    auto there = exec::make_buffer<Vec3f>(ex_, std::ssize(points));
+    copy_to_device(ex_, points.data(), there.view());
+    std::vector<std::vector<float>> all;
+    for (const double face : faces) {
+      const Fetched<float> found = fetched(density_at(tree, density, there.cview(), face).cview());
+      all.emplace_back(found.data(), found.data() + found.view().size);
+    }
+    return all;
   }
 
   diagnose::Counts looks() override { return diagnose::read_counts(ex_, counts_); }
@@ -203,6 +228,18 @@ class WorkIn final : public BlockWork {
   template <class T>
   void give(ArrayView<const T> given, exec::Buffer<T>& nodes) {
     copy_to_device(ex_, given.data, nodes.view().part(0, given.size));
+  }
+
+  /// Of the block's own samples, for the limit of a cut.
+  void write_spacing(const BlockRange& own, const BlockSamples& block, const OctreeData& tree,
+                     const poisson::Density& density) {
+    auto spacing = exec::make_buffer<float>(ex_, block.own);
+    const auto own_of = [&](const exec::Buffer<Vec3f>& values) {
+      return values.cview().part(block.first_own, block.own);
+    };
+    poisson::evaluate_spacing(ex_, tree, density, own_of(block.samples.positions), own_of(block.samples.normals),
+                              spacing.view());
+    shared_.values.write(SampleValues::spacing, own.samples.begin, fetched(spacing.cview()).view());
   }
 
   template <class T>
@@ -373,26 +410,38 @@ class WorkIn final : public BlockWork {
 
   /// Samples per area.
   /// @param face  area of a face of a finest cell
-  exec::Buffer<float> density_at(const OctreeData& tree, const poisson::Density& density,
-                                 const surface::Surface& surface, double face) {
-    auto values = exec::make_buffer<float>(ex_, surface.positions.size());
-    poisson::evaluate_density(ex_, tree, density, surface.positions.cview(), values.view());
+  exec::Buffer<float> density_at(const OctreeData& tree, const poisson::Density& density, ArrayView<const Vec3f> points,
+                                 double face) {
+    auto values = exec::make_buffer<float>(ex_, points.size);
+    poisson::evaluate_density(ex_, tree, density, points, values.view());
     for_each(ex_, "scale.density", values.size(), poisson::PerArea{face, values.view()});
     return values;
   }
 
+  /// Values at the vertices of an extracted surface, those that are needed.
+  struct ValuesOfVertices {
+    exec::Buffer<float> per_cube, per_world, spacing;
+  };
   void add_mesh(const BlockRange& own, const surface::Surface& surface, const surface::SurfacePlaces& places,
-                const exec::Buffer<float>& per_cube, const exec::Buffer<float>& per_world, BlockMeshes& meshes) {
+                const ValuesOfVertices& values, BlockMeshes& meshes) {
     const auto positions = fetched(surface.positions.cview()), normals = fetched(surface.normals.cview());
-    const auto densities = fetched(per_world.cview()), supports = fetched(per_cube.cview());
+    const auto densities = fetched(values.per_world.cview()), supports = fetched(values.per_cube.cview());
+    const auto spacing = fetched(values.spacing.cview());
     const auto triangles = fetched(surface.triangles.cview());
     const auto keys = fetched(places.keys.cview()), cells = fetched(places.cells.cview());
     const auto segments = fetched(places.segments.cview());
-    std::vector<const std::byte*> columns{reinterpret_cast<const std::byte*>(positions.data())};
-    if (options_.normals) columns.push_back(reinterpret_cast<const std::byte*>(normals.data()));
-    if (options_.density_face > 0) columns.push_back(reinterpret_cast<const std::byte*>(densities.data()));
-    const auto span = [](const auto& values) {
-      return std::span(values.data(), static_cast<std::size_t>(values.view().size));
+    const MeshColumns& all = shared_.columns;
+    std::vector<const std::byte*> columns(all.bytes.size());
+    const auto set = [&](std::size_t column, const auto& of_vertices) {
+      if (column != MeshColumns::kNone) columns[column] = reinterpret_cast<const std::byte*>(of_vertices.data());
+    };
+    columns[0] = reinterpret_cast<const std::byte*>(positions.data());
+    set(all.normals, normals);
+    set(all.density, densities);
+    set(all.spacing, spacing);
+    set(all.supports, supports);
+    const auto span = [](const auto& from) {
+      return std::span(from.data(), static_cast<std::size_t>(from.view().size));
     };
     meshes.add(shared_.host,
                {own.begin, own.end, span(keys), columns, span(triangles), span(cells), span(segments), span(supports)});

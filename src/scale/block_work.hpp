@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "diagnose/counts.hpp"
@@ -21,6 +22,15 @@
 
 namespace pointskin::scale {
 
+/// The columns of the mesh of a run: positions, what was asked for, and what a cut needs.
+struct MeshColumns {
+  static constexpr std::size_t kNone = 0;  // where positions are
+  std::vector<std::int64_t> bytes{sizeof(Vec3f)};
+  std::size_t normals = kNone, density = kNone;
+  std::size_t spacing = kNone;   ///< of samples, where the surface is cut
+  std::size_t supports = kNone;  ///< density in the cube's units, for the pieces of what is left
+};
+
 /// What all blocks of a run share, in the host's memory and on the disk.
 struct SharedOfBlocks {
   exec::Cpu& host;
@@ -30,6 +40,7 @@ struct SharedOfBlocks {
   BlockPlan plan;
   SampleValues values;
   std::optional<CoarseLevels> coarse{};  ///< once blocks are planned
+  MeshColumns columns{};                 ///< once it is known whether to cut
 };
 
 /// Steps of a run in the order in which they are called, each for every block. Every one builds the block's octree.
@@ -60,8 +71,13 @@ class BlockWork {
   struct Extraction {
     bool supports = false;  ///< pieces without samples go
     bool looks = false;     ///< counts what may be wrong
+    DomainFaces faces = DomainFaces::closed;
   };
   virtual void extract(const BlockRange& own, const Spool& field, const Extraction& what, BlockMeshes& meshes) = 0;
+
+  /// Samples per area at points in the block's own cells, for areas of a face of a finest cell in one unit after another.
+  virtual std::vector<std::vector<float>> densities(const BlockRange& own, std::span<const Vec3f> points,
+                                                    std::span<const double> faces) = 0;
 
   /// What the blocks have counted so far. Waits.
   [[nodiscard]] virtual diagnose::Counts looks() = 0;

@@ -24,14 +24,21 @@ surface::PieceCounts BlockMeshes::keep_pieces(const surface::PieceOptions& optio
   const RankedBits stays = vertices_that_stay();
   for (std::size_t block = 0; block < blocks_.size(); ++block) leave_out(block, stays);
   const std::int64_t before = inner_;
-  std::vector<Outer> outer;
-  for (std::size_t i = 0; i < outer_.size(); ++i)
-    if (stays.at(before + static_cast<std::int64_t>(i))) outer.push_back(std::move(outer_[i]));
-  outer_ = std::move(outer);
+  leave_out_outer(stays);
   inner_ = stays.before(before);
   std::erase_if(chunks_, [](const Chunk& chunk) { return chunk.count == 0; });
   place_chunks();
   return counts;
+}
+
+void BlockMeshes::leave_out_outer(const RankedBits& stays) {
+  Outer outer;
+  for (std::int64_t i = 0; i < outer_.size(); ++i) {
+    if (!stays.at(inner_ + i)) continue;
+    outer.keys.push_back(outer_.keys[static_cast<std::size_t>(i)]);
+    outer.values.insert(outer.values.end(), outer_values(i), outer_values(i) + column_begins_.back());
+  }
+  outer_ = std::move(outer);
 }
 
 void BlockMeshes::join_pieces() {

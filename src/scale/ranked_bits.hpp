@@ -14,6 +14,7 @@ class RankedBits {
   explicit RankedBits(std::int64_t size) : words_(static_cast<std::size_t>(size / 64) + 1), before_(words_.size()) {}
 
   void set(std::int64_t i) { words_[word_of(i)] |= bit_of(i); }
+  void reset(std::int64_t i) { words_[word_of(i)] &= ~bit_of(i); }
   [[nodiscard]] bool at(std::int64_t i) const { return (words_[word_of(i)] & bit_of(i)) != 0; }
 
   /// Once all bits are set.
@@ -24,6 +25,9 @@ class RankedBits {
       sum += static_cast<std::uint32_t>(std::popcount(words_[w]));
     }
   }
+
+  /// Set bits; after count().
+  [[nodiscard]] std::int64_t ones() const { return std::int64_t{before_.back()} + std::popcount(words_.back()); }
 
   /// Set bits before element i, in [0, size]; after count(). O(1)
   [[nodiscard]] std::int64_t before(std::int64_t i) const {

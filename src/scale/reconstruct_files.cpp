@@ -20,6 +20,7 @@
 #include "reconstruct/coordinate_step.hpp"
 #include "reconstruct/fit_cube.hpp"
 #include "reconstruct/mesh_of_field.hpp"
+#include "reconstruct/trim_to_samples.hpp"
 #include "scale/block_run.hpp"
 #include "scale/cloud_extent.hpp"
 #include "scale/sorted_cloud.hpp"
@@ -81,7 +82,7 @@ class FilesRun {
       fit = fit_cloud();
       result_.run.normals_done = NormalsDone::turned;
       diagnose::warn_of_turning(result_.run.warnings);
-    } else {
+    } else if (judge() != NormalsVerdict::inside_out || options_.trim != Options::kAutomaticTrim) {
       diagnose::warn_of_normals(findings(fit), judge(), result_.run.warnings);
     }
     warn(fit);
@@ -126,6 +127,11 @@ class FilesRun {
     Fit fit = fit_around_inliers();
     const surface::PieceCounts& pieces = fit.report.pieces;
     result_.run.pieces = {pieces.pieces, pieces.pieces_removed, pieces.triangles_removed};
+    result_.run.trim = {};
+    if (fit.report.trim > 0) {
+      result_.run.trim = detail::trim_report(fit.report.cut, place_.frame, options_.depth, fit.report.trim_limit);
+      result_.run.trim.quantile = fit.report.trim;
+    }
     detail::check_triangles(fit.meshes->triangles(), result_.run);
     return fit;
   }
@@ -209,6 +215,8 @@ class FilesRun {
     blocks.isovalue = options_.isovalue;
     blocks.largest = options_.largest;
     blocks.min_component = options_.min_component;
+    blocks.trim = options_.trim;
+    blocks.island_ratio = options_.island_ratio;
     if (options_.density) {
       const double cell = place_.frame.size / static_cast<double>(std::int64_t{1} << options_.depth);
       blocks.density_face = cell * cell;
@@ -300,7 +308,6 @@ std::vector<std::string> missing_in_blocks(const Options& options) {
   name(options.field != FieldKind::poisson, "the distance field");
   name(options.envelope != nullptr, "an envelope");
   name(options.offset != 0, "an offset");
-  name(options.trim != 0, "trimming");
   name(options.weakness, "weakness");
   name(options.attributes, "attributes");
   return missing;

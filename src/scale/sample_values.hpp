@@ -12,12 +12,15 @@ namespace pointskin::scale {
 /// Columns of a float a sample, on the disk, in the order of the samples.
 class SampleValues {
  public:
-  enum Column : std::uint8_t { area, depth, trust, own_side, examined_depth };
-  static constexpr std::int64_t kColumns = 5;
+  /// `spacing` is there where the surface is to be cut.
+  enum Column : std::uint8_t { area, depth, trust, own_side, examined_depth, spacing };
+  static constexpr std::int64_t columns(bool trims) { return trims ? 6 : 5; }
 
   /// @throws Error as Spool
-  SampleValues(const std::string& folder, std::int64_t samples)
-      : samples_(samples), spool_(folder, kColumns * samples * std::int64_t{sizeof(float)}) {}
+  SampleValues(const std::string& folder, std::int64_t samples, bool trims)
+      : samples_(samples), spool_(folder, columns(trims) * samples * std::int64_t{sizeof(float)}) {}
+
+  [[nodiscard]] std::int64_t samples() const { return samples_; }
 
   /// Of samples first .. first + size - 1; for many threads at once.
   /// @throws Error as Spool

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <system_error>
 #include <vector>
 
@@ -48,16 +49,11 @@ io::MeshParts vertex_parts(const ReadColumn& read, const VertexColumns& columns,
   return parts;
 }
 
-/// Of vertices by their numbers, those that follow each other at once.
+/// Of vertices by their numbers.
 ReadColumn of_vertices(const BlockMeshes& meshes, const std::vector<std::int64_t>& vertices) {
   return [&](std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) {
-    const auto number = [&](std::int64_t i) { return vertices[static_cast<std::size_t>(i)]; };
-    const std::int64_t last = first + count;
-    for (std::int64_t begin = first, end = first; begin < last; begin = end) {
-      while (end < last && number(end) - number(begin) == end - begin) ++end;
-      meshes.read_column(column, number(begin), end - begin, out);
-      out += (end - begin) * meshes.column_bytes(column);
-    }
+    meshes.read_column(
+        column, std::span(vertices).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)), out);
   };
 }
 

@@ -1,10 +1,10 @@
 #include "surface/split_surface.hpp"
 
 #include <bit>
-#include <cmath>
 #include <utility>
 
 #include "exec/this_space.hpp"
+#include "surface/split_triangle.hpp"
 
 namespace pointskin::surface {
 namespace {
@@ -19,13 +19,6 @@ struct IsSplit {
   }
 };
 
-/// An edge by its ends, the smaller id above the larger one.
-PSK_HD std::uint64_t edge_key(std::int32_t a, std::int32_t b) {
-  const auto low = static_cast<std::uint32_t>(a < b ? a : b);
-  const auto high = static_cast<std::uint32_t>(a < b ? b : a);
-  return static_cast<std::uint64_t>(low) << 32 | high;
-}
-
 /// The two crossed edges of every split triangle.
 struct ListEdges {
   SidesView mesh;
@@ -33,8 +26,11 @@ struct ListEdges {
   ArrayView<std::uint64_t> keys;
   PSK_HD void operator()(std::int64_t i) const {
     const SplitTriangle s = mesh.split(split[i]);
-    keys[2 * i] = edge_key(s.alone, s.next);
-    keys[2 * i + 1] = edge_key(s.alone, s.last);
+    const auto key = [](std::int32_t a, std::int32_t b) {
+      return edge_key(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+    };
+    keys[2 * i] = key(s.alone, s.next);
+    keys[2 * i + 1] = key(s.alone, s.last);
   }
 };
 
@@ -42,20 +38,12 @@ struct ListEdges {
 struct NewIds {
   ArrayView<const std::int32_t> rank;    // (v) of the vertices that stay
   ArrayView<const std::uint64_t> edges;  // crossed, ascending
-  std::int32_t kept;                     // vertices that stay
+  std::int32_t stay;                     // vertices that stay
 
+  PSK_HD std::int32_t kept(std::int32_t v) const { return rank[v]; }
   PSK_HD std::int32_t on_edge(std::int32_t a, std::int32_t b) const {
-    const std::uint64_t key = edge_key(a, b);
-    std::int64_t low = 0;
-    std::int64_t high = edges.size - 1;
-    while (low < high) {
-      const std::int64_t middle = (low + high) / 2;
-      if (edges[middle] < key)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    return kept + static_cast<std::int32_t>(low);
+    const std::uint64_t key = edge_key(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+    return stay + static_cast<std::int32_t>(place_of_edge(edges, key));
   }
 };
 
@@ -80,44 +68,7 @@ struct EmitSplitTriangles {
   ArrayView<const std::int32_t> first;
   ArrayView<Triangle> out;
 
-  PSK_HD void operator()(std::int64_t t) const {
-    const int corners = mesh.kept_corners(t);
-    if (corners == 0) return;
-    Triangle* to = out.data + first[t];
-    if (corners == 3) {
-      const std::int32_t* v = mesh.triangles[t].data();
-      *to = {ids.rank[v[0]], ids.rank[v[1]], ids.rank[v[2]]};
-      return;
-    }
-    const SplitTriangle s = mesh.split(t);
-    const std::int32_t on_next = ids.on_edge(s.alone, s.next);
-    const std::int32_t on_last = ids.on_edge(s.alone, s.last);
-    if (corners == 1) {
-      *to = {ids.rank[s.alone], on_next, on_last};
-      return;
-    }
-    const std::int32_t next = ids.rank[s.next];
-    const std::int32_t last = ids.rank[s.last];
-    if (diagonal(s, s.next, s.last) <= diagonal(s, s.last, s.next)) {
-      to[0] = {on_next, next, on_last};
-      to[1] = {next, last, on_last};
-    } else {
-      to[0] = {on_next, next, last};
-      to[1] = {on_next, last, on_last};
-    }
-  }
-
-  /// Squared length from `vertex` to the crossing of the opposite edge, from s.alone to `other`.
-  PSK_HD double diagonal(const SplitTriangle& s, std::int32_t vertex, std::int32_t other) const {
-    const double t = mesh.crossing(s.alone, other);
-    const Vec3f& from = mesh.positions[s.alone];
-    const Vec3f& to = mesh.positions[other];
-    const Vec3f& p = mesh.positions[vertex];
-    const double x = from.x + t * (static_cast<double>(to.x) - from.x) - p.x;
-    const double y = from.y + t * (static_cast<double>(to.y) - from.y) - p.y;
-    const double z = from.z + t * (static_cast<double>(to.z) - from.z) - p.z;
-    return x * x + y * y + z * z;
-  }
+  PSK_HD void operator()(std::int64_t t) const { split_triangle(mesh, t, ids, out.data + first[t]); }
 };
 
 /// Positions, or normals, at the crossings: linear along the edge; normals of unit length again.
@@ -128,17 +79,11 @@ struct Interpolate {
   bool normalise;
   ArrayView<Vec3f> out;
 
-  /// v / |v|, or `instead` where opposed normals cancel.
-  PSK_HD static Vec3f unit(const Vec3f& v, const Vec3f& instead) { return v == Vec3f{} ? instead : outward(-v); }
-
   PSK_HD void operator()(std::int64_t i) const {
     const auto a = static_cast<std::int32_t>(edges[i] >> 32);
     const auto b = static_cast<std::int32_t>(edges[i] & 0xffffffff);
     const float t = mesh.crossing_upwards(a, b);
-    const Vec3f& from = in[a];
-    const Vec3f& to = in[b];
-    const Vec3f v{from.x + t * (to.x - from.x), from.y + t * (to.y - from.y), from.z + t * (to.z - from.z)};
-    out[i] = normalise ? unit(v, from) : v;
+    out[i] = normalise ? normal_on_crossing(in[a], in[b], t) : on_crossing(in[a], in[b], t);
   }
 };
 

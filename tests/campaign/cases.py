@@ -93,9 +93,10 @@ RECONSTRUCT = {**SURFACE, **FIT, **NORMALS,
                "--normals": (["given", "auto", "repair", "estimate"], ["maybe"]),
                "--max-memory": (["16M", "24M", "40M", "100M", "1G"], ["-1", "x"]),
                "--dry-run": ([None], [])}
+TRIM = {"--trim": ([*FIT["--trim"][0], "auto"], FIT["--trim"][1])}
 ONE_MORE = {"--offset": (["0.01", "-0.01", "0.1", "-0.1", "1"], ["nan"]), "--weakness": ([None], [])}
 TABLES = {
-    "reconstruct": {**RECONSTRUCT, **ONE_MORE},
+    "reconstruct": {**RECONSTRUCT, **TRIM, **ONE_MORE},
     "problems": {name: values for name, values in RECONSTRUCT.items() if name != "--field"},
     "edit": {**SURFACE, **FIT, "--weakness": ([None], []), "--cold": ([None], [])},
     "deform": {**SURFACE, **FIT, **ONE_MORE},
@@ -186,7 +187,8 @@ def reconstruct(r, command="reconstruct"):
     return case
 
 
-BLOCKS = {**SURFACE, **{name: FIT[name] for name in ("--open", "--confidence", "--largest", "--min-component", "--density")},
+BLOCKS = {**SURFACE, **TRIM,
+          **{name: FIT[name] for name in ("--open", "--confidence", "--largest", "--min-component", "--density", "--island-ratio")},
           "--normals": (["given"], [])}
 
 

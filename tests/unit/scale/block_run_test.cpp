@@ -64,6 +64,8 @@ class BlockRun : public testing::Test {
     options.domain_faces = options_.domain_faces;
     options.largest = options_.largest;
     options.min_component = options_.min_component;
+    options.trim = options_.trim;
+    options.island_ratio = options_.island_ratio;
     return options;
   }
 
@@ -239,6 +241,24 @@ TEST_F(BlockRun, GivesItWhereSamplesEndAtTheBorderOfABlock) {
     start(cloud, options);
     expect_as_whole(6, 16);
   }
+}
+
+TEST_F(BlockRun, CutsWhereSamplesEnd) {
+  Cloud cloud;
+  const Cloud sphere = jittered(sphere_cloud(40000, 14), 15, 0.003F);
+  for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
+    if (sphere.positions[i].z > 0.3F * sphere.positions[i].x + 0.4F) continue;
+    cloud.positions.push_back(sphere.positions[i]);
+    cloud.normals.push_back(sphere.normals[i]);
+  }
+  Options options = at_depth(8, 4);
+  options.trim = 0.03;
+  start(cloud, options);
+  for (const int blocks : {1, 2, 7}) expect_as_whole(5, blocks);
+  expect_as_whole(6, 16);
+  options.island_ratio = 0;
+  start(cloud, options);
+  expect_as_whole(6, 5);
 }
 
 TEST_F(BlockRun, NeedsTheRingThatItTakes) {

@@ -59,6 +59,7 @@ class ReconstructFiles : public testing::Test {
     EXPECT_EQ(blocks.pieces.pieces, whole.pieces.pieces);
     EXPECT_EQ(blocks.pieces.pieces_removed, whole.pieces.pieces_removed);
     EXPECT_EQ(blocks.pieces.triangles_removed, whole.pieces.triangles_removed);
+    expect_trim(whole.trim);
     EXPECT_EQ(blocks.strays, whole.strays);
     EXPECT_EQ(blocks.farthest_strays, whole.farthest_strays);
     EXPECT_EQ(blocks.depth, whole.depth);
@@ -70,6 +71,19 @@ class ReconstructFiles : public testing::Test {
       EXPECT_EQ(blocks.levels[d].nodes, whole.levels[d].nodes) << "depth " << d;
       EXPECT_EQ(blocks.levels[d].iterations, whole.levels[d].iterations) << "depth " << d;
     }
+  }
+
+  void expect_trim(const TrimReport& whole) const {
+    const TrimReport& blocks = files_.run.trim;
+    EXPECT_EQ(blocks.quantile, whole.quantile);
+    EXPECT_EQ(blocks.density, whole.density);
+    EXPECT_EQ(blocks.area_before, whole.area_before);
+    EXPECT_EQ(blocks.area_removed, whole.area_removed);
+    EXPECT_EQ(blocks.triangles_before, whole.triangles_before);
+    EXPECT_EQ(blocks.triangles_removed, whole.triangles_removed);
+    EXPECT_EQ(blocks.triangles_split, whole.triangles_split);
+    EXPECT_EQ(blocks.islands_removed, whole.islands_removed);
+    EXPECT_EQ(blocks.holes_filled, whole.holes_filled);
   }
 
   void expect_error(ErrorCode code, const std::string& says, const std::function<void()>& work) const {
@@ -147,9 +161,9 @@ TEST_F(ReconstructFiles, IsPlannedAsItIsDone) {
     EXPECT_GE(plan.memory_bytes, files.run.device_peak_bytes);
     EXPECT_GE(plan.temp_bytes, 80 * plan.points);
   }
-  expect_error(ErrorCode::usage, "trimming", [&] {
+  expect_error(ErrorCode::usage, "weakness", [&] {
     Options options = at_depth(8);
-    options.trim = 0.1;
+    options.weakness = true;
     (void)plan_files({input_}, options, scale(50 * kMegabyte));
   });
 }
@@ -283,6 +297,77 @@ TEST_F(ReconstructFiles, ObeysBoundariesAndIsovalues) {
   expect_as_whole(options, 50 * kMegabyte);
 }
 
+/// A sphere with a hole, and one in the middle of nowhere.
+Cloud open_cloud() {
+  Cloud cloud = sphere_cloud(40000, 14);
+  std::vector<bool> keep;
+  for (const Vec3f& p : cloud.positions) keep.push_back(p.z < 0.6F && (p.x < 0.8F || p.y > 0));
+  keep_where(cloud, keep);
+  append(cloud, translated(scaled(sphere_cloud(1000, 7), 0.2F), {1.4F, 1.4F, 1.4F}));
+  return cloud;
+}
+
+TEST_F(ReconstructFiles, CutsWhereSamplesEnd) {
+  start(open_cloud());
+  Options options = at_depth(8);
+  for (const double trim : {0.005, 0.05}) {
+    options.trim = trim;
+    for (const std::int64_t megabytes : {0, 50, 35}) {
+      expect_as_whole(options, megabytes * kMegabyte);
+      EXPECT_GT(files_.run.trim.triangles_split, 100);
+    }
+    EXPECT_GT(files_.blocks, 3);
+  }
+  options.island_ratio = 0.2;
+  expect_as_whole(options, 50 * kMegabyte);
+  EXPECT_GT(files_.run.trim.islands_removed, 0);
+  options.island_ratio = 0;
+  options.density = true;
+  options.normals = false;
+  expect_as_whole(options, 50 * kMegabyte);
+  options.largest = true;
+  expect_as_whole(options, 50 * kMegabyte);
+  EXPECT_GT(files_.run.pieces.pieces_removed, 0);
+  options.normals = true;
+  options.largest = false;
+  options.min_component = 500;
+  options.boundary = Boundary::dirichlet;
+  expect_as_whole(options, 50 * kMegabyte);
+}
+
+TEST_F(ReconstructFiles, CutsAmongOutliers) {
+  Cloud cloud = open_cloud();
+  append(cloud, jittered(box_cloud(300, 6), 7, 0.5));
+  start(cloud);
+  Options options = at_depth(8);
+  options.point_normals = PointNormals::given;
+  options.density = true;
+  for (const double trim : {0.02, Options::kAutomaticTrim}) {
+    options.trim = trim;
+    expect_as_whole(options, 60 * kMegabyte);
+    EXPECT_GT(files_.blocks, 1);
+    EXPECT_GT(files_.run.pieces.pieces_removed, 0);
+  }
+}
+
+TEST_F(ReconstructFiles, ChoosesWhereToCutAsTheWholeDoes) {
+  Options options = at_depth(8);
+  options.trim = Options::kAutomaticTrim;
+  start(open_cloud());
+  expect_as_whole(options, 50 * kMegabyte);
+  EXPECT_GT(files_.run.trim.quantile, 0);
+  start(torus_cloud(60000, 1));  // closed: nothing is cut
+  expect_as_whole(options, 50 * kMegabyte);
+  EXPECT_EQ(files_.run.trim.quantile, 0);
+  Cloud cut_by_faces = sphere_cloud(40000, 14);
+  std::vector<bool> keep;
+  for (const Vec3f& p : cut_by_faces.positions) keep.push_back(p.z < -0.3F);
+  keep_where(cut_by_faces, keep);  // runs into the faces of the cube
+  start(cut_by_faces);
+  expect_as_whole(options, 50 * kMegabyte);
+  EXPECT_GT(files_.run.trim.quantile, 0);
+}
+
 TEST_F(ReconstructFiles, TakesLengthsOfNormalsForConfidence) {
   Options options = at_depth(8);
   options.confidence = true;
@@ -301,9 +386,9 @@ TEST_F(ReconstructFiles, SaysWhatBlocksCannotDo) {
   write_old_output();
   Options options = at_depth(7);
   options.weakness = true;
-  options.trim = 0.01;
-  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"trimming", "weakness"}));
-  expect_error(ErrorCode::usage, "trimming, weakness", [&] { reconstruct(options); });
+  options.attributes = true;
+  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"weakness", "attributes"}));
+  expect_error(ErrorCode::usage, "weakness, attributes", [&] { reconstruct(options); });
   expect_error(ErrorCode::usage, "depth", [&] { reconstruct(at_depth(6)); });
   expect_error(ErrorCode::usage, "one file", [&] {
     (void)reconstruct_files({input_, input_}, output_, at_depth(7), scale(0));

@@ -54,7 +54,7 @@ def make_inputs(program, folder):
     (folder / "b.ply").write_bytes(ply(sphere(600, 0.7), NORMALS))
     (folder / "c.ply").write_bytes(ply(sphere(500), NORMALS))
     (folder / "d.ply").write_bytes(ply(sphere(400), NORMALS))
-    (folder / "larger.ply").write_bytes(ply(sphere(3000), NORMALS))
+    (folder / "open.ply").write_bytes(ply((row for row in sphere(3000) if row[2] < 0.5), NORMALS))
     (folder / "bare.xyz").write_text("".join("%.6f %.6f %.6f\n" % row[:3] for row in sphere(400)))
     grid = ((float(x), float(y), float(z)) for x in range(6) for y in range(6) for z in range(6))
     (folder / "particles.ply").write_bytes(ply(grid, NORMALS[:3]))
@@ -80,8 +80,8 @@ COMMANDS = {
     "reconstruct-each": command(
         "reconstruct @a.ply @b.ply @c.ply @d.ply --each -o out_{}.ply --report r_{}.json --depth 4 --threads 2",
         "out_a.ply out_b.ply out_c.ply out_d.ply", "r_a.json r_b.json r_c.json r_d.json", at_once=2),
-    "reconstruct-blocks": command(  # some 8 blocks
-        "reconstruct @larger.ply -o out.ply --report report.json --depth 8 --iterations 1 --max-memory 40M --temp . --threads 2",
+    "reconstruct-blocks": command(  # some 8 blocks, cut where the samples end
+        "reconstruct @open.ply -o out.ply --report report.json --depth 8 --iterations 1 --trim 0.05 --density --max-memory 40M --temp . --threads 2",
         "out.ply", "report.json", slow=True),
     "orient": command("orient @bare.xyz -o out.ply --threads 2", "out.ply"),
     "boolean": command("boolean @a.ply @b.ply --op union -o out.obj --cloud points.ply --depth 4 --threads 2", "out.obj points.ply"),

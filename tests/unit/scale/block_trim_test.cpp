@@ -173,9 +173,9 @@ TEST_F(BlockTrim, ClearsSmallPiecesOfBothSidesAcrossBlocks) {
 TEST_F(BlockTrim, LeavesAllOrNothing) {
   const Whole whole = made_whole(4, 1);
   for (const int blocks : {1, 6}) {
-    expect_as_whole(whole, blocks, {10, 0.001});
+    expect_as_whole(whole, blocks, {10, 0});
     EXPECT_EQ(counts_.triangles_removed, 0);
-    expect_as_whole(whole, blocks, {-10, 0.001});
+    expect_as_whole(whole, blocks, {-10, 0});
     EXPECT_EQ(counts_.triangles_removed, counts_.triangles_before);
   }
 }

@@ -286,7 +286,8 @@ PSK_HD void describe(const Neighbourhood<kMost>& points, const Plane& plane, con
   Vec3d normal = plane.axes.vectors[0];
   const double middle = plane.axes.values[1];
   const double flatness = middle > 0 ? 1 - plane.axes.values[0] / middle : 0.0;
-  line.flatness = static_cast<float>(flatness > 0 ? flatness : 0.0);
+  // Of points in a line both are rounding, and the smallest may be far below 0.
+  line.flatness = static_cast<float>(flatness > 1 ? 1.0 : flatness > 0 ? flatness : 0.0);
   double bend = 0;
   if (points.count > 8) {
     const Quadric q = fit_quadric(points, plane, weight);

@@ -64,7 +64,7 @@ class WorkIn final : public BlockWork {
     const int counted = poisson::counted_depth(depth_);
     const OctreeData tree = build(block, counted);
     const exec::Buffer<Facing> facing = poisson::sum_facing(ex_, tree, counted, block.samples);
-    coarse().add_facing(own, fetched(facing.cview().part(0, coarse().nodes())).view());
+    coarse().add_facing(own, fetched(of_last_coarse_level(tree, facing)).view());
   }
 
   void weigh(const BlockRange& own) override {
@@ -114,7 +114,7 @@ class WorkIn final : public BlockWork {
     const OctreeData tree = build(block);
     const poisson::Resolution resolution = resolution_of(tree, block.samples);
     const exec::Buffer<float> b = divergence_of(tree, block.samples, resolution);
-    coarse().add_divergence(own, fetched(b.cview().part(0, coarse().nodes())).view());
+    coarse().add_divergence(own, fetched(of_last_coarse_level(tree, b)).view());
     if (options_.screening <= 0) return;
     const poisson::Screening collapsed = poisson::collapse_samples(ex_, tree, block.samples.view());
     for (int d = plan_.cut_level(); d <= plan_.level(); ++d) {
@@ -247,6 +247,13 @@ class WorkIn final : public BlockWork {
     auto part = exec::make_buffer<T>(ex_, count);
     copy(ex_, from.cview().part(first, count), part.view());
     return part;
+  }
+
+  /// Of an array over the nodes of a block.
+  template <class T>
+  [[nodiscard]] ArrayView<const T> of_last_coarse_level(const OctreeData& tree, const exec::Buffer<T>& nodes) const {
+    const octree::LevelView level = tree.view().levels[plan_.level()];
+    return nodes.cview().part(level.first_node, level.nodes());
   }
 
   /// The cell bricks of the coarse levels, in the space.

@@ -19,17 +19,16 @@ using octree::OctreeView;
 using poisson::CollapsedSample;
 using poisson::Facing;
 
-/// Copies values at own nodes of a level that has the same numbers in both arrays.
+/// Copies values at own nodes of a level.
 template <class T>
 struct TakeOwn {
   octree::LevelView level;
   OwnNodes nodes;
-  ArrayView<const T> from;
-  ArrayView<T> to;
+  ArrayView<const T> from;  // (nodes of the level)
+  ArrayView<T> to;          // (nodes)
 
   void operator()(std::int64_t n) const {
-    if (nodes.holds(level.node_key(static_cast<std::int32_t>(n))))
-      to[level.first_node + n] = from[level.first_node + n];
+    if (nodes.holds(level.node_key(static_cast<std::int32_t>(n)))) to[level.first_node + n] = from[n];
   }
 };
 

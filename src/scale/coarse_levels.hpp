@@ -38,7 +38,7 @@ class CoarseLevels {
   [[nodiscard]] octree::LevelView last_level() const { return tree_.view().levels[plan_.level()]; }
   [[nodiscard]] std::int64_t nodes() const { return last_level().first_node + last_level().nodes(); }
 
-  /// @param facing  poisson::sum_facing() of a block with its ring
+  /// @param facing  of the last coarse level, poisson::sum_facing() of a block with its ring
   void add_facing(const BlockRange& own, ArrayView<const poisson::Facing> facing);
   /// Sums up the levels above K.
   void finish_facing();
@@ -61,7 +61,7 @@ class CoarseLevels {
   /// When all samples are noted: which bricks are resolved, and the normals that are splatted at these levels.
   void splat();
 
-  /// @param b  divergence of a block's octree
+  /// @param b  divergence of the last coarse level, in a block's octree
   void add_divergence(const BlockRange& own, ArrayView<const float> b);
   /// @param cells  (cells of the level) collapsed samples in a block's octree
   void add_collapsed(const BlockRange& own, int level, ArrayView<const poisson::CollapsedSample> cells);

@@ -169,5 +169,21 @@ TEST(NormalLines, OfEqualPointsAreNoGuess) {
   for (std::int64_t i = 0; i < 40; ++i) EXPECT_EQ(e.lines.flatness.data()[i], 0);
 }
 
+/// Both smaller eigenvalues are rounding there: their ratio is anything.
+TEST(NormalLines, OfPointsInALineAreFlatToAShare) {
+  test::Random random(16);
+  for (int line = 0; line < 200; ++line) {
+    const auto coordinate = [&] { return static_cast<float>(random.unit() - 0.5); };
+    const Vec3f along{coordinate(), coordinate(), coordinate()};
+    Cloud cloud;
+    for (int i = 0; i < 24; ++i) cloud.positions.push_back(along * static_cast<float>(random.below(7)));
+    const Estimated e(cloud);
+    for (std::int64_t i = 0; i < e.size(); ++i) {
+      ASSERT_GE(e.lines.flatness.data()[i], 0) << "line " << line;
+      ASSERT_LE(e.lines.flatness.data()[i], 1) << "line " << line;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pointskin

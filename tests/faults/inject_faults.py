@@ -4,9 +4,10 @@
     inject_faults.py PROGRAM SHIM [--long] [--commands NAME...] [--kinds KIND...] [--device cuda]
 
 Counts the calls of a run first. Then the n-th fails alone, and from the n-th on all fail; reads and writes are cut short
-as well. --long takes every n. Of allocations, of which each run makes tens of thousands, these are all of one command that
-does little more than read its arguments, and of every other command all that it makes beyond so many. Exit 1, and a line
-per finding. With --device cuda, which exits 77 where no GPU answers, the calls are those into its driver.
+as well. --long takes every n, but of a command that takes long some hundreds. Of allocations, of which each run makes
+tens of thousands, these are all of one command that does little more than read its arguments, and of every other command
+all that it makes beyond so many. Exit 1, and a line per finding. With --device cuda, which exits 77 where no GPU answers,
+the calls are those into its driver.
 """
 import argparse
 import collections
@@ -19,23 +20,25 @@ import runs
 FEW = {"once": 14, "from": 8}  # calls chosen of each command and kind where not all are taken
 FEW_OF_SLOW = {"once": 4, "from": 2}
 MANY_FROM = 200
+MOST_OF_SLOW = 500  # of each kind
 ARGUMENTS_ONLY = "formats"
 SKIPPED = 77
 
 
-def chosen_calls(count, mode, everything, first, few):
-    """@param first  calls before it are tried with another command"""
+def chosen_calls(count, mode, everything, first, few, most):
+    """@param first  calls before it are tried with another command; @param most  evenly spread, where everything is asked for"""
     if not everything:
         return runs.spread(count, few[mode])
     if mode == "from":
         return runs.spread(count, MANY_FROM)
-    return sorted({*runs.spread(min(first, count), FEW[mode]), *range(first, count + 1)})
+    after = runs.spread(count + 1 - first, most) if count >= first else []
+    return sorted({*runs.spread(min(first, count), FEW[mode]), *(first - 1 + call for call in after)})
 
 
-def faults_of(counts, kinds, everything, first_allocation, few):
+def faults_of(counts, kinds, everything, first_allocation, few, most):
     for kind in kinds:
         first = first_allocation if kind == "alloc" else 1
-        calls = [(mode, call) for mode in FEW for call in chosen_calls(counts[kind], mode, everything, first, few)]
+        calls = [(mode, call) for mode in FEW for call in chosen_calls(counts[kind], mode, everything, first, few, most)]
         if kind in ("read", "write") and counts[kind] > 0:
             calls.append(("short", 1))
         for mode, call in calls:
@@ -68,7 +71,8 @@ def main():
             if good.code != 0 or problems:
                 raise SystemExit(f"{name}: without a fault: exit code {good.code}: {good.err} {problems}")
             first = 1 if name == ARGUMENTS_ONLY else of_arguments
-            faults = list(faults_of(good.counts, kinds, args.long, first, FEW_OF_SLOW if one.slow else FEW))
+            few, most = (FEW_OF_SLOW, MOST_OF_SLOW) if one.slow else (FEW, sys.maxsize)
+            faults = list(faults_of(good.counts, kinds, args.long, first, few, most))
             results = runs.in_parallel(faults, lambda fault: bench.run(one, fault))
             codes, wrongs = collections.Counter(), collections.defaultdict(list)
             for fault, result in zip(faults, results):

@@ -52,7 +52,8 @@ std::vector<std::string> missing_in_blocks(const Options& options);
 /// leaves no memory for repairing them.
 /// Memory: a third for the coarse levels, the rest for one block with its ring; with a GPU the limit is for its memory, and the host
 /// has the coarse levels, and the samples and the mesh of one block on their way. Disk: 80 bytes a point while they are sorted, then
-/// 60, and 4 a node of the octree, and the mesh. Time: some two and a half times that of the whole in memory.
+/// 60, and 4 a node of the octree, and the mesh; with Options::trim 4 more a point, and the mesh twice. Time: some two and a half
+/// times that of the whole in memory.
 /// @param inputs   one binary PLY or NPY file of oriented points
 /// @param output   a PLY file, written whole or not at all; with ScaleOptions::split one for each block that has triangles, named by
 ///                 it and a number from 0 on before the extension, such as mesh_0003.ply: each has its own triangles, and the

@@ -430,7 +430,8 @@ void check_options(const BlockOptions& options) {
 }  // namespace
 
 BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options) {
-  constexpr int kPasses = 6;
+  const int passes = options.trim == 0 ? 6 : 7;
+  const std::int64_t meshes = options.trim == 0 ? 1 : 2;  // the one that is cut, and what is left
   constexpr std::int64_t kMesh = 6;  // bytes a node: 0.26 triangles for a sphere, half as many vertices with normals
   check_options(options);
   BlockPlan plan(ex, cloud, plan_setup(cloud.size(), options));
@@ -441,11 +442,11 @@ BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const Blo
   return {static_cast<int>(plan.blocks().size()),
           plan.level(),
           plan.ring(),
-          kPasses,
+          passes,
           sizes.nodes,
           sizes.own_nodes,
           sizes.largest_bytes,
-          values * std::int64_t{sizeof(float)} + kMesh * sizes.own_nodes};
+          values * std::int64_t{sizeof(float)} + meshes * kMesh * sizes.own_nodes};
 }
 
 BlockMeshes reconstruct_blocks(const MakeBlockWork& make, exec::Cpu& host, const SortedCloud& cloud,

@@ -60,8 +60,8 @@ class PartOfCut {
 /// @param meshes  after finish()
 /// @param counts  receives what surface::trim_surface() counts
 /// @throws Error as BlockMeshes::read_block
-/// Reads all blocks three times, and four times more where pieces may be too small. In memory: a block with its vertices, 12 bytes
-/// a triangle and 61 a vertex; a byte for 5 vertices of the whole; 64 for an edge that is crossed. Deterministic: sums are exact.
+/// Reads all blocks twice, and up to five times more where pieces may be too small. In memory: a block with its vertices, 12 bytes
+/// a triangle and 61 a vertex; a byte for 2 vertices of the whole; 64 for an edge that is crossed. Deterministic: sums are exact.
 BlockCut find_cut(const BlockMeshes& meshes, const CutColumns& from, const surface::TrimOptions& options,
                   surface::TrimCounts& counts);
 

@@ -244,10 +244,17 @@ void BlockMeshes::read_column(std::size_t column, std::int64_t first, std::int64
 
 void BlockMeshes::read_column(std::size_t column, std::span<const std::int64_t> vertices, std::byte* out) const {
   const auto number = [&](std::int64_t i) { return vertices[static_cast<std::size_t>(i)]; };
+  constexpr std::int64_t kGap = 256, kMost = 64 << 10;  // a few more are sooner read than asked for again
+  const std::int64_t bytes = setup_.columns[column];
+  std::vector<std::byte> values;
   for (std::int64_t begin = 0, end = 0; begin < std::ssize(vertices); begin = end) {
-    while (end < std::ssize(vertices) && number(end) - number(begin) == end - begin) ++end;
-    read_column(column, number(begin), end - begin, out);
-    out += (end - begin) * setup_.columns[column];
+    for (end = begin + 1; end < std::ssize(vertices); ++end)
+      if (number(end) - number(end - 1) > kGap || number(end) - number(begin) >= kMost) break;
+    const std::int64_t count = number(end - 1) - number(begin) + 1;
+    values.resize(static_cast<std::size_t>(count * bytes));
+    read_column(column, number(begin), count, values.data());
+    for (std::int64_t i = begin; i < end; ++i, out += bytes)
+      std::memcpy(out, values.data() + (number(i) - number(begin)) * bytes, static_cast<std::size_t>(bytes));
   }
 }
 

@@ -89,7 +89,7 @@ class BlockMeshes {
   /// Column `column` of vertices first .. first + count - 1; for many threads at once, after finish().
   /// @throws Error output_not_written if the disk fails, interrupted
   void read_column(std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) const;
-  /// The same of some vertices, by their numbers; those that follow each other are read at once.
+  /// The same of some vertices, by their numbers, which ascend; those that are near each other are read at once.
   void read_column(std::size_t column, std::span<const std::int64_t> vertices, std::byte* out) const;
 
   /// Sets the bits of vertices that triangles of several blocks may have; after finish().

@@ -218,8 +218,8 @@ class FilesTogether::TemporaryFile {
 FilesTogether::FilesTogether() = default;
 FilesTogether::~FilesTogether() = default;
 
-std::unique_ptr<FilesTogether::TemporaryFile> FilesTogether::written(exec::Cpu& ex, const std::string& path,
-                                                                     const Blocks& blocks) {
+void FilesTogether::write(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
+  if (is_stream(path)) return write_stream(ex, path, blocks);
   if (path.empty()) fail_to_write(path, ENOENT);
   const std::string target = follow_links(path);
   const auto old = status_of(target);
@@ -230,12 +230,7 @@ std::unique_ptr<FilesTogether::TemporaryFile> FilesTogether::written(exec::Cpu& 
   write_to(ex, path, {blocks, file->fd(), BlockWriter::Target::file});
   if (old) file->inherit(*old);
   file->finish();
-  return file;
-}
-
-void FilesTogether::write(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
-  if (is_stream(path)) return write_stream(ex, path, blocks);
-  files_.push_back(written(ex, path, blocks));
+  files_.push_back(std::move(file));
 }
 
 void FilesTogether::replace() {
@@ -244,8 +239,9 @@ void FilesTogether::replace() {
 }
 
 void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
-  if (is_stream(path)) return write_stream(ex, path, blocks);
-  FilesTogether::written(ex, path, blocks)->replace();
+  FilesTogether file;
+  file.write(ex, path, blocks);
+  file.replace();
 }
 
 }  // namespace pointskin::io

@@ -45,9 +45,6 @@ class FilesTogether {
 
  private:
   class TemporaryFile;
-  friend void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks);
-  static std::unique_ptr<TemporaryFile> written(exec::Cpu& ex, const std::string& path, const Blocks& blocks);
-
   std::vector<std::unique_ptr<TemporaryFile>> files_;
 };
 

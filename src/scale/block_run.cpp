@@ -22,6 +22,7 @@
 #include "poisson/in_blocks.hpp"
 #include "poisson/mean_length.hpp"
 #include "poisson/spacing.hpp"
+#include "reconstruct/mesh_of_field.hpp"
 #include "reconstruct/pieces_by_support.hpp"
 #include "reconstruct/trim_to_samples.hpp"
 #include "scale/block_looks.hpp"
@@ -428,6 +429,29 @@ void check_options(const BlockOptions& options) {
 }
 
 }  // namespace
+
+BlockOptions block_options_of(const Options& options, const octree::Frame& cube) {
+  BlockOptions blocks;
+  blocks.depth = options.depth;
+  blocks.samples_per_node = options.samples_per_node;
+  blocks.screening = options.screening;
+  blocks.fixed_screening = options.fixed_screening;
+  blocks.confidence = options.confidence;
+  blocks.iterations = options.iterations;
+  blocks.curvature = options.linear_fit ? 0 : detail::kCurvature;
+  blocks.normals = options.normals;
+  blocks.boundary = options.boundary;
+  blocks.domain_faces = options.domain_faces;
+  blocks.isovalue = options.isovalue;
+  blocks.largest = options.largest;
+  blocks.min_component = options.min_component;
+  blocks.trim = options.trim;
+  blocks.island_ratio = options.island_ratio;
+  const double cell = cube.size / static_cast<double>(std::int64_t{1} << options.depth);
+  if (options.density) blocks.density_face = cell * cell;
+  blocks.progress = options.progress;
+  return blocks;
+}
 
 BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options) {
   const int passes = options.trim == 0 ? 6 : 7;

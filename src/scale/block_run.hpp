@@ -16,6 +16,7 @@
 #include "exec/any_space.hpp"
 #include "exec/cpu.hpp"
 #include "octree/bounding_box.hpp"
+#include "octree/frame.hpp"
 #include "scale/block_meshes.hpp"
 #include "scale/sorted_cloud.hpp"
 #include "surface/pieces.hpp"
@@ -55,6 +56,10 @@ struct BlockOptions {
       0;  ///< area of a face of a finest cell in world units^2: samples per area are a column then; 0: none
   std::function<bool(const Progress&)> progress{};  ///< as Options has it, called for every block of every sweep
 };
+
+/// What of the options of a run is for its blocks; folder, division and memory are not.
+/// @param cube  of the run, in world units
+BlockOptions block_options_of(const Options& options, const octree::Frame& cube);
 
 /// The box of some points, or none.
 struct BoxOfPoints {

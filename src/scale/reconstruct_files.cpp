@@ -197,31 +197,11 @@ class FilesRun {
 
   [[nodiscard]] scale::BlockOptions block_options() const {
     constexpr std::int64_t kFewestSamples = 1 << 14, kMostSamples = 1 << 22;  // of a part
-    scale::BlockOptions blocks;
+    scale::BlockOptions blocks = scale::block_options_of(options_, place_.frame);
     blocks.folder = scale_.temp_folder;
-    blocks.depth = options_.depth;
     blocks.memory_bytes = planned_bytes();
     blocks.holds_to_memory = scale_.max_memory_bytes > 0;
     blocks.part_samples = std::clamp(bytes() / 1000, kFewestSamples, kMostSamples);
-    blocks.samples_per_node = options_.samples_per_node;
-    blocks.screening = options_.screening;
-    blocks.fixed_screening = options_.fixed_screening;
-    blocks.confidence = options_.confidence;
-    blocks.iterations = options_.iterations;
-    blocks.curvature = options_.linear_fit ? 0 : detail::kCurvature;
-    blocks.normals = options_.normals;
-    blocks.boundary = options_.boundary;
-    blocks.domain_faces = options_.domain_faces;
-    blocks.isovalue = options_.isovalue;
-    blocks.largest = options_.largest;
-    blocks.min_component = options_.min_component;
-    blocks.trim = options_.trim;
-    blocks.island_ratio = options_.island_ratio;
-    if (options_.density) {
-      const double cell = place_.frame.size / static_cast<double>(std::int64_t{1} << options_.depth);
-      blocks.density_face = cell * cell;
-    }
-    blocks.progress = options_.progress;
     return blocks;
   }
 

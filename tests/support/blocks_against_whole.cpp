@@ -23,7 +23,6 @@
 #include "exec/cpu.hpp"
 #include "io/cloud_parts.hpp"
 #include "octree/frame.hpp"
-#include "reconstruct/mesh_of_field.hpp"
 #include "scale/block_run.hpp"
 #include "scale/cloud_extent.hpp"
 #include "scale/sorted_cloud.hpp"
@@ -252,25 +251,9 @@ class OnDisk {
   [[nodiscard]] std::string folder() const { return std::filesystem::path(folder_.file("any")).parent_path().string(); }
 
   [[nodiscard]] scale::BlockOptions block_options() const {
-    scale::BlockOptions options;
+    scale::BlockOptions options = scale::block_options_of(options_, frame_);
     options.folder = folder();
-    options.depth = options_.depth;
     options.part_samples = 7001;
-    options.samples_per_node = options_.samples_per_node;
-    options.screening = options_.screening;
-    options.fixed_screening = options_.fixed_screening;
-    options.confidence = options_.confidence;
-    options.iterations = options_.iterations;
-    options.curvature = options_.linear_fit ? 0 : detail::kCurvature;
-    options.boundary = options_.boundary;
-    options.domain_faces = options_.domain_faces;
-    options.isovalue = options_.isovalue;
-    options.largest = options_.largest;
-    options.min_component = options_.min_component;
-    options.trim = options_.trim;
-    options.island_ratio = options_.island_ratio;
-    const double cell = frame_.size / static_cast<double>(std::int64_t{1} << options_.depth);
-    if (options_.density) options.density_face = cell * cell;
     return options;
   }
 

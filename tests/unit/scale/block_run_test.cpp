@@ -53,19 +53,11 @@ class BlockRun : public testing::Test {
   }
 
   [[nodiscard]] scale::BlockOptions block_options(int coarse_level, int blocks) const {
-    scale::BlockOptions options;
+    scale::BlockOptions options = scale::block_options_of(options_, frame_);
     options.folder = place_;
-    options.depth = options_.depth;
     options.coarse_level = coarse_level;
     options.blocks = blocks;
     options.part_samples = 7001;
-    options.screening = options_.screening;
-    options.iterations = options_.iterations;
-    options.domain_faces = options_.domain_faces;
-    options.largest = options_.largest;
-    options.min_component = options_.min_component;
-    options.trim = options_.trim;
-    options.island_ratio = options_.island_ratio;
     return options;
   }
 

@@ -69,6 +69,8 @@ bool keep_colours_only(Cloud& cloud) {
   return !cloud.attributes.empty();
 }
 
+void warn_about_no_colours() { print_warning("--colors: the points have no red, green or blue"); }
+
 std::variant<Cloud, Mesh> read_cloud_or_mesh(const std::string& path, const ReadOptions& options) {
   if (path == "-") make_stdin_seekable();
   if (!may_hold_faces(path)) return read_cloud(path, options);

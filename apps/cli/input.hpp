@@ -49,6 +49,9 @@ bool is_colour(const Attribute& attribute);
 /// @returns whether there are any
 bool keep_colours_only(Cloud& cloud);
 
+/// Says that --colors finds none.
+void warn_about_no_colours();
+
 /// Reads `path` as a mesh if it is a PLY with faces or another mesh format, else as a cloud. "-" is stdin.
 /// A mesh format without faces gives a cloud of its vertices.
 /// @throws Error as read_mesh and read_cloud

@@ -57,6 +57,7 @@ ScaleOptions scale_options(const ReconstructArgs& args, const Device& device) {
   scale.shift = parse_shift(args.shift);
   scale.temp_folder = args.temp;
   scale.split = args.split;
+  scale.only_colours = args.colors && !args.options.attributes && args.poisson_recon_data.empty();
   return scale;
 }
 
@@ -131,7 +132,10 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
       within_limit(args, scale, [&] { return reconstruct_files(args.inputs, args.output, options, scale); });
   line.clear();
   file_was_written();
-  if (!was_said) warn_about_left_out(files);
+  if (!was_said) {
+    warn_about_left_out(files);
+    if (scale.only_colours && files.attributes.empty()) warn_about_no_colours();
+  }
   for (const Warning& warning : files.run.warnings)
     if (warning.kind != WarningKind::coarse_depth || !args.given.has("--depth")) print_warning(warning.text);
   record.run = files.run;

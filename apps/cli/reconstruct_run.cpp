@@ -37,8 +37,7 @@ void drop_attributes(const ReconstructArgs& args, Cloud& cloud) {
   const bool all = args.options.attributes || !args.poisson_recon_data.empty();
   const bool tells_views = args.options.point_normals != PointNormals::given && has_view_attributes(cloud);
   if (!all && !args.colors && !tells_views) cloud.attributes.clear();
-  if (!all && args.colors && !keep_colours_only(cloud))
-    print_warning("--colors: the points have no red, green or blue");
+  if (!all && args.colors && !keep_colours_only(cloud)) warn_about_no_colours();
 }
 
 /// Reads, merges and cleans the input; fills in the counts.

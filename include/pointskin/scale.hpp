@@ -22,6 +22,7 @@ struct ScaleOptions {
   std::optional<Vec3d> shift{};
   std::string temp_folder{};  ///< for temporary data, on a disk; empty: that of the system (TMPDIR, or /tmp)
   bool split = false;         ///< reconstruct_files() writes a file for each block instead of one
+  bool only_colours = false;  ///< with Options::attributes reconstruct_files() keeps red, green and blue alone
   Device device{};  ///< that works on the blocks, for reconstruct_files(); its own number of threads does not count
 };
 
@@ -31,16 +32,18 @@ struct FilesReport {
   std::int64_t dropped = 0;         ///< rows of the file whose coordinates are not finite
   std::int64_t without_normal = 0;  ///< points that were left out because their normal is zero
   std::int64_t vertices = 0, triangles = 0;
-  int blocks = 0;                    ///< that the cloud was worked on in, one after another
-  int coarse_level = 0;              ///< levels of the octree up to this one were there as a whole
-  std::vector<std::string> outputs;  ///< that were written
+  int blocks = 0;                       ///< that the cloud was worked on in, one after another
+  int coarse_level = 0;                 ///< levels of the octree up to this one were there as a whole
+  std::vector<std::string> attributes;  ///< of the points that the mesh has, by their names on the mesh
+  std::vector<std::string> outputs;     ///< that were written
 };
 
 /// Whether the points of a file can be read in parts: a binary PLY or NPY file whose rows are of one length.
 /// @throws Error invalid_input if it cannot be opened, or its header is garbled
 bool reads_in_parts(const std::string& path);
 
-/// What of these options cannot be worked on in blocks yet, in words: "weakness", "an envelope". Empty if all can.
+/// What of these options cannot be worked on in blocks yet, in words: "weakness", "an envelope". Empty if all can. With attributes
+/// it depends on the file, too: labels (is_label) cannot yet.
 std::vector<std::string> missing_in_blocks(const Options& options);
 
 /// Reconstructs a cloud that memory does not hold: from a file to a file, with the same bytes that reconstructing the whole in
@@ -52,16 +55,17 @@ std::vector<std::string> missing_in_blocks(const Options& options);
 /// leaves no memory for repairing them.
 /// Memory: a third for the coarse levels, the rest for one block with its ring; with a GPU the limit is for its memory, and the host
 /// has the coarse levels, and the samples and the mesh of one block on their way. Disk: 80 bytes a point while they are sorted, then
-/// 60, and 4 a node of the octree, and the mesh; with Options::trim 4 more a point, and the mesh twice. Time: some two and a half
+/// 60, and 4 a node of the octree, and the mesh; with attributes twice and then once their own, with Options::trim 4 more a point,
+/// and the mesh twice. Time: some two and a half
 /// times that of the whole in memory.
 /// @param inputs   one binary PLY or NPY file of oriented points
 /// @param output   a PLY file, written whole or not at all; with ScaleOptions::split one for each block that has triangles, named by
 ///                 it and a number from 0 on before the extension, such as mesh_0003.ply: each has its own triangles, and the
 ///                 vertices that they have, those at borders with the same bytes in several; all appear when all are written
 /// @param options  whose max_memory_bytes and residuals do not count
-/// @throws Error usage for options that missing_in_blocks() names, or a depth below 7; invalid_input if the file cannot be read in
-///         parts; over_limit if one cell with its ring does not fit, which says how much would do; device_unavailable,
-///         empty_result, no_normals, output_not_written, interrupted
+/// @throws Error usage for options that missing_in_blocks() names, attributes that are labels, or a depth below 7; invalid_input if
+///         the file cannot be read in parts; over_limit if one cell with its ring does not fit, which says how much would do;
+///         device_unavailable, empty_result, no_normals, output_not_written, interrupted
 FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output,
                               const Options& options = {}, const ScaleOptions& scale = {});
 

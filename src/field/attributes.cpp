@@ -1,16 +1,17 @@
 #include "field/attributes.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <span>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "exec/this_space.hpp"
+#include "field/in_blocks.hpp"
 #include "octree/access.hpp"
 
 namespace pointskin::field {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Values of a few attributes at a corner, with the weight that they have there; or sums of weighted values.
 template <int kCount>
@@ -217,25 +218,15 @@ struct RangeOf {
   }
 };
 struct UniteRanges {
-  PSK_HD ValueRange operator()(const ValueRange& a, const ValueRange& b) const {
-    return {a.lowest < b.lowest ? a.lowest : b.lowest, a.highest > b.highest ? a.highest : b.highest,
-            a.counted + b.counted};
-  }
+  PSK_HD ValueRange operator()(const ValueRange& a, const ValueRange& b) const { return a.united(b); }
 };
 
-/// Values as shares of the range, in double: neither large nor close values lose their differences.
 struct ToShares {
   TypedView values;
   ArrayView<const std::int32_t> order;
-  double lowest, half_extent;
+  ToShare to_share;
   ArrayView<float> shares;
-  PSK_HD void operator()(std::int64_t i) const {
-    const double v = values[order[i]];
-    if (!is_finite(v))
-      shares[i] = kNan;
-    else
-      shares[i] = half_extent > 0 ? static_cast<float>((v / 2 - lowest / 2) / half_extent) : 0.0F;
-  }
+  PSK_HD void operator()(std::int64_t i) const { shares[i] = to_share(values[order[i]]); }
 };
 
 /// Samples that count for one of two channels only.
@@ -253,44 +244,81 @@ bool count_alike(Exec& ex, const Channel& a, const Channel& b) {
                                     CountedDifferently{a.shares.cview(), b.shares.cview()}, exec::Plus{}) == 0;
 }
 
-/// Values at the corners of all levels, level-major, of the channels from `channels` on.
-template <int kCount, exec::Space Exec>
-exec::Buffer<Values<kCount>> corner_values(Exec& ex, const octree::OctreeView& tree, const AttributeSamples& samples,
-                                           const Channel* channels) {
-  auto values = exec::make_buffer<Values<kCount>>(ex, tree.nodes);
-  const auto of_level = [&](int d) { return values.view().part(tree.levels[d].first_node, tree.levels[d].nodes()); };
-  SamplesView<kCount> view{samples.positions.cview(), samples.weights.cview(), {}};
-  for (int c = 0; c < kCount; ++c) view.values[c] = channels[c].shares.data();
-  const octree::LevelView& finest = tree.finest();
-  if constexpr (Exec::kManyThreads)
-    for_each(ex, "attributes.splat", finest.nodes(), SplatToCorner<kCount>{finest, view, of_level(tree.depth)});
-  else
-    for_each(ex, "attributes.splat", finest.bricks, SplatToBrick<kCount>{finest, view, of_level(tree.depth)});
-  for (int d = tree.depth - 1; d >= 0; --d)
-    for_each(ex, "attributes.pull", tree.levels[d].nodes(),
-             Pull<kCount>{tree.levels[d], tree.levels[d + 1], of_level(d + 1).data, of_level(d)});
-  for_each(ex, "attributes.push", 1, PushRoot<kCount>{of_level(0)});
-  for (int d = 1; d <= tree.depth; ++d)
-    for_each(ex, "attributes.push", tree.levels[d].nodes(),
-             Push<kCount>{tree.levels[d], tree.levels[d - 1], of_level(d - 1).data, of_level(d)});
-  return values;
+/// Channels that share a pass, and their samples.
+template <int kCount>
+SamplesView<kCount> view_of(const ChannelSamples& samples) {
+  SamplesView<kCount> view{samples.positions, samples.weights, {}};
+  for (int c = 0; c < kCount; ++c) view.values[c] = samples.channels[static_cast<std::size_t>(c)].shares.data();
+  return view;
 }
 
-/// One pass: the channels from `channels` on at `points`.
+/// Steps of a pass over the corners of all levels.
 template <int kCount, exec::Space Exec>
-void pass(Exec& ex, const octree::OctreeView& tree, const AttributeSamples& samples, const Channel* channels,
-          ArrayView<const Vec3f> points, const TakeValues& take) {
-  exec::TypedBuffer out[kCount];
-  {
-    const exec::Buffer<Values<kCount>> values = corner_values<kCount>(ex, tree, samples, channels);
-    EvaluateChannels<kCount> evaluate{tree, values.data(), points, {}};
-    for (int c = 0; c < kCount; ++c) {
-      out[c] = exec::make_typed_buffer(ex, channels[c].type, points.size);
-      evaluate.scales[c] = {channels[c].range.lowest, channels[c].range.highest, out[c].output()};
-    }
-    for_each(ex, "attributes.evaluate", points.size, evaluate);
+class CornerPass {
+ public:
+  /// @param values  shape (nodes of all levels), level-major
+  CornerPass(Exec& ex, const octree::OctreeView& tree, ArrayView<Values<kCount>> values)
+      : ex_(ex), tree_(tree), values_(values) {}
+
+  /// Means at the corners of the finest level.
+  void splat(const SamplesView<kCount>& samples) {
+    const octree::LevelView& finest = tree_.finest();
+    if constexpr (Exec::kManyThreads)
+      for_each(ex_, "attributes.splat", finest.nodes(), SplatToCorner<kCount>{finest, samples, of_level(tree_.depth)});
+    else
+      for_each(ex_, "attributes.splat", finest.bricks, SplatToBrick<kCount>{finest, samples, of_level(tree_.depth)});
   }
-  for (int c = 0; c < kCount; ++c) take(channels[c].place, std::move(out[c]));
+  /// Means of the levels above `level`, up to `last`.
+  void pull(int level, int last) {
+    for (int d = level - 1; d >= last; --d)
+      for_each(ex_, "attributes.pull", tree_.levels[d].nodes(),
+               Pull<kCount>{tree_.levels[d], tree_.levels[d + 1], of_level(d + 1).data, of_level(d)});
+  }
+  void push_root() { for_each(ex_, "attributes.push", 1, PushRoot<kCount>{of_level(0)}); }
+  /// Values of the levels below `level`, whose values are there.
+  void push(int level) {
+    for (int d = level + 1; d <= tree_.depth; ++d)
+      for_each(ex_, "attributes.push", tree_.levels[d].nodes(),
+               Push<kCount>{tree_.levels[d], tree_.levels[d - 1], of_level(d - 1).data, of_level(d)});
+  }
+
+ private:
+  [[nodiscard]] ArrayView<Values<kCount>> of_level(int d) const {
+    return values_.part(tree_.levels[d].first_node, tree_.levels[d].nodes());
+  }
+  Exec& ex_;
+  const octree::OctreeView& tree_;
+  ArrayView<Values<kCount>> values_;
+};
+
+/// Evaluates values at the corners of all levels at `points`.
+template <int kCount, exec::Space Exec>
+void evaluate_channels(Exec& ex, const octree::OctreeView& tree, exec::Buffer<Values<kCount>> values,
+                       std::span<const Channel> channels, ArrayView<const Vec3f> points, const TakeValues& take) {
+  exec::TypedBuffer out[kCount];
+  EvaluateChannels<kCount> evaluate{tree, values.data(), points, {}};
+  for (std::size_t c = 0; c < kCount; ++c) {
+    out[c] = exec::make_typed_buffer(ex, channels[c].type, points.size);
+    evaluate.scales[c] = {channels[c].range.lowest, channels[c].range.highest, out[c].output()};
+  }
+  for_each(ex, "attributes.evaluate", points.size, evaluate);
+  values.reset();
+  for (std::size_t c = 0; c < kCount; ++c) take(channels[c].place, std::move(out[c]));
+}
+
+/// Calls work with the number of channels of a pass as a constant.
+template <class Work>
+void with_count(std::size_t count, const Work& work) {
+  if (count == 1) work(std::integral_constant<int, 1>{});
+  if (count == 2) work(std::integral_constant<int, 2>{});
+  if (count == 3) work(std::integral_constant<int, 3>{});
+}
+
+/// Values of corners as floats: the weight, and then the channels.
+template <int kCount>
+ArrayView<Values<kCount>> as_values(ArrayView<float> floats) {
+  static_assert(sizeof(Values<kCount>) == (1 + kCount) * sizeof(float));
+  return {reinterpret_cast<Values<kCount>*>(floats.data), floats.size / (1 + kCount)};
 }
 
 }  // namespace
@@ -305,8 +333,7 @@ template <exec::Space Exec>
 Channel make_channel(Exec& ex, std::size_t place, const TypedView& values, const ValueRange& range,
                      ArrayView<const std::int32_t> order) {
   Channel channel{place, values.type, exec::make_buffer<float>(ex, order.size), range};
-  for_each(ex, "attributes.shares", order.size,
-           ToShares{values, order, range.lowest, range.highest / 2 - range.lowest / 2, channel.shares.view()});
+  for_each(ex, "attributes.shares", order.size, ToShares{values, order, ToShare(range), channel.shares.view()});
   return channel;
 }
 
@@ -316,19 +343,72 @@ void interpolate(Exec& ex, const octree::OctreeData& tree, const AttributeSample
   const std::vector<Channel>& channels = samples.channels;
   const octree::OctreeView view = tree.view();
   for (std::size_t first = 0; first < channels.size();) {
-    const Channel* channel = channels.data() + first;
     const std::size_t most = std::min(kAttributesAtOnce, channels.size() - first);
     std::size_t count = 1;
-    while (count < most && count_alike(ex, channel[0], channel[count])) ++count;
-    if (count == 1) pass<1>(ex, view, samples, channel, points, take);
-    if (count == 2) pass<2>(ex, view, samples, channel, points, take);
-    if (count == 3) pass<3>(ex, view, samples, channel, points, take);
+    while (count < most && count_alike(ex, channels[first], channels[first + count])) ++count;
+    const ChannelSamples some{samples.positions.cview(), samples.weights.cview(),
+                              std::span(channels).subspan(first, count)};
+    with_count(count, [&](auto constant) {
+      constexpr int kCount = decltype(constant)::value;
+      auto values = exec::make_buffer<Values<kCount>>(ex, view.nodes);
+      CornerPass<kCount, Exec> pass(ex, view, values.view());
+      pass.splat(view_of<kCount>(some));
+      pass.pull(view.depth, 0);
+      pass.push_root();
+      pass.push(0);
+      evaluate_channels<kCount>(ex, view, std::move(values), some.channels, points, take);
+    });
     first += count;
   }
+}
+
+template <exec::Space Exec>
+exec::Buffer<float> channel_means_below(Exec& ex, const octree::OctreeData& tree, const ChannelSamples& samples,
+                                        int level) {
+  const octree::OctreeView view = tree.view();
+  auto means = exec::make_buffer<float>(ex, view.nodes * static_cast<std::int64_t>(1 + samples.channels.size()));
+  with_count(samples.channels.size(), [&](auto constant) {
+    constexpr int kCount = decltype(constant)::value;
+    CornerPass<kCount, Exec> pass(ex, view, as_values<kCount>(means.view()));
+    pass.splat(view_of<kCount>(samples));
+    pass.pull(view.depth, level);
+  });
+  return means;
+}
+
+template <exec::Space Exec>
+void finish_coarse_channels(Exec& ex, const octree::OctreeData& tree, std::size_t channels, ArrayView<float> values) {
+  const octree::OctreeView view = tree.view();
+  with_count(channels, [&](auto constant) {
+    constexpr int kCount = decltype(constant)::value;
+    CornerPass<kCount, Exec> pass(ex, view, as_values<kCount>(values));
+    pass.pull(view.depth, 0);
+    pass.push_root();
+    pass.push(0);
+  });
+}
+
+template <exec::Space Exec>
+void interpolate_below(Exec& ex, const octree::OctreeData& tree, const ChannelSamples& samples, int level,
+                       ArrayView<const float> given, ArrayView<const Vec3f> points, const TakeValues& take) {
+  const octree::OctreeView view = tree.view();
+  with_count(samples.channels.size(), [&](auto constant) {
+    constexpr int kCount = decltype(constant)::value;
+    auto values = exec::make_buffer<Values<kCount>>(ex, view.nodes);
+    CornerPass<kCount, Exec> pass(ex, view, values.view());
+    pass.splat(view_of<kCount>(samples));
+    pass.pull(view.depth, level + 1);
+    copy(ex, given, ArrayView<float>{reinterpret_cast<float*>(values.data()), given.size});
+    pass.push(level);
+    evaluate_channels<kCount>(ex, view, std::move(values), samples.channels, points, take);
+  });
 }
 
 PSK_INSTANTIATE(find_range);
 PSK_INSTANTIATE(make_channel);
 PSK_INSTANTIATE(interpolate);
+PSK_INSTANTIATE(channel_means_below);
+PSK_INSTANTIATE(finish_coarse_channels);
+PSK_INSTANTIATE(interpolate_below);
 
 }  // namespace pointskin::field

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/array_view.hpp"
+#include "core/host_device.hpp"
 #include "core/typed_view.hpp"
 #include "exec/memory.hpp"
 #include "exec/space.hpp"
@@ -35,6 +36,29 @@ struct ValueRange {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -std::numeric_limits<double>::infinity();
   std::int64_t counted = 0;
+
+  /// That of both.
+  [[nodiscard]] PSK_HD ValueRange united(const ValueRange& other) const {
+    return {lowest < other.lowest ? lowest : other.lowest, highest > other.highest ? highest : other.highest,
+            counted + other.counted};
+  }
+};
+
+/// From values to their shares of a range, in double: neither large nor close values lose their differences.
+class ToShare {
+ public:
+  ToShare() = default;
+  explicit ToShare(const ValueRange& range)
+      : lowest_(range.lowest), half_extent_(range.highest / 2 - range.lowest / 2) {}
+
+  /// In [0, 1]; NaN of what is not finite.
+  PSK_HD float operator()(double value) const {
+    if (!(0 * value == 0)) return std::numeric_limits<float>::quiet_NaN();
+    return half_extent_ > 0 ? static_cast<float>((value / 2 - lowest_ / 2) / half_extent_) : 0.0F;
+  }
+
+ private:
+  double lowest_ = 0, half_extent_ = 0;
 };
 
 /// A continuous attribute of the samples, whose values are averaged.

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/mix_bits.hpp"
 #include "exec/host_array.hpp"
 #include "exec/this_space.hpp"
 #include "octree/extent.hpp"
@@ -40,18 +39,6 @@ struct UnitAndHash {
   PSK_HD void operator()(std::int64_t i) const {
     unit(i);
     hash(i);
-  }
-};
-
-/// Mixes an attribute into the lower half of a point's hash. Points that differ otherwise keep the order that they have
-/// without attributes, so that the surface does not depend on these.
-struct HashAttribute {
-  TypedView values;
-  ArrayView<std::uint64_t> hashes;
-  octree::Selection selection{};
-  PSK_HD void operator()(std::int64_t i) const {
-    constexpr std::uint64_t kLower = 0xffffffff;
-    hashes[i] = (hashes[i] & ~kLower) | (values.mixed_into(hashes[i], selection(i)) & kLower);
   }
 };
 

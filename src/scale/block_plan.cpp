@@ -37,6 +37,13 @@ std::uint64_t OwnNodes::cell_beside(std::uint64_t node) const {
   return octree::encode({std::min(c.x, last), std::min(c.y, last), std::min(c.z, last)});
 }
 
+std::int64_t BlockPlan::sample_bytes() const {
+  return kSampleBytes + setup_.sample_floats * std::int64_t{sizeof(float)};
+}
+std::int64_t BlockPlan::coarse_bytes() const {
+  return kCoarseBytes + setup_.coarse_floats * std::int64_t{sizeof(float)};
+}
+
 template <class Visit>
 void BlockPlan::for_keys(const Visit& visit) const {
   std::vector<std::uint64_t> keys;
@@ -138,11 +145,11 @@ void BlockPlan::choose_coarse_level(int deepest) {
   level_ = setup_.coarse_level > 0 ? setup_.coarse_level : deepest;
   if (setup_.coarse_level <= 0)
     while (level_ > octree::kCompleteDepth &&
-           with_ghosts(nodes[static_cast<std::size_t>(level_)]) * kCoarseBytes > setup_.memory_bytes / kCoarseShare)
+           with_ghosts(nodes[static_cast<std::size_t>(level_)]) * coarse_bytes() > setup_.memory_bytes / kCoarseShare)
       --level_;
   bricks_.resize(static_cast<std::size_t>(level_) + 1);
   split_ = std::move(split[static_cast<std::size_t>(level_)]);
-  planned_coarse_bytes_ = with_ghosts(nodes[static_cast<std::size_t>(level_)]) * kCoarseBytes;
+  planned_coarse_bytes_ = with_ghosts(nodes[static_cast<std::size_t>(level_)]) * coarse_bytes();
   cut_level_ = std::max(0, std::min({level_, setup_.depth - 4, setup_.lowest_splat_depth}));
 }
 
@@ -199,8 +206,8 @@ int BlockPlan::guess_blocks(double left) const {
   constexpr int kMost = 1'000'000;
   std::int64_t bricks = 0;
   for (const SplitCell& cell : split_) bricks += cell.bricks;
-  const double whole = static_cast<double>(8 * with_ghosts(bricks) * kNodeBytes + cloud_.size() * kSampleBytes);
-  const auto coarse = static_cast<double>(planned_coarse_bytes_ / kCoarseBytes * kNodeBytes);
+  const double whole = static_cast<double>(8 * with_ghosts(bricks) * kNodeBytes + cloud_.size() * sample_bytes());
+  const auto coarse = static_cast<double>(planned_coarse_bytes_ / coarse_bytes() * kNodeBytes);
   const auto bytes_of_one = [&](int blocks) {
     const double side = std::sqrt(static_cast<double>(split_.size()) / blocks);
     const double wider = 1 + (blocks > 1 ? 2 * ring() / side : 0);
@@ -236,8 +243,8 @@ BlockPlan::Planned BlockPlan::plan_block(const BlockRange& own) const {
   }
   std::int64_t samples = 0;
   for (const SampleRun& run : samples_in(cells)) samples += run.end - run.begin;
-  return {nodes, with_ghosts(nodes) * kNodeBytes + samples * kSampleBytes +
-                     planned_coarse_bytes_ / kCoarseBytes * kNodeBytes};  // every octree has the coarse levels
+  return {nodes, with_ghosts(nodes) * kNodeBytes + samples * sample_bytes() +
+                     planned_coarse_bytes_ / coarse_bytes() * kNodeBytes};  // every octree has the coarse levels
 }
 
 /// At most so many.

@@ -53,8 +53,10 @@ class BlockPlan {
     std::int64_t memory_bytes = 0;
     std::int64_t part_samples = 1;
     int iterations = 8;
-    int ring = 0;                ///< cells around what is solved; 0: solve_ring()
-    int lowest_splat_depth = 0;  ///< poisson::coarsest_splat_depth()
+    int ring = 0;                    ///< cells around what is solved; 0: solve_ring()
+    int lowest_splat_depth = 0;      ///< poisson::coarsest_splat_depth()
+    std::int64_t sample_floats = 0;  ///< that samples have for their attributes
+    std::int64_t coarse_floats = 0;  ///< that nodes of the coarse levels have for them
   };
   BlockPlan(exec::Cpu& ex, const SortedCloud& cloud, const Setup& setup) : ex_(ex), cloud_(cloud), setup_(setup) {}
 
@@ -121,6 +123,8 @@ class BlockPlan {
   };
   [[nodiscard]] Planned plan_block(const BlockRange& own) const;
   [[nodiscard]] int finer() const { return setup_.depth - level_; }
+  [[nodiscard]] std::int64_t sample_bytes() const;
+  [[nodiscard]] std::int64_t coarse_bytes() const;
 
   exec::Cpu& ex_;
   const SortedCloud& cloud_;

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -17,6 +20,7 @@
 #include "diagnose/verdict.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "exec/exact_sum.hpp"
+#include "field/attributes.hpp"
 #include "octree/keys.hpp"
 #include "octree/view.hpp"
 #include "poisson/in_blocks.hpp"
@@ -52,7 +56,22 @@ class LimitOfPool {
   exec::MemoryPool& pool_;
 };
 
-BlockPlan::Setup plan_setup(std::int64_t samples, const BlockOptions& options) {
+/// Channels of the cloud's attributes that share each pass: neighbouring ones of which all samples have a value.
+std::vector<std::size_t> passes_of(const SortedCloud& cloud) {
+  std::vector<std::size_t> passes;
+  bool joins = false;
+  for (const PointAttribute& attribute : cloud.attributes()) {
+    const bool has_all = attribute.range.counted == cloud.size();
+    if (has_all && joins && passes.back() < field::kAttributesAtOnce)
+      ++passes.back();
+    else
+      passes.push_back(1);
+    joins = has_all;
+  }
+  return passes;
+}
+
+BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& options) {
   BlockPlan::Setup setup;
   setup.depth = options.depth;
   setup.coarse_level = options.coarse_level;
@@ -61,7 +80,9 @@ BlockPlan::Setup plan_setup(std::int64_t samples, const BlockOptions& options) {
   setup.part_samples = options.part_samples;
   setup.iterations = options.iterations;
   setup.ring = options.ring;
-  setup.lowest_splat_depth = poisson::coarsest_splat_depth(samples, options.depth);
+  setup.lowest_splat_depth = poisson::coarsest_splat_depth(cloud.size(), options.depth);
+  setup.sample_floats = std::ssize(cloud.attributes()) + (options.confidence && !cloud.attributes().empty() ? 1 : 0);
+  setup.coarse_floats = std::ssize(cloud.attributes()) + std::ssize(passes_of(cloud));
   return setup;
 }
 
@@ -85,7 +106,7 @@ class BlockRun {
       shared_.coarse.emplace(
           ex_, plan_,
           CoarseLevels::Setup{options_.screening, options_.iterations, options_.boundary,
-                              picks_by_support() || options_.trim != 0 || options_.density_face > 0});
+                              picks_by_support() || options_.trim != 0 || options_.density_face > 0, shared_.passes});
       report_.blocks = static_cast<int>(plan_.blocks().size());
       report_.coarse_level = plan_.level();
       report_.coarse_nodes = coarse().nodes();
@@ -102,7 +123,10 @@ class BlockRun {
     if (options_.trim != 0) sweep({"trim limit", "splat", 0.19}, [&] { settle_trim(); });
     sweep({"coarse field", "splat", 0.19}, [&] { coarse().splat(); });
     over_blocks({"splat", "splat", 0.19, 0.36}, [&](const BlockRange& own) { work_.splat(own); });
-    sweep({"coarse solve", "solve", 0.36}, [&] { solve_coarse(); });
+    sweep({"coarse solve", "solve", 0.36}, [&] {
+      coarse().finish_channels();
+      solve_coarse();
+    });
     poisson::ValuesOfSamples values;
     std::vector<std::unique_ptr<Spool>> fields;
     over_blocks({"solve", "solve", 0.36, 0.8},
@@ -144,6 +168,9 @@ class BlockRun {
     };
     if (options_.normals) add(columns.normals, sizeof(Vec3f));
     if (options_.density_face > 0) add(columns.density, sizeof(float));
+    if (!cloud_.attributes().empty()) columns.attributes = columns.bytes.size();
+    for (const PointAttribute& attribute : cloud_.attributes())
+      columns.bytes.push_back(static_cast<std::int64_t>(size_of(attribute.type)));
     if (!trims()) return columns;
     if (!options_.normals) add(columns.normals, sizeof(Vec3f));
     add(columns.spacing, sizeof(float));
@@ -234,28 +261,42 @@ class BlockRun {
     };
     add(columns.density != MeshColumns::kNone, columns.density, options_.density_face);
     add(pieces && supports, columns.supports, std::ldexp(1.0, -2 * depth_));
-    cut.others.resize(columns.bytes.size());
-    for (const std::size_t column : densities) cut.others[column].resize(cut.edges.size());
-    if (!faces.empty() && !cut.edges.empty()) find_densities(faces, densities, cut);
+    if (!cut.edges.empty()) find_others(faces, densities, cut);
     sweep({"cut", "extract", 0.98}, [&] { meshes.cut(ex_, cut, pieces, supports); });
   }
 
-  /// Of the vertices on the line.
-  void find_densities(const std::vector<double>& faces, const std::vector<std::size_t>& columns, BlockCut& cut) {
+  /// Densities and attributes of the vertices on the line.
+  /// @param densities  columns, of each of `faces`
+  void find_others(const std::vector<double>& faces, const std::vector<std::size_t>& densities, BlockCut& cut) {
+    const MeshColumns& columns = shared_.columns;
+    const std::size_t attributes = cloud_.attributes().size();
+    if (faces.empty() && attributes == 0) return;
+    const auto bytes_of = [&](std::size_t column) { return static_cast<std::size_t>(columns.bytes[column]); };
+    cut.others.resize(columns.bytes.size());
+    const auto make_room = [&](std::size_t column) { cut.others[column].resize(cut.edges.size() * bytes_of(column)); };
+    for (const std::size_t column : densities) make_room(column);
+    for (std::size_t i = 0; i < attributes; ++i) make_room(columns.attributes + i);
     std::vector<std::pair<std::uint64_t, std::size_t>> places;  // cell of the finest level, vertex
     for (const Vec3f& p : cut.positions)
       places.emplace_back(octree::cell_key(octree::point_key(p.x, p.y, p.z), depth_), places.size());
     std::ranges::sort(places);
     auto at = places.begin();
-    over_blocks({"density of the cut", "extract", 0.98, 0.98}, [&](const BlockRange& own) {
+    over_blocks({"values of the cut", "extract", 0.98, 0.98}, [&](const BlockRange& own) {
       const auto end = std::find_if(at, places.end(), [&](const auto& place) { return place.first >= own.end; });
       if (at == end) return;
       std::vector<Vec3f> points;
       std::transform(at, end, std::back_inserter(points),
                      [&](const auto& place) { return cut.positions[place.second]; });
-      const std::vector<std::vector<float>> found = work_.densities(own, points, faces);
-      for (std::size_t i = 0; i < points.size(); ++i, ++at)
-        for (std::size_t face = 0; face < faces.size(); ++face) cut.others[columns[face]][at->second] = found[face][i];
+      const BlockWork::PointValues found = work_.values_at(own, points, faces);
+      const auto put = [&](std::size_t column, const void* values) {
+        const std::size_t bytes = bytes_of(column);
+        for (std::size_t i = 0; i < points.size(); ++i)
+          std::memcpy(&cut.others[column][(at + static_cast<std::ptrdiff_t>(i))->second * bytes],
+                      static_cast<const std::byte*>(values) + i * bytes, bytes);
+      };
+      for (std::size_t i = 0; i < faces.size(); ++i) put(densities[i], found.densities[i].data());
+      for (std::size_t i = 0; i < attributes; ++i) put(columns.attributes + i, found.attributes[i].data());
+      at = end;
     });
   }
 
@@ -326,6 +367,7 @@ class BlockRun {
 
   void examine() {
     const double mean = options_.confidence ? mean_length() : 0;
+    shared_.mean_length = mean;
     poisson::LookAtCloud look;
     for_parts([&](const poisson::PartOfCloud& part, const Samples& samples, const exec::Buffer<float>& own_side) {
       look.add(poisson::look_at_part(ex_, depth_, part, own_side.cview(), samples));
@@ -456,13 +498,19 @@ BlockOptions block_options_of(const Options& options, const octree::Frame& cube)
 BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options) {
   const int passes = options.trim == 0 ? 6 : 7;
   const std::int64_t meshes = options.trim == 0 ? 1 : 2;  // the one that is cut, and what is left
-  constexpr std::int64_t kMesh = 6;  // bytes a node: 0.26 triangles for a sphere, half as many vertices with normals
+  constexpr std::int64_t kMesh = 6;   // bytes a node: 0.26 triangles for a sphere, half as many vertices with normals
+  constexpr double kVertices = 0.13;  // a node
   check_options(options);
-  BlockPlan plan(ex, cloud, plan_setup(cloud.size(), options));
+  BlockPlan plan(ex, cloud, plan_setup(cloud, options));
   plan.find_bricks();
   plan.divide();
   const BlockPlan::Sizes sizes = plan.sizes();
   const std::int64_t values = SampleValues::columns(options.trim != 0) * cloud.size() + sizes.nodes;
+  double attribute_bytes = 0;
+  for (const PointAttribute& attribute : cloud.attributes())
+    attribute_bytes += static_cast<double>(size_of(attribute.type));
+  const auto attributes =
+      static_cast<std::int64_t>(kVertices * attribute_bytes * static_cast<double>(meshes * sizes.own_nodes));
   return {static_cast<int>(plan.blocks().size()),
           plan.level(),
           plan.ring(),
@@ -470,7 +518,7 @@ BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const Blo
           sizes.nodes,
           sizes.own_nodes,
           sizes.largest_bytes,
-          values * std::int64_t{sizeof(float)} + meshes * kMesh * sizes.own_nodes};
+          values * std::int64_t{sizeof(float)} + meshes * kMesh * sizes.own_nodes + attributes};
 }
 
 BlockMeshes reconstruct_blocks(const MakeBlockWork& make, exec::Cpu& host, const SortedCloud& cloud,
@@ -480,8 +528,9 @@ BlockMeshes reconstruct_blocks(const MakeBlockWork& make, exec::Cpu& host, const
                         cloud,
                         options,
                         report,
-                        {host, cloud, plan_setup(cloud.size(), options)},
-                        {options.folder, cloud.size(), options.trim != 0}};
+                        {host, cloud, plan_setup(cloud, options)},
+                        {options.folder, cloud.size(), options.trim != 0},
+                        passes_of(cloud)};
   const std::unique_ptr<BlockWork> work = make(shared);
   return BlockRun(shared, *work).run();
 }

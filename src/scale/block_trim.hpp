@@ -24,11 +24,11 @@ struct CutColumns {
 struct BlockCut {
   CutColumns from;
   float limit = 0;
-  RankedBits kept{0};                      ///< (v) vertices that stay
-  std::vector<std::uint64_t> edges;        ///< (e) crossed: PartOfCut::edge_key(), ascending
-  std::vector<Vec3f> positions;            ///< (e) of the vertices on them, which follow those that stay
-  std::vector<Vec3f> normals;              ///< (e)
-  std::vector<std::vector<float>> others;  ///< (columns, e) of columns of floats; empty ones are 0
+  RankedBits kept{0};                          ///< (v) vertices that stay
+  std::vector<std::uint64_t> edges;            ///< (e) crossed: PartOfCut::edge_key(), ascending
+  std::vector<Vec3f> positions;                ///< (e) of the vertices on them, which follow those that stay
+  std::vector<Vec3f> normals;                  ///< (e)
+  std::vector<std::vector<std::byte>> others;  ///< (columns, e) of other columns; empty ones are 0
 
   /// Leaves all as it is.
   static BlockCut of_nothing(const BlockMeshes& meshes, const CutColumns& from);

@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "diagnose/in_blocks.hpp"
 #include "diagnose/look.hpp"
 #include "diagnose/look_at.hpp"
 #include "diagnose/spread.hpp"
 #include "exec/this_space.hpp"
+#include "exec/typed_buffer.hpp"
+#include "field/in_blocks.hpp"
 #include "octree/octree_data.hpp"
 #include "poisson/boundary.hpp"
+#include "poisson/mean_length.hpp"
 #include "poisson/spacing.hpp"
 #include "poisson/trust.hpp"
 #include "scale/staging.hpp"
@@ -31,8 +36,12 @@ using poisson::Samples;
 struct BlockSamples {
   Samples samples;
   exec::Buffer<std::uint64_t> keys;
-  std::int64_t first_own = 0, own = 0;  ///< where its own are
+  std::vector<field::Channel> channels;  ///< of the cloud's attributes, if they were asked for
+  exec::Buffer<float> weights;           ///< of the samples there
+  std::int64_t first_own = 0, own = 0;   ///< where its own are
 };
+
+enum class With : std::uint8_t { samples, attributes };
 
 /// The collapsed samples of a level, a cell at a time.
 struct CollapsedOfCells {
@@ -110,8 +119,9 @@ class WorkIn final : public BlockWork {
   }
 
   void splat(const BlockRange& own) override {
-    BlockSamples block = read_weighed(own, around_nodes(own));
+    BlockSamples block = read_weighed(own, around_nodes(own), With::attributes);
     const OctreeData tree = build(block);
+    add_channels(own, tree, block);
     const poisson::Resolution resolution = resolution_of(tree, block.samples);
     const exec::Buffer<float> b = divergence_of(tree, block.samples, resolution);
     coarse().add_divergence(own, fetched(of_last_coarse_level(tree, b)).view());
@@ -158,7 +168,7 @@ class WorkIn final : public BlockWork {
   }
 
   void extract(const BlockRange& own, const Spool& field, const Extraction& what, BlockMeshes& meshes) override {
-    BlockSamples block = read_weighed(own, plan_.around_finer_nodes(own));
+    BlockSamples block = read_weighed(own, plan_.around_finer_nodes(own), With::attributes);
     const OctreeData tree = build(block);
     poisson::Density density;
     const MeshColumns& columns = shared_.columns;
@@ -172,7 +182,7 @@ class WorkIn final : public BlockWork {
       looked_at.positions = choose(chosen, block.samples.positions);
       looked_at.splat_depths = choose(chosen, block.samples.splat_depths);
     }
-    block = {};
+    leave_attributes(block);
     const OctreeView view = resolution.view(tree);
     exec::Buffer<float> u = read_field(view, field);
     surface::SurfacePlaces places;
@@ -186,6 +196,7 @@ class WorkIn final : public BlockWork {
     if (options_.isovalue) function.isovalue = static_cast<float>(*options_.isovalue);
     const surface::Surface surface = surface::extract_surface(ex_, function, extraction);
     shared_.report.lone_corners += surface.lone_corners;
+    u.reset();
     exec::Buffer<float> per_cube, per_world;  // samples per area of the cube's unit, and of the world's
     exec::Buffer<float> spacing;
     const ArrayView<const Vec3f> vertices = surface.positions.cview();
@@ -195,20 +206,30 @@ class WorkIn final : public BlockWork {
       spacing = exec::make_buffer<float>(ex_, surface.positions.size());
       poisson::evaluate_spacing(ex_, tree, density, surface.positions.cview(), surface.normals.cview(), spacing.view());
     }
-    add_mesh(own, surface, places, {std::move(per_cube), std::move(per_world), std::move(spacing)}, meshes);
+    density.counts.reset();
+    add_mesh(own, surface, places,
+             {std::move(per_cube), std::move(per_world), std::move(spacing), attributes_at(tree, block, vertices)},
+             meshes);
   }
 
-  std::vector<std::vector<float>> densities(const BlockRange& own, std::span<const Vec3f> points,
-                                            std::span<const double> faces) override {
-    BlockSamples block = read(own, plan_.around_finer_nodes(own), {});
+  PointValues values_at(const BlockRange& own, std::span<const Vec3f> points, std::span<const double> faces) override {
+    BlockSamples block = read(own, plan_.around_finer_nodes(own), {}, With::attributes);
     const OctreeData tree = build(block);
-    const poisson::Density density = density_of(tree, block.samples);
     auto there = exec::make_buffer<Vec3f>(ex_, std::ssize(points));
     copy_to_device(ex_, points.data(), there.view());
-    std::vector<std::vector<float>> all;
-    for (const double face : faces) {
-      const Fetched<float> found = fetched(density_at(tree, density, there.cview(), face).cview());
-      all.emplace_back(found.data(), found.data() + found.view().size);
+    PointValues all;
+    if (!faces.empty()) {
+      const poisson::Density density = density_of(tree, block.samples);
+      for (const double face : faces) {
+        const exec::Buffer<float> values = density_at(tree, density, there.cview(), face);
+        const Fetched<float> found = fetched(values.cview());
+        all.densities.emplace_back(found.data(), found.data() + found.view().size);
+      }
+    }
+    for (const exec::TypedBuffer& values : attributes_at(tree, block, there.cview())) {
+      const Fetched<std::uint8_t> found = fetched(values.bytes.cview());
+      const auto* const bytes = reinterpret_cast<const std::byte*>(found.data());
+      all.attributes.emplace_back(bytes, bytes + found.view().size);
     }
     return all;
   }
@@ -270,15 +291,27 @@ class WorkIn final : public BlockWork {
 
   /// Positions, unit normals and keys of the samples in cells of level K, and columns of values.
   BlockSamples read(const BlockRange& own, const CellSet& cells,
-                    std::initializer_list<std::pair<SampleValues::Column, exec::Buffer<float> Samples::*>> columns) {
+                    std::initializer_list<std::pair<SampleValues::Column, exec::Buffer<float> Samples::*>> columns,
+                    With with = With::samples) {
     const std::vector<SampleRun> runs = plan_.samples_in(cells);
     std::int64_t n = 0;
     for (const SampleRun& run : runs) n += run.end - run.begin;
-    BlockSamples block{{}, {}, 0, own.samples.end - own.samples.begin};
+    BlockSamples block{{}, {}, {}, {}, 0, own.samples.end - own.samples.begin};
     Sent<std::uint64_t> keys(shared_.host, n);
     Sent<Vec3f> positions(shared_.host, n), normals(shared_.host, n);
+    const std::vector<PointAttribute>& attributes = shared_.cloud.attributes();
+    std::vector<Sent<float>> shares;
+    if (with == With::attributes)
+      for (std::size_t c = 0; c < attributes.size(); ++c) shares.emplace_back(shared_.host, n);
+    Sent<float> weights(shared_.host, !shares.empty() && options_.confidence ? n : 0);
     read_runs(runs, [&](std::int64_t first, std::int64_t count, std::int64_t at) {
-      shared_.cloud.read(first, count, {positions.data() + at, normals.data() + at, keys.data() + at});
+      std::vector<float*> to;
+      for (Sent<float>& values : shares) to.push_back(values.data() + at);
+      shared_.cloud.read(first, count, {positions.data() + at, normals.data() + at, keys.data() + at, to});
+      if (!weights.view().empty())  // as poisson::confidence_weights() has them
+        std::transform(normals.data() + at, normals.data() + at + count, weights.data() + at, [&](const Vec3f& normal) {
+          return static_cast<float>(poisson::length_of(normal) / shared_.mean_length);
+        });
     });
     std::int64_t at = 0;
     for (const SampleRun& run : runs) {
@@ -286,6 +319,9 @@ class WorkIn final : public BlockWork {
         block.first_own = at + own.samples.begin - run.begin;
       at += run.end - run.begin;
     }
+    for (std::size_t c = 0; c < shares.size(); ++c)
+      block.channels.push_back({c, attributes[c].type, shares[c].to(ex_), attributes[c].range});
+    block.weights = weights.to(ex_);
     block.keys = keys.to(ex_);
     block.samples.positions = positions.to(ex_);
     block.samples.normals = normals.to(ex_);
@@ -325,14 +361,61 @@ class WorkIn final : public BlockWork {
   }
 
   /// Samples of a block as the solver needs them.
-  BlockSamples read_weighed(const BlockRange& own, const CellSet& cells) {
+  BlockSamples read_weighed(const BlockRange& own, const CellSet& cells, With with = With::samples) {
     BlockSamples block = read(own, cells,
                               {{SampleValues::area, &Samples::areas},
                                {SampleValues::depth, &Samples::splat_depths},
-                               {SampleValues::trust, &Samples::trust}});
+                               {SampleValues::trust, &Samples::trust}},
+                              with);
     if (options_.screening <= 0 || options_.fixed_screening) block.samples.trust.reset();
     coarse().set_depths(block.samples);
     return block;
+  }
+
+  /// Frees all but what attributes_at() needs.
+  static void leave_attributes(BlockSamples& block) {
+    BlockSamples rest;
+    rest.channels = std::move(block.channels);
+    if (!rest.channels.empty()) rest.samples.positions = std::move(block.samples.positions);
+    rest.weights = std::move(block.weights);
+    block = std::move(rest);
+  }
+
+  /// Calls visit(pass, samples) for channels that share a pass.
+  template <class Visit>
+  void for_passes(const BlockSamples& block, const Visit& visit) {
+    std::size_t first = 0;
+    for (std::size_t pass = 0; pass < shared_.passes.size(); ++pass) {
+      const std::size_t count = shared_.passes[pass];
+      visit(pass, field::ChannelSamples{block.samples.positions.cview(), block.weights.cview(),
+                                        std::span(block.channels).subspan(first, count)});
+      first += count;
+    }
+  }
+
+  /// What the block adds to the attributes of the coarse levels. They are freed.
+  void add_channels(const BlockRange& own, const OctreeData& tree, BlockSamples& block) {
+    const octree::LevelView level = tree.view().levels[plan_.level()];
+    for_passes(block, [&](std::size_t pass, const field::ChannelSamples& samples) {
+      const auto width = static_cast<std::int64_t>(1 + samples.channels.size());
+      const exec::Buffer<float> means = field::channel_means_below(ex_, tree, samples, plan_.level());
+      coarse().add_channels(own, pass,
+                            fetched(means.cview().part(level.first_node * width, level.nodes() * width)).view());
+    });
+    block.channels.clear();
+    block.weights.reset();
+  }
+
+  /// The cloud's attributes at points in the block's own cells.
+  std::vector<exec::TypedBuffer> attributes_at(const OctreeData& tree, const BlockSamples& block,
+                                               ArrayView<const Vec3f> points) {
+    std::vector<exec::TypedBuffer> values(block.channels.size());
+    for_passes(block, [&](std::size_t pass, const field::ChannelSamples& samples) {
+      const Lent<float> given(ex_, coarse().channels(pass));
+      field::interpolate_below(ex_, tree, samples, plan_.level(), given.view(), points,
+                               [&](std::size_t place, exec::TypedBuffer found) { values[place] = std::move(found); });
+    });
+    return values;
   }
 
   void write_own(const BlockRange& own, const BlockSamples& block, SampleValues::Column column,
@@ -428,6 +511,7 @@ class WorkIn final : public BlockWork {
   /// Values at the vertices of an extracted surface, those that are needed.
   struct ValuesOfVertices {
     exec::Buffer<float> per_cube, per_world, spacing;
+    std::vector<exec::TypedBuffer> attributes;
   };
   void add_mesh(const BlockRange& own, const surface::Surface& surface, const surface::SurfacePlaces& places,
                 const ValuesOfVertices& values, BlockMeshes& meshes) {
@@ -447,6 +531,9 @@ class WorkIn final : public BlockWork {
     set(all.density, densities);
     set(all.spacing, spacing);
     set(all.supports, supports);
+    std::vector<Fetched<std::uint8_t>> attributes;
+    for (const exec::TypedBuffer& column : values.attributes) attributes.push_back(fetched(column.bytes.cview()));
+    for (std::size_t i = 0; i < attributes.size(); ++i) set(all.attributes + i, attributes[i]);
     const auto span = [](const auto& from) {
       return std::span(from.data(), static_cast<std::size_t>(from.view().size));
     };

@@ -2,6 +2,7 @@
 // from the disk, an octree is made of them, and what the block finds of its own goes to the disk or to the coarse levels.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -27,8 +28,9 @@ struct MeshColumns {
   static constexpr std::size_t kNone = 0;  // where positions are
   std::vector<std::int64_t> bytes{sizeof(Vec3f)};
   std::size_t normals = kNone, density = kNone;
-  std::size_t spacing = kNone;   ///< of samples, where the surface is cut
-  std::size_t supports = kNone;  ///< density in the cube's units, for the pieces of what is left
+  std::size_t attributes = kNone;  ///< the first of those of the cloud, one after another
+  std::size_t spacing = kNone;     ///< of samples, where the surface is cut
+  std::size_t supports = kNone;    ///< density in the cube's units, for the pieces of what is left
 };
 
 /// What all blocks of a run share, in the host's memory and on the disk.
@@ -39,6 +41,8 @@ struct SharedOfBlocks {
   BlockReport& report;
   BlockPlan plan;
   SampleValues values;
+  std::vector<std::size_t> passes{};  ///< channels of attributes that share each pass, in the order of the cloud's
+  double mean_length = 0;             ///< of normals as they were given, with BlockOptions::confidence once it is known
   std::optional<CoarseLevels> coarse{};  ///< once blocks are planned
   MeshColumns columns{};                 ///< once it is known whether to cut
 };
@@ -75,9 +79,15 @@ class BlockWork {
   };
   virtual void extract(const BlockRange& own, const Spool& field, const Extraction& what, BlockMeshes& meshes) = 0;
 
-  /// Samples per area at points in the block's own cells, for areas of a face of a finest cell in one unit after another.
-  virtual std::vector<std::vector<float>> densities(const BlockRange& own, std::span<const Vec3f> points,
-                                                    std::span<const double> faces) = 0;
+  /// Values at some points.
+  struct PointValues {
+    std::vector<std::vector<float>> densities;       ///< (faces, points) samples per area
+    std::vector<std::vector<std::byte>> attributes;  ///< (attributes, points) in their types
+  };
+  /// At points in the block's own cells.
+  /// @param faces  areas of a face of a finest cell, in one unit after another
+  virtual PointValues values_at(const BlockRange& own, std::span<const Vec3f> points,
+                                std::span<const double> faces) = 0;
 
   /// What the blocks have counted so far. Waits.
   [[nodiscard]] virtual diagnose::Counts looks() = 0;

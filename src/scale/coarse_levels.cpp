@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "exec/cpu_primitives.hpp"
+#include "field/in_blocks.hpp"
 #include "octree/keys.hpp"
 #include "poisson/boundary.hpp"
 #include "poisson/in_blocks.hpp"
@@ -24,11 +25,13 @@ template <class T>
 struct TakeOwn {
   octree::LevelView level;
   OwnNodes nodes;
-  ArrayView<const T> from;  // (nodes of the level)
-  ArrayView<T> to;          // (nodes)
+  ArrayView<const T> from;  // (nodes of the level, width)
+  ArrayView<T> to;          // (nodes, width)
+  std::int64_t width;
 
   void operator()(std::int64_t n) const {
-    if (nodes.holds(level.node_key(static_cast<std::int32_t>(n)))) to[level.first_node + n] = from[n];
+    if (!nodes.holds(level.node_key(static_cast<std::int32_t>(n)))) return;
+    for (std::int64_t i = 0; i < width; ++i) to[(level.first_node + n) * width + i] = from[n * width + i];
   }
 };
 
@@ -44,9 +47,9 @@ CoarseLevels::CoarseLevels(exec::Cpu& ex, const BlockPlan& plan, const Setup& se
 }
 
 template <class T>
-void CoarseLevels::take_own(const BlockRange& own, ArrayView<const T> from, ArrayView<T> to) {
+void CoarseLevels::take_own(const BlockRange& own, ArrayView<const T> from, ArrayView<T> to, std::int64_t width) {
   const octree::LevelView level = last_level();
-  for_each(ex_, "scale.take", level.nodes(), TakeOwn<T>{level, {plan_.level(), plan_.depth(), own}, from, to});
+  for_each(ex_, "scale.take", level.nodes(), TakeOwn<T>{level, {plan_.level(), plan_.depth(), own}, from, to, width});
 }
 
 void CoarseLevels::add_facing(const BlockRange& own, ArrayView<const Facing> facing) {
@@ -154,6 +157,18 @@ void CoarseLevels::add_collapsed(const BlockRange& own, int level, ArrayView<con
     if (here.point_begin[cell] < here.point_begin[cell + 1] && finest >= own.begin && finest < own.end)
       collapsed_[static_cast<std::size_t>(level)].push_back(cells[cell]);
   }
+}
+
+void CoarseLevels::add_channels(const BlockRange& own, std::size_t pass, ArrayView<const float> means) {
+  channels_.resize(setup_.passes.size());
+  const auto width = static_cast<std::int64_t>(1 + setup_.passes[pass]);
+  if (channels_[pass].empty()) channels_[pass] = exec::make_buffer<float>(ex_, nodes() * width);
+  take_own<float>(own, means, channels_[pass].view(), width);
+}
+
+void CoarseLevels::finish_channels() {
+  for (std::size_t pass = 0; pass < channels_.size(); ++pass)
+    field::finish_coarse_channels(ex_, tree_, setup_.passes[pass], channels_[pass].view());
 }
 
 std::vector<poisson::LevelSolve> CoarseLevels::solve() {

@@ -1,6 +1,7 @@
 // What all blocks of a cloud share: the levels up to K as a whole, and what all samples add to them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -29,7 +30,8 @@ class CoarseLevels {
     double screening = 2;
     int iterations = 8;
     Boundary boundary = Boundary::free;
-    bool needs_counts = false;  ///< keeps the counts of samples for the density
+    bool needs_counts = false;          ///< keeps the counts of samples for the density
+    std::vector<std::size_t> passes{};  ///< channels of attributes that share each pass
   };
 
   /// @param plan  divided
@@ -66,6 +68,12 @@ class CoarseLevels {
   /// @param cells  (cells of the level) collapsed samples in a block's octree
   void add_collapsed(const BlockRange& own, int level, ArrayView<const poisson::CollapsedSample> cells);
 
+  /// @param means  of the last coarse level, of a pass of field::channel_means_below() in a block's octree
+  void add_channels(const BlockRange& own, std::size_t pass, ArrayView<const float> means);
+  /// Values of attributes at the corners of these levels, once all means are added.
+  void finish_channels();
+  [[nodiscard]] ArrayView<const float> channels(std::size_t pass) const { return channels_[pass].cview(); }
+
   /// Solves these levels, once all is added.
   std::vector<poisson::LevelSolve> solve();
 
@@ -81,8 +89,9 @@ class CoarseLevels {
   [[nodiscard]] const octree::OctreeData& tree() const { return tree_; }
 
  private:
+  /// @param width  values a node
   template <class T>
-  void take_own(const BlockRange& own, ArrayView<const T> from, ArrayView<T> to);
+  void take_own(const BlockRange& own, ArrayView<const T> from, ArrayView<T> to, std::int64_t width = 1);
   void find_resolution();
   void splat_sparse();
   void place_collapsed(poisson::Screening& screening);
@@ -107,6 +116,7 @@ class CoarseLevels {
   poisson::Samples sparse_samples_;
   exec::Buffer<std::uint8_t> resolved_bricks_;  ///< or empty if all are
   exec::Buffer<float> field_, b_, u_;
+  std::vector<exec::Buffer<float>> channels_;  ///< of each pass: (nodes, 1 + channels), as field/in_blocks.hpp has them
   std::vector<std::vector<poisson::CollapsedSample>> collapsed_;  ///< (K + 1) of the cells with samples
 };
 

@@ -93,7 +93,10 @@ void BlockMeshes::cut_outer(const BlockCut& cut, bool pieces) {
     std::memcpy(to + column_begins_[cut.from.positions], &cut.positions[edge], sizeof(Vec3f));
     std::memcpy(to + column_begins_[cut.from.normals], &cut.normals[edge], sizeof(Vec3f));
     for (std::size_t c = 0; c < cut.others.size(); ++c)
-      if (!cut.others[c].empty()) std::memcpy(to + column_begins_[c], &cut.others[c][edge], sizeof(float));
+      if (!cut.others[c].empty()) {
+        const auto bytes = static_cast<std::size_t>(setup_.columns[c]);
+        std::memcpy(to + column_begins_[c], &cut.others[c][edge * bytes], bytes);
+      }
   }
   outer_ = std::move(outer);
 }
@@ -161,7 +164,9 @@ BlockMeshes::BlockThatIsCut BlockMeshes::cut_block(exec::Cpu& ex, std::int64_t n
     if (others[i] < cut.kept.ones()) continue;
     const auto edge = static_cast<std::size_t>(others[i] - cut.kept.ones());
     positions[static_cast<std::size_t>(own) + i] = cut.positions[edge];
-    if (supports) density[static_cast<std::size_t>(own) + i] = cut.others[*supports][edge];
+    if (supports)
+      std::memcpy(&density[static_cast<std::size_t>(own) + i], &cut.others[*supports][edge * sizeof(float)],
+                  sizeof(float));
   }
   const std::vector<std::uint8_t> all_own(triangles.size(), 1);
   PiecesOfPart found = find_pieces({positions, triangles, all_own, density, 0, static_cast<std::size_t>(own)});

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/announce.hpp"
 #include "core/format.hpp"
@@ -19,6 +21,7 @@
 #include "octree/frame.hpp"
 #include "reconstruct/coordinate_step.hpp"
 #include "reconstruct/fit_cube.hpp"
+#include "reconstruct/kept_names.hpp"
 #include "reconstruct/mesh_of_field.hpp"
 #include "reconstruct/trim_to_samples.hpp"
 #include "scale/block_run.hpp"
@@ -34,6 +37,8 @@ using diagnose::NormalsVerdict;
 /// What a fit of the cloud found, and the mesh.
 struct Fit {
   scale::BlockReport report;
+  std::vector<scale::PointAttribute> attributes;
+  std::vector<std::string> without_values;  ///< names of attributes
   std::optional<scale::BlockMeshes> meshes;
 };
 
@@ -87,7 +92,8 @@ class FilesRun {
     }
     warn(fit);
     announce(options_.progress, "write", 0.99);
-    const scale::VertexColumns columns{options_.normals, options_.density};
+    const scale::VertexColumns columns = vertex_columns(fit);
+    for (const auto& attribute : columns.attributes) result_.attributes.push_back(attribute.name);
     if (scale_.split) {
       result_.outputs = scale::write_split_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
     } else {
@@ -107,6 +113,7 @@ class FilesRun {
 
   void place_cloud() {
     announce(options_.progress, "octree", 0);
+    scale::attributes_of(ex_, *parts_, kept_attributes());  // refuses what is not there yet
     parts_->choose_origin(ex_, scale_.shift);
     parts_->leave_out_zero_normals();
     scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options_.keep_strays);
@@ -157,8 +164,25 @@ class FilesRun {
     return detail::core_in(report.inliers.box, place_.frame, options_.scale);
   }
 
+  [[nodiscard]] scale::KeptAttributes kept_attributes() const {
+    if (!options_.attributes) return scale::KeptAttributes::none;
+    return scale_.only_colours ? scale::KeptAttributes::colours : scale::KeptAttributes::all;
+  }
+
   [[nodiscard]] scale::SortedCloud sorted() {
-    return {ex_, *parts_, {scale_.temp_folder, bytes() / kSortShare, place_.frame, place_.left_out.indices, turned_}};
+    return {
+        ex_,
+        *parts_,
+        {scale_.temp_folder, bytes() / kSortShare, place_.frame, place_.left_out.indices, turned_, kept_attributes()}};
+  }
+
+  [[nodiscard]] scale::VertexColumns vertex_columns(const Fit& fit) const {
+    scale::VertexColumns columns{options_.normals, options_.density};
+    std::vector<std::string> names;
+    for (const scale::PointAttribute& attribute : fit.attributes) names.push_back(attribute.name);
+    names = detail::kept_names(names, options_.density, options_.weakness);
+    for (std::size_t i = 0; i < names.size(); ++i) columns.attributes.push_back({names[i], fit.attributes[i].type});
+    return columns;
   }
 
   Fit fit_in_cube() {
@@ -167,7 +191,7 @@ class FilesRun {
     const scale::SortedCloud cloud = sorted();
     points_ = cloud.size();
     for (int tries = 1;; ++tries) {
-      Fit fit;
+      Fit fit{{}, cloud.attributes(), cloud.without_values(), {}};
       try {
         fit.meshes.emplace(gpu_ ? scale::reconstruct_blocks(*gpu_, ex_, cloud, blocks, fit.report)
                                 : scale::reconstruct_blocks(ex_, cloud, blocks, fit.report));
@@ -208,6 +232,7 @@ class FilesRun {
   void warn(const Fit& fit) {
     std::vector<Warning>& warnings = result_.run.warnings;
     diagnose::warn_of_strays(result_.run.strays, farthest(), warnings);
+    diagnose::warn_of_attributes(fit.without_values, warnings);
     const diagnose::Findings found = findings(fit);
     const diagnose::Cube cube{place_.frame.size, options_.depth};
     diagnose::warn_of_fit(found, cube, warnings);
@@ -289,7 +314,6 @@ std::vector<std::string> missing_in_blocks(const Options& options) {
   name(options.envelope != nullptr, "an envelope");
   name(options.offset != 0, "an offset");
   name(options.weakness, "weakness");
-  name(options.attributes, "attributes");
   return missing;
 }
 

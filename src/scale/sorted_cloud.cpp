@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "core/format.hpp"
+#include "core/typed_view.hpp"
 #include "exec/cpu_primitives.hpp"
+#include "io/source.hpp"
 #include "octree/keys.hpp"
 #include "reconstruct/point_hash.hpp"
 #include "scale/disk_sort.hpp"
@@ -15,12 +20,31 @@
 namespace pointskin::scale {
 namespace {
 
-/// A point as DiskSort takes it.
+/// A point as DiskSort takes it; the values of its attributes follow, in their types.
 struct Record {
   std::uint64_t key = 0, hash = 0;
   Vec3f position, normal;
 };
 static_assert(sizeof(Record) == 40 && std::is_trivially_copyable_v<Record>);
+
+bool is_kept(const Attribute& attribute, KeptAttributes kept) {
+  if (kept != KeptAttributes::colours) return kept == KeptAttributes::all;
+  return attribute.name == "red" || attribute.name == "green" || attribute.name == "blue";
+}
+
+/// Of a part of the points.
+std::vector<const Attribute*> kept_of(const Cloud& cloud, KeptAttributes kept) {
+  std::vector<const Attribute*> some;
+  for (const Attribute& attribute : cloud.attributes)
+    if (is_kept(attribute, kept)) some.push_back(&attribute);
+  return some;
+}
+
+TypedView view_of(const Attribute& attribute) {
+  const void* const data =
+      attribute.values.visit([](const auto& values) { return static_cast<const void*>(values.data()); });
+  return {attribute.type(), data, nullptr, static_cast<std::int64_t>(attribute.values.size())};
+}
 
 /// Indices of the points of a part that are not left out.
 class UsedOf {
@@ -52,23 +76,51 @@ struct MakeRecord {
   const octree::Frame& frame;
   std::span<const std::int32_t> used;
   std::span<const std::uint64_t> hashes;
-  std::span<Record> out;
+  std::span<const TypedView> attributes;
+  std::int64_t record_bytes;
+  std::byte* out;
 
   void operator()(std::int64_t k) const {
     const auto at = static_cast<std::size_t>(k);
     const auto from = static_cast<std::size_t>(used[at]);
     const Vec3f unit = frame.to_unit(cloud.positions[from]);
-    out[at] = {octree::point_key(unit.x, unit.y, unit.z), hashes[at], unit, cloud.normals[from]};
+    const Record record{octree::point_key(unit.x, unit.y, unit.z), hashes[at], unit, cloud.normals[from]};
+    std::byte* to = out + k * record_bytes;
+    std::memcpy(to, &record, sizeof record);
+    to += sizeof record;
+    for (const TypedView& values : attributes) {
+      const std::size_t bytes = size_of(values.type);
+      std::memcpy(to, static_cast<const std::byte*>(values.data) + from * bytes, bytes);
+      to += bytes;
+    }
   }
 };
 
 }  // namespace
 
-SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup) {
-  DiskSort sort(ex, {setup.folder, points.rows(), sizeof(Record), setup.memory_bytes});
+std::vector<PointAttribute> attributes_of(exec::Cpu& ex, const io::CloudParts& points, KeptAttributes kept) {
+  std::vector<PointAttribute> attributes;
+  if (kept == KeptAttributes::none) return attributes;
+  io::CloudParts::Bytes buffer;
+  const Cloud none = points.read(ex, 0, 0, buffer);
+  for (const Attribute* const attribute : kept_of(none, kept)) {
+    if (attribute->is_label())
+      throw Error(ErrorCode::usage, fmt::format("in blocks there are not yet: labels of points, such as {} ({})",
+                                                io::printable(attribute->name), name_of(attribute->type())));
+    attributes.push_back({attribute->name, attribute->type(), {}});
+  }
+  return attributes;
+}
+
+SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup)
+    : record_bytes_(sizeof(Record)) {
+  std::vector<PointAttribute> attributes = attributes_of(ex, points, setup.attributes);
+  for (const PointAttribute& attribute : attributes)
+    record_bytes_ += static_cast<std::int64_t>(size_of(attribute.type));
+  DiskSort sort(ex, {setup.folder, points.rows(), record_bytes_, setup.memory_bytes});
   UsedOf used_of(setup.left_out);
   std::vector<std::uint64_t> hashes;
-  std::vector<Record> records;
+  std::vector<std::byte> records;
   points.for_parts(ex, [&](Cloud& cloud) {
     if (cloud.positions.empty()) return;
     if (!cloud.has_normals())
@@ -79,32 +131,75 @@ SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setu
       });
     const std::vector<std::int32_t>& used = used_of.next(cloud.size());
     const std::int64_t count = std::ssize(used);
+    if (count == 0) return;
+    const ArrayView<const std::int32_t> selected{used.data(), count};
     hashes.resize(used.size());
-    records.resize(used.size());
+    records.resize(static_cast<std::size_t>(count * record_bytes_));
     for_each(ex, "scale.hash", count,
              detail::HashPoint{{cloud.positions.data(), cloud.size()},
                                {cloud.normals.data(), cloud.size()},
                                {hashes.data(), count},
-                               {{used.data(), count}}});
-    for_each(ex, "scale.records", count, MakeRecord{cloud, setup.frame, used, hashes, records});
-    sort.add(reinterpret_cast<const std::byte*>(records.data()), count);
+                               {selected}});
+    std::vector<TypedView> values;
+    for (const Attribute* const attribute : kept_of(cloud, setup.attributes)) {
+      const TypedView view = view_of(*attribute);
+      for_each(ex, "scale.hash", count, detail::HashAttribute{view, {hashes.data(), count}, {selected}});
+      field::ValueRange& range = attributes[values.size()].range;
+      range = range.united(field::find_range(ex, view, selected));
+      values.push_back(view);
+    }
+    for_each(ex, "scale.records", count,
+             MakeRecord{cloud, setup.frame, used, hashes, values, record_bytes_, records.data()});
+    sort.add(records.data(), count);
     size_ += count;
   });
   spool_ = sort.finish();
+  settle_attributes(std::move(attributes));
+}
+
+void SortedCloud::settle_attributes(std::vector<PointAttribute> all) {
+  std::int64_t at = sizeof(Record);
+  for (PointAttribute& attribute : all) {
+    const std::int64_t here = at;
+    at += static_cast<std::int64_t>(size_of(attribute.type));
+    if (attribute.range.counted == 0) {
+      without_values_.push_back(attribute.name);
+      continue;
+    }
+    places_.push_back({here, attribute.type, field::ToShare(attribute.range)});
+    attributes_.push_back(std::move(attribute));
+  }
 }
 
 void SortedCloud::read(std::int64_t first, std::int64_t count, const Arrays& out) const {
   constexpr std::int64_t kAtOnce = 8192;
-  std::vector<Record> records(static_cast<std::size_t>(std::min(kAtOnce, count)));
+  std::vector<std::byte> records(static_cast<std::size_t>(std::min(kAtOnce, count) * record_bytes_));
   for (std::int64_t done = 0; done < count;) {
     const std::int64_t some = std::min(kAtOnce, count - done);
-    spool_->read((first + done) * std::int64_t{sizeof(Record)}, records.data(), some * std::int64_t{sizeof(Record)});
+    spool_->read((first + done) * record_bytes_, records.data(), some * record_bytes_);
+    read_shares(records.data(), some, done, out.shares);
     for (std::int64_t i = 0; i < some; ++i, ++done) {
-      const Record& record = records[static_cast<std::size_t>(i)];
+      Record record;
+      std::memcpy(&record, records.data() + i * record_bytes_, sizeof record);
       if (out.positions != nullptr) out.positions[done] = record.position;
       if (out.normals != nullptr) out.normals[done] = record.normal;
       if (out.keys != nullptr) out.keys[done] = record.key;
     }
+  }
+}
+
+/// Of `count` records, to places from `at` on.
+void SortedCloud::read_shares(const std::byte* records, std::int64_t count, std::int64_t at,
+                              std::span<float* const> shares) const {
+  for (std::size_t c = 0; c < shares.size(); ++c) {
+    const Place& place = places_[c];
+    visit_type(place.type, [&](auto tag) {
+      decltype(tag) value;
+      for (std::int64_t i = 0; i < count; ++i) {
+        std::memcpy(&value, records + i * record_bytes_ + place.at, sizeof value);
+        shares[c][at + i] = place.to_share(static_cast<double>(value));
+      }
+    });
   }
 }
 
@@ -113,8 +208,10 @@ void SortedCloud::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, co
   const auto from = [](auto* array, std::int64_t i) { return array != nullptr ? array + i : nullptr; };
   ex.run_blocks((count + kPart - 1) / kPart, [&](std::int64_t part) {
     const std::int64_t done = part * kPart;
+    std::vector<float*> shares(out.shares.begin(), out.shares.end());
+    for (float*& values : shares) values += done;
     read(first + done, std::min(kPart, count - done),
-         {from(out.positions, done), from(out.normals, done), from(out.keys, done)});
+         {from(out.positions, done), from(out.normals, done), from(out.keys, done), shares});
   });
 }
 

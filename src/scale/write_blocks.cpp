@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "core/format.hpp"
@@ -39,13 +40,19 @@ io::MeshParts vertex_parts(const ReadColumn& read, const VertexColumns& columns,
     parts.normals = [=](std::size_t first, std::size_t last, std::vector<Vec3f>& part) {
       read_values(read, 1, first, last, part);
     };
-  if (columns.density)
-    parts.attributes.push_back(
-        {"density", AttributeType::float32, [=](std::size_t first, std::size_t last) -> AttributeValues {
-           std::vector<float> part;
-           read_values(read, columns.normals ? 2 : 1, first, last, part);
-           return part;
-         }});
+  const auto add = [&](const std::string& name, AttributeType type, std::size_t column) {
+    parts.attributes.push_back({name, type, [=](std::size_t first, std::size_t last) {
+                                  return visit_type(type, [&](auto tag) {
+                                    std::vector<decltype(tag)> part;
+                                    read_values(read, column, first, last, part);
+                                    return AttributeValues(std::move(part));
+                                  });
+                                }});
+  };
+  const std::size_t density = columns.normals ? 2 : 1, attributes = density + (columns.density ? 1 : 0);
+  for (std::size_t i = 0; i < columns.attributes.size(); ++i)
+    add(columns.attributes[i].name, columns.attributes[i].type, attributes + i);
+  if (columns.density) add("density", AttributeType::float32, density);
   return parts;
 }
 

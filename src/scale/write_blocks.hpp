@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <pointskin/attribute.hpp>
 #include <pointskin/vector.hpp>
 
 #include "exec/cpu.hpp"
@@ -15,8 +16,13 @@ namespace pointskin::scale {
 
 /// The columns after the positions, in this order.
 struct VertexColumns {
+  struct Attribute {
+    std::string name;
+    AttributeType type = AttributeType::float32;
+  };
   bool normals = true;
   bool density = false;
+  std::vector<Attribute> attributes{};  ///< in the file before the density
 };
 
 /// Writes binary PLY, the same bytes as write_mesh() of the whole mesh: a few thousand vertices or triangles a thread are in memory.

@@ -188,7 +188,8 @@ def reconstruct(r, command="reconstruct"):
 
 
 BLOCKS = {**SURFACE, **TRIM,
-          **{name: FIT[name] for name in ("--open", "--confidence", "--largest", "--min-component", "--density", "--island-ratio")},
+          **{name: FIT[name] for name in ("--open", "--confidence", "--largest", "--min-component", "--density", "--island-ratio",
+                                     "--keep-attributes")},
           "--normals": (["given"], [])}
 
 

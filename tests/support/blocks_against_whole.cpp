@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -173,13 +174,34 @@ Options choose_options(Random& random, std::string& words) {
   chance(2, "trim", [&] { options.trim = trims[random.below(4)]; });
   if (options.trim != 0) say(std::to_string(options.trim));
   chance(4, "all islands", [&] { options.island_ratio = 0; });
+  chance(2, "attributes", [&] { options.attributes = true; });
   return options;
+}
+
+/// Colours, and two that some points have no value of.
+void add_attributes(Random& random, Cloud& cloud) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  std::vector<std::uint8_t> red, green, blue;
+  std::vector<float> heat;
+  std::vector<std::uint16_t> intensity;
+  std::vector<double> time;
+  for (const Vec3f& p : cloud.positions) {
+    red.push_back(static_cast<std::uint8_t>(random.below(256)));
+    green.push_back(p.y > 0 ? 255 : 0);
+    blue.push_back(7);
+    heat.push_back(p.x > 0 || random.below(3) == 0 ? p.z + static_cast<float>(random.unit()) : kNone);
+    intensity.push_back(static_cast<std::uint16_t>(random.below(1 << 16)));
+    time.push_back(random.below(50) == 0 ? double{kNone} : 1e9 + random.unit());
+  }
+  cloud.attributes = {{"red", red},   {"green", green},         {"blue", blue},
+                      {"heat", heat}, {"intensity", intensity}, {"time", time}};
 }
 
 /// A surface, whole or of blocks.
 struct Found {
   std::vector<Vec3f> vertices, normals;
   std::vector<float> density;
+  std::vector<Attribute> attributes;
   std::vector<Triangle> triangles;
 };
 
@@ -196,6 +218,11 @@ void expect_same(const Found& found, const Found& whole) {
   EXPECT_EQ(differing(found.normals, whole.normals), 0U);
   EXPECT_EQ(differing(found.density, whole.density), 0U);
   EXPECT_EQ(differing(found.triangles, whole.triangles), 0U);
+  ASSERT_EQ(found.attributes.size(), whole.attributes.size());
+  for (std::size_t i = 0; i < whole.attributes.size(); ++i) {
+    EXPECT_EQ(found.attributes[i].name, whole.attributes[i].name);
+    EXPECT_TRUE(found.attributes[i].values == whole.attributes[i].values) << whole.attributes[i].name;
+  }
 }
 
 void expect_same(const scale::BlockReport& found, const RunReport& whole) {
@@ -221,7 +248,9 @@ class OnDisk {
     parts_->leave_out_zero_normals();
     const scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options.keep_strays);
     frame_ = octree::frame_around(extent.strays.core, options.scale);
-    sorted_ = std::make_unique<scale::SortedCloud>(ex_, *parts_, scale::SortedCloud::Setup{folder(), 1 << 20, frame_});
+    const auto kept = options.attributes ? scale::KeptAttributes::all : scale::KeptAttributes::none;
+    sorted_ = std::make_unique<scale::SortedCloud>(
+        ex_, *parts_, scale::SortedCloud::Setup{folder(), 1 << 20, frame_, {}, false, kept});
   }
 
   Found in_blocks(int coarse_level, int blocks, const Device& device, scale::BlockReport& report) {
@@ -240,7 +269,14 @@ class OnDisk {
     read(0, found.vertices);
     for (Vec3f& vertex : found.vertices) vertex = frame_.to_world(vertex);
     read(1, found.normals);
-    if (options.density_face > 0) read(2, found.density);
+    std::size_t column = 2;
+    if (options.density_face > 0) read(column++, found.density);
+    for (const scale::PointAttribute& attribute : sorted_->attributes())
+      visit_type(attribute.type, [&](auto tag) {
+        std::vector<decltype(tag)> values;
+        read(column++, values);
+        found.attributes.push_back({attribute.name, std::move(values)});
+      });
     found.triangles.resize(static_cast<std::size_t>(meshes.triangles()));
     meshes.read_triangles(0, meshes.triangles(),
                           reinterpret_cast<scale::BlockMeshes::Indices*>(found.triangles.data()));
@@ -275,12 +311,17 @@ BlocksCompared compare_blocks(std::uint64_t seed, int divisions, const Device& d
   SCOPED_TRACE("seed " + std::to_string(seed) + ": " + compared.cloud + "; " + compared.options);
   cloud = without(cloud, [&](std::size_t i) { return cloud.normals[i] == Vec3f{}; });
   cloud.origin = {};
+  if (options.attributes) add_attributes(random, cloud);
   Reconstructor reconstructor(Device::cpu(2));
   Found whole;
   try {
     Mesh mesh = reconstructor.reconstruct(cloud, options);
-    whole = {std::move(mesh.vertices), std::move(mesh.normals), {}, std::move(mesh.triangles)};
-    if (options.density) whole.density = mesh.attributes.front().values.as<float>();
+    whole = {
+        std::move(mesh.vertices), std::move(mesh.normals), {}, std::move(mesh.attributes), std::move(mesh.triangles)};
+    if (options.density) {
+      whole.density = whole.attributes.back().values.as<float>();
+      whole.attributes.pop_back();
+    }
   } catch (const Error& error) {  // a trim, or pieces, may leave nothing
     if (error.code() != ErrorCode::empty_result) throw;
     return compared;

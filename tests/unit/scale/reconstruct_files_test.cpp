@@ -379,14 +379,96 @@ TEST_F(ReconstructFiles, TakesLengthsOfNormalsForConfidence) {
   }
 }
 
+/// Names that the mesh has itself, values that some points or all lack, and more than share a pass.
+Cloud with_attributes(Cloud cloud) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  Random random(17);
+  std::vector<std::uint8_t> colours[3];
+  std::vector<float> density, nothing;
+  std::vector<double> time;
+  for (const Vec3f& p : cloud.positions) {
+    for (auto& colour : colours) colour.push_back(static_cast<std::uint8_t>(random.below(256)));
+    density.push_back(p.x > 0 ? p.y : kNone);
+    nothing.push_back(kNone);
+    time.push_back(1e9 * random.unit());
+  }
+  cloud.attributes = {{"red", colours[0]},  {"green", colours[1]}, {"blue", colours[2]},
+                      {"density", density}, {"nothing", nothing},  {"time", time}};
+  return cloud;
+}
+
+TEST_F(ReconstructFiles, KeepsAttributes) {
+  start(with_attributes(torus_cloud(60000, 1)));
+  Options options = at_depth(8);
+  options.attributes = true;
+  for (const bool also : {false, true}) {
+    options.density = options.confidence = also;
+    expect_as_whole(options, 50 * kMegabyte);
+    EXPECT_GT(files_.blocks, 1);
+    EXPECT_EQ(files_.attributes,
+              (std::vector<std::string>{"red", "green", "blue", also ? "input_density" : "density", "time"}));
+  }
+}
+
+TEST_F(ReconstructFiles, KeepsAttributesOfACut) {
+  Cloud cloud = sphere_cloud(60000, 2);
+  std::vector<bool> keep;
+  for (const Vec3f& p : cloud.positions) keep.push_back(p.z < 0.5F);
+  keep_where(cloud, keep);
+  start(with_attributes(cloud));
+  Options options = at_depth(8);
+  options.attributes = options.density = true;
+  options.trim = 0.02;
+  expect_as_whole(options, 50 * kMegabyte);
+  EXPECT_GT(files_.blocks, 1);
+  EXPECT_GT(files_.run.trim.triangles_split, 0);
+}
+
+TEST_F(ReconstructFiles, KeepsAttributesAroundOutliersAndStrays) {
+  Cloud cloud = torus_cloud(60000, 3);
+  append(cloud, scaled(jittered(box_cloud(60, 5), 6, 0.4), 1.5F));
+  cloud.positions.push_back({300, 0, 0});
+  cloud.normals.push_back({1, 0, 0});
+  start(with_attributes(cloud));
+  Options options = at_depth(8);
+  options.attributes = true;
+  expect_as_whole(options, 60 * kMegabyte);
+  EXPECT_GT(files_.blocks, 1);
+  EXPECT_GT(files_.run.strays, 0);
+}
+
+TEST_F(ReconstructFiles, KeepsColoursAlone) {
+  start(with_attributes(torus_cloud(60000, 1)));
+  Options options = at_depth(8);
+  options.attributes = true;
+  ScaleOptions in_blocks = scale(50 * kMegabyte);
+  in_blocks.only_colours = true;
+  files_ = reconstruct_files({input_}, output_, options, in_blocks);
+  EXPECT_EQ(files_.attributes, (std::vector<std::string>{"red", "green", "blue"}));
+  Cloud cloud = read_cloud(input_);
+  cloud.attributes.resize(3);
+  write_mesh(whole_, Reconstructor(Device::cpu(2)).reconstruct(cloud, options));
+  EXPECT_TRUE(bytes_of_file(output_) == bytes_of_file(whole_));
+}
+
+TEST_F(ReconstructFiles, RefusesLabels) {
+  Cloud cloud = sphere_cloud(2000, 8);
+  cloud.attributes = {{"heat", std::vector<float>(2000, 1)}, {"class", std::vector<std::int32_t>(2000, 3)}};
+  start(cloud);
+  write_old_output();
+  Options options = at_depth(7);
+  options.attributes = true;
+  expect_error(ErrorCode::usage, "labels of points, such as class (int32)", [&] { reconstruct(options); });
+}
+
 TEST_F(ReconstructFiles, SaysWhatBlocksCannotDo) {
   start(sphere_cloud(2000, 8));
   write_old_output();
   Options options = at_depth(7);
   options.weakness = true;
-  options.attributes = true;
-  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"weakness", "attributes"}));
-  expect_error(ErrorCode::usage, "weakness, attributes", [&] { reconstruct(options); });
+  options.offset = 0.1;
+  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"an offset", "weakness"}));
+  expect_error(ErrorCode::usage, "an offset, weakness", [&] { reconstruct(options); });
   expect_error(ErrorCode::usage, "depth", [&] { reconstruct(at_depth(6)); });
   expect_error(ErrorCode::usage, "one file", [&] {
     (void)reconstruct_files({input_, input_}, output_, at_depth(7), scale(0));

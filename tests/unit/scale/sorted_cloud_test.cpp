@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +43,25 @@ bool same_bytes(const std::vector<T>& a, const T* b) {
   return std::memcmp(a.data(), b, sizeof(T) * a.size()) == 0;
 }
 
+/// Of the points of a file that are not left out.
+void expect_attributes(exec::Cpu& ex, const SortedCloud& sorted, const field::AttributeSamples& expected) {
+  const std::vector<scale::PointAttribute>& found = sorted.attributes();
+  ASSERT_EQ(found.size(), expected.channels.size());
+  EXPECT_EQ(sorted.without_values(), expected.without_values);
+  std::vector<std::vector<float>> shares(found.size(), std::vector<float>(static_cast<std::size_t>(sorted.size())));
+  std::vector<float*> to;
+  for (std::vector<float>& values : shares) to.push_back(values.data());
+  sorted.read(ex, 0, sorted.size(), {nullptr, nullptr, nullptr, to});
+  for (std::size_t c = 0; c < found.size(); ++c) {
+    EXPECT_EQ(found[c].name, expected.names[c]);
+    EXPECT_EQ(found[c].type, expected.channels[c].type);
+    EXPECT_EQ(found[c].range.lowest, expected.channels[c].range.lowest);
+    EXPECT_EQ(found[c].range.highest, expected.channels[c].range.highest);
+    EXPECT_EQ(found[c].range.counted, expected.channels[c].range.counted);
+    EXPECT_TRUE(same_bytes(shares[c], expected.channels[c].shares.data())) << found[c].name;
+  }
+}
+
 /// Sorts the points of the file on the disk and in memory, without strays.
 void expect_as_in_memory(const std::string& path, std::int64_t memory, int threads) {
   const Cloud cloud = read_cloud(path);
@@ -52,14 +73,15 @@ void expect_as_in_memory(const std::string& path, std::int64_t memory, int threa
   const octree::Frame frame = octree::frame_around(extent.strays.core, 1.1);
 
   detail::PointBuffers points = detail::upload(ex, cloud);
+  points.attributes = detail::upload_attributes(ex, cloud);
   detail::leave_out(ex, extent.strays, points);
   const detail::SortedSamples expected = detail::sort_into_cube(ex, points, frame);
 
   const TemporaryFolder folder;
   std::sort(extent.strays.indices.begin(), extent.strays.indices.end());
-  const SortedCloud sorted(
-      ex, *parts,
-      {std::filesystem::path(folder.file("any")).parent_path().string(), memory, frame, extent.strays.indices});
+  const SortedCloud sorted(ex, *parts,
+                           {std::filesystem::path(folder.file("any")).parent_path().string(), memory, frame,
+                            extent.strays.indices, false, scale::KeptAttributes::all});
   ASSERT_EQ(sorted.size(), expected.keys.size());
   Points all(sorted.size());
   sorted.read(0, sorted.size(), {all.positions.data(), all.normals.data(), all.keys.data()});
@@ -67,6 +89,7 @@ void expect_as_in_memory(const std::string& path, std::int64_t memory, int threa
   EXPECT_TRUE(same_bytes(all.positions, expected.samples.positions.data()));
   EXPECT_TRUE(same_bytes(all.normals, expected.samples.normals.data()));
 
+  expect_attributes(ex, sorted, expected.attributes);
   const std::int64_t first = sorted.size() / 3, some = sorted.size() / 2;
   Points part(some);
   sorted.read(first, some, {part.positions.data(), nullptr, nullptr});
@@ -111,6 +134,41 @@ TEST(SortedCloud, SortsManyPointsAtOnePlaceByTheirNormals) {
   for (std::size_t i = 0; i < cloud.positions.size(); i += 2) cloud.positions[i] = {0.25F, 0.25F, 0.25F};
   write_cloud(folder.file("cloud.ply"), cloud);
   expect_as_in_memory(folder.file("cloud.ply"), 1 << 20, 2);
+}
+
+/// Equal points are in the order of their attributes, whatever their order in the file.
+TEST(SortedCloud, HasTheAttributesOfTheSortInMemory) {
+  const TemporaryFolder folder;
+  Cloud cloud = with_duplicates(torus_cloud(20'000, 1));
+  Random random(4);
+  std::vector<std::uint8_t> red;
+  std::vector<double> mass;
+  std::vector<float> heat, nothing(cloud.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  for (const Vec3f& p : cloud.positions) {
+    red.push_back(static_cast<std::uint8_t>(random.below(256)));
+    mass.push_back(1e9 + random.unit());
+    heat.push_back(p.x > 0 ? static_cast<float>(random.unit()) : nothing.front());
+  }
+  cloud.attributes = {{"red", red}, {"nothing", nothing}, {"mass", mass}, {"heat", heat}};
+  const std::string path = folder.file("cloud.ply");
+  write_cloud(path, cloud);
+  for (const std::int64_t memory : {std::int64_t{0}, std::int64_t{1} << 30}) {
+    SCOPED_TRACE(memory);
+    expect_as_in_memory(path, memory, 3);
+  }
+}
+
+TEST(SortedCloud, RefusesLabels) {
+  const TemporaryFolder folder;
+  Cloud cloud = sphere_cloud(1000, 3);
+  cloud.attributes = {{"class", std::vector<std::uint8_t>(1000, 3)}};
+  write_cloud(folder.file("cloud.ply"), cloud);
+  exec::Cpu ex(1);
+  const auto parts = io::CloudParts::open(folder.file("cloud.ply"));
+  parts->choose_origin(ex, std::nullopt);
+  EXPECT_THROW(scale::attributes_of(ex, *parts, scale::KeptAttributes::all), Error);
+  EXPECT_TRUE(scale::attributes_of(ex, *parts, scale::KeptAttributes::colours).empty());
+  EXPECT_TRUE(scale::attributes_of(ex, *parts, scale::KeptAttributes::none).empty());
 }
 
 TEST(SortedCloud, NeedsNormals) {

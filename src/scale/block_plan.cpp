@@ -37,6 +37,11 @@ std::uint64_t OwnNodes::cell_beside(std::uint64_t node) const {
   return octree::encode({std::min(c.x, last), std::min(c.y, last), std::min(c.z, last)});
 }
 
+/// Attributes come when a block is extracted, which takes somewhat less than solving it.
+std::int64_t BlockPlan::node_bytes() const {
+  constexpr std::int64_t kLess = 4;
+  return kNodeBytes + std::max<std::int64_t>(0, setup_.pass_floats * std::int64_t{sizeof(float)} - kLess);
+}
 std::int64_t BlockPlan::sample_bytes() const {
   return kSampleBytes + setup_.sample_floats * std::int64_t{sizeof(float)};
 }
@@ -206,8 +211,8 @@ int BlockPlan::guess_blocks(double left) const {
   constexpr int kMost = 1'000'000;
   std::int64_t bricks = 0;
   for (const SplitCell& cell : split_) bricks += cell.bricks;
-  const double whole = static_cast<double>(8 * with_ghosts(bricks) * kNodeBytes + cloud_.size() * sample_bytes());
-  const auto coarse = static_cast<double>(planned_coarse_bytes_ / coarse_bytes() * kNodeBytes);
+  const double whole = static_cast<double>(8 * with_ghosts(bricks) * node_bytes() + cloud_.size() * sample_bytes());
+  const auto coarse = static_cast<double>(planned_coarse_bytes_ / coarse_bytes() * node_bytes());
   const auto bytes_of_one = [&](int blocks) {
     const double side = std::sqrt(static_cast<double>(split_.size()) / blocks);
     const double wider = 1 + (blocks > 1 ? 2 * ring() / side : 0);
@@ -243,8 +248,8 @@ BlockPlan::Planned BlockPlan::plan_block(const BlockRange& own) const {
   }
   std::int64_t samples = 0;
   for (const SampleRun& run : samples_in(cells)) samples += run.end - run.begin;
-  return {nodes, with_ghosts(nodes) * kNodeBytes + samples * sample_bytes() +
-                     planned_coarse_bytes_ / coarse_bytes() * kNodeBytes};  // every octree has the coarse levels
+  return {nodes, with_ghosts(nodes) * node_bytes() + samples * sample_bytes() +
+                     planned_coarse_bytes_ / coarse_bytes() * node_bytes()};  // every octree has the coarse levels
 }
 
 /// At most so many.

@@ -56,7 +56,8 @@ class BlockPlan {
     int ring = 0;                    ///< cells around what is solved; 0: solve_ring()
     int lowest_splat_depth = 0;      ///< poisson::coarsest_splat_depth()
     std::int64_t sample_floats = 0;  ///< that samples have for their attributes
-    std::int64_t coarse_floats = 0;  ///< that nodes of the coarse levels have for them
+    std::int64_t pass_floats = 0;    ///< that nodes have for them in the widest pass
+    std::int64_t coarse_floats = 0;  ///< that nodes of the coarse levels have for them in all passes
   };
   BlockPlan(exec::Cpu& ex, const SortedCloud& cloud, const Setup& setup) : ex_(ex), cloud_(cloud), setup_(setup) {}
 
@@ -123,6 +124,7 @@ class BlockPlan {
   };
   [[nodiscard]] Planned plan_block(const BlockRange& own) const;
   [[nodiscard]] int finer() const { return setup_.depth - level_; }
+  [[nodiscard]] std::int64_t node_bytes() const;
   [[nodiscard]] std::int64_t sample_bytes() const;
   [[nodiscard]] std::int64_t coarse_bytes() const;
 

@@ -82,7 +82,11 @@ BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& option
   setup.ring = options.ring;
   setup.lowest_splat_depth = poisson::coarsest_splat_depth(cloud.size(), options.depth);
   setup.sample_floats = std::ssize(cloud.attributes()) + (options.confidence && !cloud.attributes().empty() ? 1 : 0);
-  setup.coarse_floats = std::ssize(cloud.attributes()) + std::ssize(passes_of(cloud));
+  for (const std::size_t channels : passes_of(cloud)) {
+    const auto floats = static_cast<std::int64_t>(1 + channels);
+    setup.pass_floats = std::max(setup.pass_floats, floats);
+    setup.coarse_floats += floats;
+  }
   return setup;
 }
 

@@ -419,7 +419,7 @@ TEST_F(ReconstructFiles, KeepsAttributesOfACut) {
   Options options = at_depth(8);
   options.attributes = options.density = true;
   options.trim = 0.02;
-  expect_as_whole(options, 50 * kMegabyte);
+  expect_as_whole(options, 80 * kMegabyte);
   EXPECT_GT(files_.blocks, 1);
   EXPECT_GT(files_.run.trim.triangles_split, 0);
 }
@@ -466,9 +466,9 @@ TEST_F(ReconstructFiles, SaysWhatBlocksCannotDo) {
   write_old_output();
   Options options = at_depth(7);
   options.weakness = true;
-  options.offset = 0.1;
-  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"an offset", "weakness"}));
-  expect_error(ErrorCode::usage, "an offset, weakness", [&] { reconstruct(options); });
+  options.point_normals = PointNormals::estimate;
+  EXPECT_EQ(missing_in_blocks(options), (std::vector<std::string>{"making normals", "weakness"}));
+  expect_error(ErrorCode::usage, "making normals, weakness", [&] { reconstruct(options); });
   expect_error(ErrorCode::usage, "depth", [&] { reconstruct(at_depth(6)); });
   expect_error(ErrorCode::usage, "one file", [&] {
     (void)reconstruct_files({input_, input_}, output_, at_depth(7), scale(0));

@@ -230,12 +230,19 @@ def in_parallel(jobs, work):
 
 
 # Commands that take --device; `bench` names devices in its own way.
-ON_DEVICES = ("reconstruct", "reconstruct-stdout", "reconstruct-each", "orient", "boolean", "edit", "deform", "fluid", "fluid-simulate", "problems")
+ON_DEVICES = ("reconstruct", "reconstruct-stdout", "reconstruct-each", "reconstruct-blocks", "orient", "boolean", "edit", "deform",
+              "fluid", "fluid-simulate", "problems")
+# A limit is for the memory of the device there: too little for the whole, enough for some four blocks.
+LIMIT_ON_DEVICES = {"reconstruct-blocks": "25M"}
 
 
 def on_device(commands, device):
     """Those of `commands` that take --device, with it."""
-    return {name: one._replace(words=(*one.words, "--device", device)) for name, one in commands.items() if name in ON_DEVICES}
+    def words(name, one):
+        limit = LIMIT_ON_DEVICES.get(name)
+        limited = [limit if before == "--max-memory" and limit else word for before, word in zip(("", *one.words), one.words)]
+        return (*limited, "--device", device)
+    return {name: one._replace(words=words(name, one)) for name, one in commands.items() if name in ON_DEVICES}
 
 
 def chosen(names):

@@ -148,7 +148,8 @@ TEST_F(ProcessMemory, IsWhatSplitMakesBlocksFor) {
 TEST_F(ProcessMemory, TooSmallForAWholeIsNoReasonToIgnoreWhatBlocksCannotDo) {
   const std::string cloud = write(sphere_cloud(400'000, 6), "cloud.ply");  // too large to be read within the limit
   write_mesh(folder_ / "box.ply", box_mesh({-2, -2, -2}, {2, 2, 2}));
-  for (const Args& asked : {Args{"--envelope", folder_ / "box.ply"}, Args{"--keep-attributes"}, Args{"--weakness"}}) {
+  for (const Args& asked :
+       {Args{"--envelope", folder_ / "box.ply"}, Args{"--normals", "estimate"}, Args{"--weakness"}}) {
     Args args = {"--max-memory", "30M", "-q"};
     args.insert(args.end(), asked.begin(), asked.end());
     expect_error(run(cloud, "8", args), 2, "in blocks there is not yet");

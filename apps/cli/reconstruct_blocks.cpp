@@ -4,6 +4,7 @@
 #include <malloc.h>
 #endif
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -28,9 +29,15 @@ namespace {
 
 constexpr int kShallowest = 7;  // that reconstruct_files() takes
 
+bool keeps_colours_alone(const ReconstructArgs& args) {
+  return args.colors && !args.options.attributes && args.poisson_recon_data.empty();
+}
+
 /// What is asked for and blocks do not do; an envelope also where it has not been read.
 std::vector<std::string> missing(const ReconstructArgs& args, const Options& options) {
-  std::vector<std::string> names = missing_in_blocks(options);
+  ScaleOptions scale;
+  scale.only_colours = keeps_colours_alone(args);
+  std::vector<std::string> names = missing_in_blocks(args.inputs, options, scale);
   if (!args.envelope.empty() && options.envelope == nullptr) names.emplace_back("an envelope");
   return names;
 }
@@ -57,7 +64,7 @@ ScaleOptions scale_options(const ReconstructArgs& args, const Device& device) {
   scale.shift = parse_shift(args.shift);
   scale.temp_folder = args.temp;
   scale.split = args.split;
-  scale.only_colours = args.colors && !args.options.attributes && args.poisson_recon_data.empty();
+  scale.only_colours = keeps_colours_alone(args);
   return scale;
 }
 
@@ -75,6 +82,14 @@ auto within_limit(const ReconstructArgs& args, const ScaleOptions& scale, const 
                 fmt::format("--max-memory {}, of which the program takes {}: {}", bytes_text(limit),
                             bytes_text(limit - scale.max_memory_bytes), error.what()));
   }
+}
+
+/// On the mesh, or with a warning why not.
+bool has_colours(const FilesReport& files) {
+  const std::vector<Warning>& warnings = files.run.warnings;
+  return !files.attributes.empty() || std::any_of(warnings.begin(), warnings.end(), [](const Warning& warning) {
+    return warning.kind == WarningKind::attributes_missing;
+  });
 }
 
 void warn_about_left_out(const FilesReport& files) {
@@ -134,7 +149,7 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
   file_was_written();
   if (!was_said) {
     warn_about_left_out(files);
-    if (scale.only_colours && files.attributes.empty()) warn_about_no_colours();
+    if (scale.only_colours && !has_colours(files)) warn_about_no_colours();
   }
   for (const Warning& warning : files.run.warnings)
     if (warning.kind != WarningKind::coarse_depth || !args.given.has("--depth")) print_warning(warning.text);

@@ -42,9 +42,11 @@ struct FilesReport {
 /// @throws Error invalid_input if it cannot be opened, or its header is garbled
 bool reads_in_parts(const std::string& path);
 
-/// What of these options cannot be worked on in blocks yet, in words: "weakness", "an envelope". Empty if all can. With attributes
-/// it depends on the file, too: labels (is_label) cannot yet.
-std::vector<std::string> missing_in_blocks(const Options& options);
+/// What of such a run cannot be worked on in blocks yet, in words: "weakness", "an envelope". Empty if all can. With attributes that
+/// depends on the files: labels (is_label) cannot, and of files that can be read in parts the header is looked at.
+/// @throws Error invalid_input if a file cannot be opened, or its header is garbled
+std::vector<std::string> missing_in_blocks(const std::vector<std::string>& inputs, const Options& options,
+                                           const ScaleOptions& scale = {});
 
 /// Reconstructs a cloud that memory does not hold: from a file to a file, with the same bytes that reconstructing the whole in
 /// memory and writing it would give, for any memory, any number of threads and any device.
@@ -63,8 +65,8 @@ std::vector<std::string> missing_in_blocks(const Options& options);
 ///                 it and a number from 0 on before the extension, such as mesh_0003.ply: each has its own triangles, and the
 ///                 vertices that they have, those at borders with the same bytes in several; all appear when all are written
 /// @param options  whose max_memory_bytes and residuals do not count
-/// @throws Error usage for options that missing_in_blocks() names, attributes that are labels, or a depth below 7; invalid_input if
-///         the file cannot be read in parts; over_limit if one cell with its ring does not fit, which says how much would do;
+/// @throws Error usage for what missing_in_blocks() names, or a depth below 7; invalid_input if the file cannot be read in parts;
+///         over_limit if one cell with its ring does not fit, which says how much would do;
 ///         device_unavailable, empty_result, no_normals, output_not_written, interrupted
 FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output,
                               const Options& options = {}, const ScaleOptions& scale = {});

@@ -94,6 +94,11 @@ void CloudParts::choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift)
   });
 }
 
+std::vector<Attribute> CloudParts::attributes(exec::Cpu& ex) const {
+  Bytes none;
+  return std::move(assemble(ex, input_.source(), rows_->read(0, 0, none), Vec3d{}).attributes);
+}
+
 Cloud CloudParts::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, Bytes& buffer) const {
   Cloud cloud = assemble(ex, input_.source(), rows_->read(first, count, buffer), origin_);
   if (!keeps_zero_normals_ && std::find(cloud.normals.begin(), cloud.normals.end(), Vec3f{}) != cloud.normals.end()) {

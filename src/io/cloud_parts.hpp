@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <pointskin/cloud.hpp>
 
@@ -34,6 +35,9 @@ class CloudParts {
   /// bytes for 64 rows, and kBufferBytes.
   /// @throws Error invalid_input without x, y, z, or if the file has become shorter; usage if `shift` is not finite
   void choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift);
+
+  /// Names and types of the points' attributes, without values; before an origin is chosen, too.
+  [[nodiscard]] std::vector<Attribute> attributes(exec::Cpu& ex) const;
 
   /// What positions are relative to, once it has been chosen.
   [[nodiscard]] const Vec3d& origin() const { return origin_; }

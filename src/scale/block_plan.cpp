@@ -37,10 +37,11 @@ std::uint64_t OwnNodes::cell_beside(std::uint64_t node) const {
   return octree::encode({std::min(c.x, last), std::min(c.y, last), std::min(c.z, last)});
 }
 
-/// Attributes come when a block is extracted, which takes somewhat less than solving it.
+/// Attributes are there while a block is splatted or extracted, which takes somewhat less than solving it.
 std::int64_t BlockPlan::node_bytes() const {
-  constexpr std::int64_t kLess = 4;
-  return kNodeBytes + std::max<std::int64_t>(0, setup_.pass_floats * std::int64_t{sizeof(float)} - kLess);
+  constexpr std::int64_t kLess = 4, kNodesAVertex = 7;
+  const std::int64_t pass = setup_.pass_floats * std::int64_t{sizeof(float)};
+  return kNodeBytes + std::max<std::int64_t>(0, pass - kLess) + setup_.vertex_bytes / kNodesAVertex;
 }
 std::int64_t BlockPlan::sample_bytes() const {
   return kSampleBytes + setup_.sample_floats * std::int64_t{sizeof(float)};

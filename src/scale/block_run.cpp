@@ -82,6 +82,8 @@ BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& option
   setup.ring = options.ring;
   setup.lowest_splat_depth = poisson::coarsest_splat_depth(cloud.size(), options.depth);
   setup.sample_floats = std::ssize(cloud.attributes()) + (options.confidence && !cloud.attributes().empty() ? 1 : 0);
+  for (const PointAttribute& attribute : cloud.attributes())
+    setup.vertex_bytes += static_cast<std::int64_t>(size_of(attribute.type));
   for (const std::size_t channels : passes_of(cloud)) {
     const auto floats = static_cast<std::int64_t>(1 + channels);
     setup.pass_floats = std::max(setup.pass_floats, floats);

@@ -34,6 +34,22 @@ namespace {
 
 using diagnose::NormalsVerdict;
 
+scale::KeptAttributes kept_attributes(const Options& options, const ScaleOptions& scale) {
+  if (!options.attributes) return scale::KeptAttributes::none;
+  return scale.only_colours ? scale::KeptAttributes::colours : scale::KeptAttributes::all;
+}
+
+/// The first label among the attributes that are to be kept; empty if there is none.
+std::string label_of(const std::string& input, const Options& options, const ScaleOptions& scale) {
+  if (!options.attributes) return "";
+  const std::unique_ptr<io::CloudParts> points = io::CloudParts::open(input);
+  if (points == nullptr) return "";
+  exec::Cpu ex(1);
+  for (const scale::PointAttribute& attribute : scale::attributes_of(ex, *points, kept_attributes(options, scale)))
+    if (attribute.is_label()) return io::printable(attribute.name);
+  return "";
+}
+
 /// What a fit of the cloud found, and the mesh.
 struct Fit {
   scale::BlockReport report;
@@ -113,7 +129,6 @@ class FilesRun {
 
   void place_cloud() {
     announce(options_.progress, "octree", 0);
-    scale::attributes_of(ex_, *parts_, kept_attributes());  // refuses what is not there yet
     parts_->choose_origin(ex_, scale_.shift);
     parts_->leave_out_zero_normals();
     scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options_.keep_strays);
@@ -164,16 +179,11 @@ class FilesRun {
     return detail::core_in(report.inliers.box, place_.frame, options_.scale);
   }
 
-  [[nodiscard]] scale::KeptAttributes kept_attributes() const {
-    if (!options_.attributes) return scale::KeptAttributes::none;
-    return scale_.only_colours ? scale::KeptAttributes::colours : scale::KeptAttributes::all;
-  }
-
   [[nodiscard]] scale::SortedCloud sorted() {
-    return {
-        ex_,
-        *parts_,
-        {scale_.temp_folder, bytes() / kSortShare, place_.frame, place_.left_out.indices, turned_, kept_attributes()}};
+    return {ex_,
+            *parts_,
+            {scale_.temp_folder, bytes() / kSortShare, place_.frame, place_.left_out.indices, turned_,
+             kept_attributes(options_, scale_)}};
   }
 
   [[nodiscard]] scale::VertexColumns vertex_columns(const Fit& fit) const {
@@ -302,7 +312,8 @@ class FilesRun {
 
 bool reads_in_parts(const std::string& path) { return io::CloudParts::open(path) != nullptr; }
 
-std::vector<std::string> missing_in_blocks(const Options& options) {
+std::vector<std::string> missing_in_blocks(const std::vector<std::string>& inputs, const Options& options,
+                                           const ScaleOptions& scale) {
   std::vector<std::string> missing;
   const auto name = [&](bool asked, const char* what) {
     if (asked) missing.emplace_back(what);
@@ -314,14 +325,19 @@ std::vector<std::string> missing_in_blocks(const Options& options) {
   name(options.envelope != nullptr, "an envelope");
   name(options.offset != 0, "an offset");
   name(options.weakness, "weakness");
+  for (const std::string& input : inputs)
+    if (const std::string label = label_of(input, options, scale); !label.empty()) {
+      missing.push_back("labels of points such as " + label);
+      break;
+    }
   return missing;
 }
 
 namespace {
 
-void check_request(const std::vector<std::string>& inputs, const Options& options) {
+void check_request(const std::vector<std::string>& inputs, const Options& options, const ScaleOptions& scale) {
   validate(options);
-  const std::vector<std::string> missing = missing_in_blocks(options);
+  const std::vector<std::string> missing = missing_in_blocks(inputs, options, scale);
   if (!missing.empty())
     throw Error(ErrorCode::usage, fmt::format("in blocks there is not yet: {}", fmt::join(missing, ", ")));
   if (inputs.size() != 1)
@@ -331,13 +347,13 @@ void check_request(const std::vector<std::string>& inputs, const Options& option
 }  // namespace
 
 FilesPlan plan_files(const std::vector<std::string>& inputs, const Options& options, const ScaleOptions& scale) {
-  check_request(inputs, options);
+  check_request(inputs, options, scale);
   return FilesRun(inputs.front(), options, scale).plan();
 }
 
 FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output, const Options& options,
                               const ScaleOptions& scale) {
-  check_request(inputs, options);
+  check_request(inputs, options, scale);
   return FilesRun(inputs.front(), options, scale).run(output);
 }
 

@@ -33,9 +33,9 @@ bool is_kept(const Attribute& attribute, KeptAttributes kept) {
 }
 
 /// Of a part of the points.
-std::vector<const Attribute*> kept_of(const Cloud& cloud, KeptAttributes kept) {
+std::vector<const Attribute*> kept_of(const std::vector<Attribute>& attributes, KeptAttributes kept) {
   std::vector<const Attribute*> some;
-  for (const Attribute& attribute : cloud.attributes)
+  for (const Attribute& attribute : attributes)
     if (is_kept(attribute, kept)) some.push_back(&attribute);
   return some;
 }
@@ -99,24 +99,23 @@ struct MakeRecord {
 }  // namespace
 
 std::vector<PointAttribute> attributes_of(exec::Cpu& ex, const io::CloudParts& points, KeptAttributes kept) {
-  std::vector<PointAttribute> attributes;
-  if (kept == KeptAttributes::none) return attributes;
-  io::CloudParts::Bytes buffer;
-  const Cloud none = points.read(ex, 0, 0, buffer);
-  for (const Attribute* const attribute : kept_of(none, kept)) {
-    if (attribute->is_label())
-      throw Error(ErrorCode::usage, fmt::format("in blocks there are not yet: labels of points, such as {} ({})",
-                                                io::printable(attribute->name), name_of(attribute->type())));
-    attributes.push_back({attribute->name, attribute->type(), {}});
-  }
-  return attributes;
+  std::vector<PointAttribute> kept_ones;
+  if (kept == KeptAttributes::none) return kept_ones;
+  const std::vector<Attribute> all = points.attributes(ex);
+  for (const Attribute* const attribute : kept_of(all, kept))
+    kept_ones.push_back({attribute->name, attribute->type(), {}});
+  return kept_ones;
 }
 
 SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup)
     : record_bytes_(sizeof(Record)) {
   std::vector<PointAttribute> attributes = attributes_of(ex, points, setup.attributes);
-  for (const PointAttribute& attribute : attributes)
+  for (const PointAttribute& attribute : attributes) {
+    if (attribute.is_label())
+      throw Error(ErrorCode::usage,
+                  fmt::format("{} ({}) is a label", io::printable(attribute.name), name_of(attribute.type)));
     record_bytes_ += static_cast<std::int64_t>(size_of(attribute.type));
+  }
   DiskSort sort(ex, {setup.folder, points.rows(), record_bytes_, setup.memory_bytes});
   UsedOf used_of(setup.left_out);
   std::vector<std::uint64_t> hashes;
@@ -141,7 +140,7 @@ SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setu
                                {hashes.data(), count},
                                {selected}});
     std::vector<TypedView> values;
-    for (const Attribute* const attribute : kept_of(cloud, setup.attributes)) {
+    for (const Attribute* const attribute : kept_of(cloud.attributes, setup.attributes)) {
       const TypedView view = view_of(*attribute);
       for_each(ex, "scale.hash", count, detail::HashAttribute{view, {hashes.data(), count}, {selected}});
       field::ValueRange& range = attributes[values.size()].range;

@@ -22,15 +22,16 @@ namespace pointskin::scale {
 /// Which attributes of the points are kept.
 enum class KeptAttributes : std::uint8_t { none, colours, all };
 
-/// A continuous attribute of the points of a cloud.
+/// An attribute of the points of a cloud.
 struct PointAttribute {
   std::string name;
   AttributeType type = AttributeType::float32;
   field::ValueRange range;  ///< of the points that are not left out
+
+  [[nodiscard]] bool is_label() const { return pointskin::is_label(name, type); }
 };
 
-/// The attributes of the points of a file that are kept, in its order.
-/// @throws Error usage if there is a label (is_label) among them; as CloudParts::read
+/// The attributes of the points of a file that are kept, in its order, without ranges.
 std::vector<PointAttribute> attributes_of(exec::Cpu& ex, const io::CloudParts& points, KeptAttributes kept);
 
 /// What detail::sort_into_cube() makes of a cloud, for clouds that memory does not hold: the same points in the same order, with
@@ -56,7 +57,7 @@ class SortedCloud {
   };
 
   /// @param points  whose origin has been chosen
-  /// @throws Error no_normals if they have none; usage as attributes_of(); output_not_written, interrupted; as CloudParts::read
+  /// @throws Error no_normals if they have none; usage if a label (is_label) is to be kept; output_not_written, interrupted; as CloudParts::read
   /// One pass over the file. O(n log n)
   SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup);
 

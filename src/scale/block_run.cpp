@@ -71,6 +71,14 @@ std::vector<std::size_t> passes_of(const SortedCloud& cloud) {
   return passes;
 }
 
+/// That a vertex has in the cloud's attributes.
+std::int64_t attribute_bytes(const SortedCloud& cloud) {
+  std::int64_t bytes = 0;
+  for (const PointAttribute& attribute : cloud.attributes())
+    bytes += static_cast<std::int64_t>(size_of(attribute.type));
+  return bytes;
+}
+
 BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& options) {
   BlockPlan::Setup setup;
   setup.depth = options.depth;
@@ -82,8 +90,7 @@ BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& option
   setup.ring = options.ring;
   setup.lowest_splat_depth = poisson::coarsest_splat_depth(cloud.size(), options.depth);
   setup.sample_floats = std::ssize(cloud.attributes()) + (options.confidence && !cloud.attributes().empty() ? 1 : 0);
-  for (const PointAttribute& attribute : cloud.attributes())
-    setup.vertex_bytes += static_cast<std::int64_t>(size_of(attribute.type));
+  setup.vertex_bytes = attribute_bytes(cloud);
   for (const std::size_t channels : passes_of(cloud)) {
     const auto floats = static_cast<std::int64_t>(1 + channels);
     setup.pass_floats = std::max(setup.pass_floats, floats);
@@ -267,13 +274,13 @@ class BlockRun {
     };
     add(columns.density != MeshColumns::kNone, columns.density, options_.density_face);
     add(pieces && supports, columns.supports, std::ldexp(1.0, -2 * depth_));
-    if (!cut.edges.empty()) find_others(faces, densities, cut);
+    if (!cut.edges.empty()) find_values_on_line(faces, densities, cut);
     sweep({"cut", "extract", 0.98}, [&] { meshes.cut(ex_, cut, pieces, supports); });
   }
 
   /// Densities and attributes of the vertices on the line.
   /// @param densities  columns, of each of `faces`
-  void find_others(const std::vector<double>& faces, const std::vector<std::size_t>& densities, BlockCut& cut) {
+  void find_values_on_line(const std::vector<double>& faces, const std::vector<std::size_t>& densities, BlockCut& cut) {
     const MeshColumns& columns = shared_.columns;
     const std::size_t attributes = cloud_.attributes().size();
     if (faces.empty() && attributes == 0) return;
@@ -512,11 +519,8 @@ BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const Blo
   plan.divide();
   const BlockPlan::Sizes sizes = plan.sizes();
   const std::int64_t values = SampleValues::columns(options.trim != 0) * cloud.size() + sizes.nodes;
-  double attribute_bytes = 0;
-  for (const PointAttribute& attribute : cloud.attributes())
-    attribute_bytes += static_cast<double>(size_of(attribute.type));
   const auto attributes =
-      static_cast<std::int64_t>(kVertices * attribute_bytes * static_cast<double>(meshes * sizes.own_nodes));
+      static_cast<std::int64_t>(kVertices * static_cast<double>(attribute_bytes(cloud) * meshes * sizes.own_nodes));
   return {static_cast<int>(plan.blocks().size()),
           plan.level(),
           plan.ring(),

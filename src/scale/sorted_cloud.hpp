@@ -31,7 +31,7 @@ struct PointAttribute {
   [[nodiscard]] bool is_label() const { return pointskin::is_label(name, type); }
 };
 
-/// The attributes of the points of a file that are kept, in its order, without ranges.
+/// The attributes of the points of a file that are kept, in its order, without ranges. The header is read.
 std::vector<PointAttribute> attributes_of(exec::Cpu& ex, const io::CloudParts& points, KeptAttributes kept);
 
 /// What detail::sort_into_cube() makes of a cloud, for clouds that memory does not hold: the same points in the same order, with
@@ -57,7 +57,8 @@ class SortedCloud {
   };
 
   /// @param points  whose origin has been chosen
-  /// @throws Error no_normals if they have none; usage if a label (is_label) is to be kept; output_not_written, interrupted; as CloudParts::read
+  /// @throws Error no_normals if they have none; usage if a label (is_label) is to be kept; output_not_written, interrupted; as
+  ///         CloudParts::read
   /// One pass over the file. O(n log n)
   SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup);
 

@@ -213,7 +213,7 @@ struct RangeOf {
   TypedView values;
   ArrayView<const std::int32_t> used;
   PSK_HD ValueRange operator()(std::int64_t i) const {
-    const double v = values[used.empty() ? i : used[i]];
+    const double v = values[used.empty() ? i : used[i]] + 0.0;  // -0 becomes 0: which of the two comes first is chance
     return is_finite(v) ? ValueRange{v, v, 1} : ValueRange{};
   }
 };

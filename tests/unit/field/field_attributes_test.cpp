@@ -286,6 +286,17 @@ TEST(Attributes, StayInTheRangeOfTheInputHoweverLargeOrCloseItsValuesAre) {
   }
 }
 
+TEST(Attributes, HaveTheSameRangeWhicheverOfTwoZerosComesFirst) {
+  test::Random random(13);
+  SmallTree tree(random_points(random, 2), {}, 2);
+  for (const std::vector<double>& values : {std::vector<double>{-0.0, 0.0, 1}, {0.0, -0.0, 1}, {-0.0, 0.0, -1}}) {
+    const exec::TypedBuffer uploaded = exec::upload_typed(tree.ex, AttributeValues(values));
+    const field::ValueRange range = field::find_range(tree.ex, uploaded.view(), {});
+    EXPECT_FALSE(std::signbit(range.lowest == 0 ? range.lowest : range.highest));
+    EXPECT_EQ(range.counted, 3);
+  }
+}
+
 TEST(Attributes, OfIntegersAreRoundedWholeNumbers) {
   test::Random random(8);
   SmallTree tree(test::clustered_points(random, 30, 15, 0.02), {}, 6);

@@ -9,6 +9,7 @@ option(POINTSKIN_BUILD_BENCH "Build the benchmarks and generators" ${PROJECT_IS_
 set(POINTSKIN_STUDIO AUTO CACHE STRING
   "Build the command `studio`: AUTO (where Node 18, npm, Boost and meshoptimizer are found), ON or OFF")
 set_property(CACHE POINTSKIN_STUDIO PROPERTY STRINGS AUTO ON OFF)
+option(POINTSKIN_MPI "Build modules for Open MPI and MPICH, where they are found, with which several hosts work together" ${PROJECT_IS_TOP_LEVEL})
 option(POINTSKIN_INSTALL "Install the library and what is built with it" ${PROJECT_IS_TOP_LEVEL})
 option(POINTSKIN_SHARED "Build the shared library, with the C interface, beside the archive" ${PROJECT_IS_TOP_LEVEL})
 if(PROJECT_IS_TOP_LEVEL)

@@ -14,6 +14,7 @@
 #include "console.hpp"
 #include "file_plan.hpp"
 #include "output_check.hpp"
+#include "ranks.hpp"
 #include "reconstruct_args.hpp"
 #include "reconstruct_blocks.hpp"
 #include "reconstruct_each.hpp"
@@ -39,9 +40,10 @@ bool is_a_split_output(const std::string& file, const std::string& output) {
 }
 
 void check_split(const ReconstructArgs& args) {
-  if (args.options.max_memory_bytes == 0) throw_usage("--split needs --max-memory: blocks are what it holds");
+  if (args.options.max_memory_bytes == 0 && !is_one_of_ranks())
+    throw_usage("--split needs --max-memory: blocks are what it holds");
   if (!args.report.empty()) throw_usage("--split and --report exclude each other: a report measures one mesh");
-  if (!may_work_in_blocks(args))
+  if (!is_one_of_ranks() && !may_work_in_blocks(args))
     throw_usage("--split needs one binary PLY or NPY file as input, .ply as output, and a depth of at least 7");
   for (const std::string& input : args.inputs)
     if (is_a_split_output(input, args.output))
@@ -59,6 +61,7 @@ void check_files(const ReconstructArgs& args) {
   if (!args.output.empty()) check_mesh_output(args.output);
   if (!args.report.empty()) check_replaceable(args.report);
   check_problem_pictures(args.pictures);
+  if (is_one_of_ranks()) check_ranks(args);
   if (args.split) check_split(args);
   if (!args.temp.empty() && !std::filesystem::is_directory(args.temp))
     throw_usage(fmt::format("--temp {}: is no folder", args.temp));
@@ -68,7 +71,7 @@ void warn_about_options(const ReconstructArgs& args, const Options& options) {
   if (args.given.has("--depth") && args.given.has("--width"))
     print_warning("--depth is ignored because --width chooses the depth");
   warn_about_unused(args.given, options, mesh_file(args), !args.report.empty());
-  if (options.max_memory_bytes == 0) warn_unused(args.given, {"--temp"}, "without --max-memory");
+  if (options.max_memory_bytes == 0 && !is_one_of_ranks()) warn_unused(args.given, {"--temp"}, "without --max-memory");
   warn_about_ascii(args.given, args.output);
   if (mesh_file(args).empty())
     warn_unused(args.given, {"--no-normals", "--density", "--keep-attributes", "--colors", "--data", "--ascii"},
@@ -83,7 +86,7 @@ int run(const ReconstructArgs& given) {
   args.inputs.insert(args.inputs.end(), args.named_inputs.begin(), args.named_inputs.end());
   const Options options = library_options(args);
   parse_shift(args.shift);
-  if (args.each)
+  if (args.each && !is_one_of_ranks())
     check_each(args);
   else
     check_files(args);

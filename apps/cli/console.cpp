@@ -15,6 +15,8 @@
 
 #include <pointskin/error.hpp>
 
+#include "ranks.hpp"
+
 namespace pointskin::cli {
 namespace {
 
@@ -58,6 +60,7 @@ void write_line(const std::string& text) {
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
 
 void print_error(const std::string& story) {
+  let_the_first_tell();
   const std::string name = use_colour() ? "\x1b[1;31mpointskin:\x1b[0m" : "pointskin:";
   write_line(fmt::format("{} {}", name, one_line(story)));
 }
@@ -81,9 +84,12 @@ void print_warning(const std::string& story) {
 
 const std::vector<std::string>& printed_warnings() { return about != nullptr ? about->stories_ : warnings(); }
 
-void print_note(const std::string& text) { write_line(without_controls(text)); }
+void print_note(const std::string& text) {
+  if (tells_for_all()) write_line(without_controls(text));
+}
 
 void write_stdout(const std::string& text) {
+  if (!tells_for_all()) return;
   const std::string shown = without_controls(text);
   const bool written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size();
   if (std::fflush(stdout) == 0 && written) return;

@@ -1,4 +1,4 @@
-// What the program says: errors, warnings and notes on stderr, data on stdout.
+// What the program says: errors, warnings and notes on stderr, data on stdout. Of several ranks the first one says it.
 #pragma once
 
 #include <string>

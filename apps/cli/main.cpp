@@ -20,6 +20,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "exhaustion.hpp"
+#include "ranks.hpp"
 #include "signals.hpp"
 #include "standard_files.hpp"
 
@@ -40,6 +41,8 @@ int told(const std::exception& error) {
 int guarded_main(const std::vector<std::string>& args) {
   const InterruptScope scope;
   try {
+    if (is_one_of_ranks() && (args.empty() || args.front() != "reconstruct"))
+      throw_usage("only reconstruct works on several ranks; start all other commands without a launcher of MPI");
     return run_command_line(all_commands(), join_optional_values(args));
   } catch (const Error& error) {
     // The library tells in which phase it was cancelled; people care about their file.
@@ -89,8 +92,9 @@ int main(int argc, char** argv) {
   pointskin::cli::watch_memory();
   pointskin::cli::library_terminate = std::set_terminate(pointskin::cli::end_at_once);
   try {
-    return pointskin::cli::guarded_main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+    return pointskin::cli::end_with_ranks(
+        pointskin::cli::guarded_main(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc)));
   } catch (const std::bad_alloc&) {
-    return pointskin::cli::without_memory();
+    return pointskin::cli::end_with_ranks(pointskin::cli::without_memory());
   }
 }

@@ -20,6 +20,7 @@
 #include "console.hpp"
 #include "input.hpp"
 #include "progress.hpp"
+#include "ranks.hpp"
 #include "run_memory.hpp"
 #include "signals.hpp"
 #include "summary_words.hpp"
@@ -45,15 +46,17 @@ std::vector<std::string> missing(const ReconstructArgs& args, const Options& opt
 void refuse_what_is_missing(const ReconstructArgs& args, const Options& options) {
   const std::vector<std::string> names = missing(args, options);
   if (names.empty()) return;
-  throw Error(ErrorCode::usage,
-              fmt::format("the whole needs more than --max-memory {}, and in blocks there is not yet: {}",
-                          format_bytes(static_cast<double>(options.max_memory_bytes)), fmt::join(names, ", ")));
+  const std::string why = is_one_of_ranks()
+                              ? "several ranks work in blocks, and there"
+                              : fmt::format("the whole needs more than --max-memory {}, and in blocks there",
+                                            format_bytes(static_cast<double>(options.max_memory_bytes)));
+  throw Error(ErrorCode::usage, fmt::format("{} is not yet: {}", why, fmt::join(names, ", ")));
 }
 
 /// Of a GPU a limit counts what lies on it; else the process.
 std::int64_t bytes_for_work(const ReconstructArgs& args, const Device& device) {
   const std::int64_t limit = args.options.max_memory_bytes;
-  return device.kind == DeviceKind::cpu ? bytes_left_of(limit) : limit;
+  return device.kind == DeviceKind::cpu && limit > 0 ? bytes_left_of(limit) : limit;
 }
 
 ScaleOptions scale_options(const ReconstructArgs& args, const Device& device) {
@@ -65,6 +68,7 @@ ScaleOptions scale_options(const ReconstructArgs& args, const Device& device) {
   scale.temp_folder = args.temp;
   scale.split = args.split;
   scale.only_colours = keeps_colours_alone(args);
+  scale.ranks = launched_ranks();
   return scale;
 }
 
@@ -97,15 +101,33 @@ void warn_about_left_out(const FilesReport& files) {
   warn_about_zero_normals(files.without_normal);
 }
 
-}  // namespace
-
-bool may_work_in_blocks(const ReconstructArgs& args) {
-  if (args.options.max_memory_bytes == 0 || args.each || args.repeat > 0 || args.problems) return false;
+/// From one file that can be read in parts to binary PLY.
+bool suits_blocks(const ReconstructArgs& args) {
+  if (args.each || args.repeat > 0 || args.problems) return false;
   if (args.options.depth != Options::kAutomaticDepth && args.options.depth < kShallowest) return false;
   const bool to_ply = !args.ascii && (std::filesystem::path(args.output).extension() == ".ply" ||
                                       (args.dry_run && args.output.empty()));
   if (args.inputs.size() != 1 || !to_ply || args.given.has("--width")) return false;
   return reads_in_parts(args.inputs.front());
+}
+
+}  // namespace
+
+bool may_work_in_blocks(const ReconstructArgs& args) { return args.options.max_memory_bytes > 0 && suits_blocks(args); }
+
+void check_ranks(const ReconstructArgs& args) {
+  if (!suits_blocks(args))
+    throw_usage(fmt::format(
+        "several ranks reconstruct one binary PLY or NPY file to a .ply file, with a --depth of at least {}",
+        kShallowest));
+}
+
+Device device_of_rank(const ReconstructArgs& args) {
+  const bool open = args.device == "auto" || args.device == "cuda";
+  Device device = args.chosen();
+  if (device.kind == DeviceKind::cpu) return device;
+  const std::vector<int> gpus = (open ? parse_device("cuda:all", args.threads) : device).gpus();
+  return Device::cuda(gpus[static_cast<std::size_t>(launched_ranks()->rank_on_host()) % gpus.size()]);
 }
 
 bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, const Device& device) {
@@ -135,7 +157,7 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
   malloc_trim(0);  // what the whole left behind
 #endif
   on_interrupt(OnInterrupt::remember);
-  ProgressLine line(!args.quiet && stderr_is_terminal());
+  ProgressLine line(!args.quiet && tells_for_all() && stderr_is_terminal());
   Options options = record.options;
   options.progress = [&line](const Progress& progress) {
     line.update(progress);
@@ -163,7 +185,7 @@ void reconstruct_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, 
   if (args.split) record.shape += " in " + counted(std::ssize(files.outputs), "file");
   record.total_ms = watch.ms();
   record.host_peak_bytes = host_peak_bytes();
-  if (args.report.empty()) return;
+  if (args.report.empty() || !tells_for_all()) return;
   record.mesh = measure_file(args.output, {.max_memory_bytes = scale.max_memory_bytes, .threads = args.threads});
   record.shape = fmt::format("{}; {}", shape_words(record.mesh), counted(files.blocks, "block"));
 }

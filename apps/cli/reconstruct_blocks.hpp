@@ -10,6 +10,12 @@ namespace pointskin::cli {
 /// True if a run whose memory is limited may go on in blocks: from one file that can be read in parts to binary PLY.
 bool may_work_in_blocks(const ReconstructArgs& args);
 
+/// @throws Error usage for what several ranks do not do, which work in blocks
+void check_ranks(const ReconstructArgs& args);
+
+/// The device of one of several ranks: of the GPUs that --device names those of a host are dealt to its ranks in turn.
+Device device_of_rank(const ReconstructArgs& args);
+
 /// True if reading the points as a whole might take more than the limit, so that the whole is not to be tried; false where blocks do
 /// not do what the options ask for.
 bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, const Device& device);

@@ -15,6 +15,7 @@
 #include "input.hpp"
 #include "json_text.hpp"
 #include "progress.hpp"
+#include "ranks.hpp"
 #include "reconstruct_blocks.hpp"
 #include "resident_runs.hpp"
 #include "run_memory.hpp"
@@ -225,15 +226,23 @@ bool run_whole_if_it_fits(const ReconstructArgs& args, const Stopwatch& watch,
   }
 }
 
-/// The whole, or blocks where it does not fit.
+void run_in_blocks(const ReconstructArgs& args, const Stopwatch& watch, Record& record) {
+  if (args.dry_run) return print_plan(args, record);
+  reconstruct_in_blocks(args, watch, record);
+}
+
+/// The whole, or blocks where it does not fit. Several ranks work in blocks.
 void run_within_limit(const ReconstructArgs& args, const Stopwatch& watch,
                       std::unique_ptr<Reconstructor>& reconstructor, Record& record) {
+  if (is_one_of_ranks()) {
+    record.device = device_of_rank(args);
+    return run_in_blocks(args, watch, record);
+  }
   if (record.options.max_memory_bytes > 0) record.device = args.chosen();
   if (!may_work_in_blocks(args)) return run_whole(args, watch, reconstructor, record);
   if (run_whole_if_it_fits(args, watch, reconstructor, record)) return;
   reconstructor.reset();
-  if (args.dry_run) return print_plan(args, record);
-  reconstruct_in_blocks(args, watch, record);
+  run_in_blocks(args, watch, record);
 }
 
 }  // namespace
@@ -250,6 +259,7 @@ Record run_reconstruction(const ReconstructArgs& args, const Stopwatch& watch,
   run_within_limit(args, watch, reconstructor, record);
   if (args.dry_run) return record;
   if (!args.report.empty()) record.shown_options = shown_options(args, record);
+  if (!tells_for_all()) return record;
   if (!args.report.empty()) write_file_atomically(args.report, json_text(to_json(record)));
   if (!args.report.empty() && args.each) file_was_written();
   return record;

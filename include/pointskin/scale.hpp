@@ -9,6 +9,7 @@
 #include <pointskin/device.hpp>
 #include <pointskin/export.hpp>
 #include <pointskin/mesh.hpp>
+#include <pointskin/ranks.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/vector.hpp>
 
@@ -24,6 +25,9 @@ struct ScaleOptions {
   bool split = false;         ///< reconstruct_files() writes a file for each block instead of one
   bool only_colours = false;  ///< with Options::attributes reconstruct_files() keeps red, green and blue alone
   Device device{};  ///< that works on the blocks, for reconstruct_files(); its own number of threads does not count
+  /// Processes that share the work of reconstruct_files(), which all of them call with the same arguments, but for their devices:
+  /// null for one alone. The input, the output and temp_folder lie where all reach them; max_memory_bytes is for each.
+  Ranks* ranks = nullptr;
 };
 
 /// What reconstruct_files() did.
@@ -35,7 +39,8 @@ struct FilesReport {
   int blocks = 0;                       ///< that the cloud was worked on in, one after another
   int coarse_level = 0;                 ///< levels of the octree up to this one were there as a whole
   std::vector<std::string> attributes;  ///< of the points that the mesh has, by their names on the mesh
-  std::vector<std::string> outputs;     ///< that were written
+  std::vector<std::string>
+      outputs;  ///< that were written; with ranks the first one's report names those of ScaleOptions::split
 };
 
 /// Whether the points of a file can be read in parts: a binary PLY or NPY file whose rows are of one length.

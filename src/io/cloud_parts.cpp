@@ -112,11 +112,12 @@ Cloud CloudParts::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, By
   return cloud;
 }
 
-void CloudParts::for_parts(exec::Cpu& ex, const std::function<void(Cloud&)>& use) const {
+void CloudParts::for_parts(exec::Cpu& ex, std::int64_t begin, std::int64_t end,
+                           const std::function<void(Cloud&)>& use) const {
   Bytes buffer;
   const std::int64_t step = rows_at_once(*rows_);
-  for (std::int64_t first = 0; first < rows(); first += step) {
-    Cloud cloud = read(ex, first, std::min(step, rows() - first), buffer);
+  for (std::int64_t first = begin; first < end; first += step) {
+    Cloud cloud = read(ex, first, std::min(step, end - first), buffer);
     use(cloud);
   }
 }

@@ -52,7 +52,9 @@ class CloudParts {
 
   /// Reads all rows, kBufferBytes at a time, and hands their points on, in order, to be changed at will.
   /// @throws Error as read, or whatever `use` throws
-  void for_parts(exec::Cpu& ex, const std::function<void(Cloud&)>& use) const;
+  void for_parts(exec::Cpu& ex, const std::function<void(Cloud&)>& use) const { for_parts(ex, 0, rows(), use); }
+  /// The same of rows begin..end - 1.
+  void for_parts(exec::Cpu& ex, std::int64_t begin, std::int64_t end, const std::function<void(Cloud&)>& use) const;
 
   static constexpr std::int64_t kBufferBytes = std::int64_t{4} << 20;
 

@@ -45,7 +45,8 @@ void BlockMeshes::add(exec::Cpu& ex, const BlockMesh& from) {
   count_vertices(from, first, block);
   add_outer(from);
   block.triangles = count_triangles(from);
-  block.spool = std::make_unique<Spool>(setup_.folder, triangles_at(block.count) + block.triangles * kIndexBytes);
+  block.spool = std::make_unique<Spool>(setup_.folder, triangles_at(block.count) + block.triangles * kIndexBytes,
+                                        setup_.team.is_alone() ? SpoolName::never : SpoolName::when_shown);
   std::vector<std::int32_t> pieces;
   if (setup_.pieces) pieces = add_pieces(from, first, block);
   write_vertices(ex, from, first, pieces, block);
@@ -196,6 +197,7 @@ BlockMeshes::Reference BlockMeshes::reference_to(std::span<const std::uint64_t> 
 }
 
 void BlockMeshes::finish() {
+  if (!setup_.team.is_alone()) join();
   if (vertices() > std::int64_t{1} << 32)
     throw Error(ErrorCode::over_limit,
                 "the mesh has " + std::to_string(vertices()) + " vertices, more than 32-bit indices reach");

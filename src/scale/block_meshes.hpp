@@ -17,6 +17,7 @@
 #include "scale/block_pieces.hpp"
 #include "scale/ranked_bits.hpp"
 #include "scale/spool.hpp"
+#include "scale/team.hpp"
 #include "surface/pieces.hpp"
 
 namespace pointskin::scale {
@@ -53,6 +54,7 @@ class BlockMeshes {
     int cell_level = 0;                 ///< of the cells by which vertices of other blocks are found
     std::vector<std::int64_t> columns;  ///< bytes that a vertex has in each
     bool pieces = false;                ///< finds pieces, for keep_pieces(); positions are the first column
+    Team team{};                        ///< of ranks of which each adds some blocks, those of the first one first
   };
 
   explicit BlockMeshes(Setup setup);
@@ -63,7 +65,7 @@ class BlockMeshes {
   /// O(v + t), 5 bytes a vertex of scratch, and 10 with pieces
   void add(exec::Cpu& ex, const BlockMesh& block);
 
-  /// When all blocks are there.
+  /// When all blocks are there. All ranks then have all of the mesh. Collective.
   /// @throws Error over_limit if there are more than 2^32 vertices; internal if a vertex that a triangle needs is in no block
   /// O(blocks + border vertices log cells)
   void finish();
@@ -156,6 +158,11 @@ class BlockMeshes {
   [[nodiscard]] Reference reference_to(std::span<const std::uint64_t> keys, std::size_t vertex) const;
   [[nodiscard]] std::uint32_t number_of(const Reference& vertex) const;
 
+  /// What the other ranks have added.
+  void join();
+  void join_tables();
+  /// Numbers the pieces of own blocks after those of the ranks before.
+  void join_piece_numbers(std::int64_t vertices_before);
   void count_vertices(const BlockMesh& from, std::size_t first, Block& block);
   void add_outer(const BlockMesh& from);
   void sort_outer();

@@ -57,9 +57,30 @@ PiecesOfPart find_pieces(const PartOfMesh& part) {
   return pieces;
 }
 
+namespace {
+
+constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+
+[[noreturn]] void throw_too_many() {
+  throw Error(ErrorCode::over_limit, "the mesh of the blocks has more than 2^31 pieces");
+}
+
+}  // namespace
+
+std::int32_t BlockPieces::join(const Team& team, std::int64_t vertices_before) {
+  for (std::int64_t& first : first_vertices_)
+    if (first != PiecesOfPart::kNone) first += vertices_before;
+  const std::vector<std::int64_t> sizes = team.gather_all(std::vector<std::int64_t>{size()});
+  if (std::accumulate(sizes.begin(), sizes.end(), std::int64_t{0}) > kMost) throw_too_many();
+  extents_ = team.gather_all(std::move(extents_));
+  first_vertices_ = team.gather_all(std::move(first_vertices_));
+  parents_.resize(extents_.size());
+  std::iota(parents_.begin(), parents_.end(), 0);
+  return static_cast<std::int32_t>(std::accumulate(sizes.begin(), sizes.begin() + team.rank(), std::int64_t{0}));
+}
+
 std::int32_t BlockPieces::add(const PieceExtent& extent, std::int64_t first_vertex) {
-  if (parents_.size() == static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-    throw Error(ErrorCode::over_limit, "the mesh of the blocks has more than 2^31 pieces");
+  if (size() == kMost) throw_too_many();
   parents_.push_back(size());
   extents_.push_back(extent);
   first_vertices_.push_back(first_vertex);

@@ -9,6 +9,7 @@
 
 #include <pointskin/vector.hpp>
 
+#include "scale/team.hpp"
 #include "surface/piece_rule.hpp"
 #include "surface/pieces.hpp"
 
@@ -44,6 +45,12 @@ class BlockPieces {
   std::int32_t add(const surface::PieceExtent& extent, std::int64_t first_vertex);
 
   [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(parents_.size()); }
+
+  /// Adds those of other ranks, which come before this rank's or after them, as the ranks do; before any are united. Collective.
+  /// @param vertices_before  vertices of the ranks before
+  /// @returns how many come before this rank's
+  /// @throws Error as add()
+  std::int32_t join(const Team& team, std::int64_t vertices_before);
 
   /// Makes one piece of two.
   void unite(std::int32_t a, std::int32_t b);

@@ -189,6 +189,7 @@ std::int64_t BlockPlan::choose_blocks() {
   }
   const double left = std::max(1.0, static_cast<double>(setup_.memory_bytes - planned_coarse_bytes_));
   for (int blocks = guess_blocks(left);;) {
+    blocks = (blocks + setup_.ranks - 1) / setup_.ranks * setup_.ranks;
     cut(blocks);
     std::int64_t most = 0;
     std::vector<std::int64_t> bytes;

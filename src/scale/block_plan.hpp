@@ -59,6 +59,7 @@ class BlockPlan {
     std::int64_t pass_floats = 0;    ///< that nodes have for them in the widest pass
     std::int64_t coarse_floats = 0;  ///< that nodes of the coarse levels have for them in all passes
     std::int64_t vertex_bytes = 0;   ///< that vertices have for them
+    int ranks = 1;                   ///< each gets as many blocks, where their number is chosen
   };
   BlockPlan(exec::Cpu& ex, const SortedCloud& cloud, const Setup& setup) : ex_(ex), cloud_(cloud), setup_(setup) {}
 

@@ -8,10 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -91,6 +93,7 @@ BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& option
   setup.lowest_splat_depth = poisson::coarsest_splat_depth(cloud.size(), options.depth);
   setup.sample_floats = std::ssize(cloud.attributes()) + (options.confidence && !cloud.attributes().empty() ? 1 : 0);
   setup.vertex_bytes = attribute_bytes(cloud);
+  setup.ranks = options.team.size();
   for (const std::size_t channels : passes_of(cloud)) {
     const auto floats = static_cast<std::int64_t>(1 + channels);
     setup.pass_floats = std::max(setup.pass_floats, floats);
@@ -107,6 +110,7 @@ class BlockRun {
         work_(work),
         cloud_(shared.cloud),
         options_(shared.options),
+        team_(shared.options.team),
         report_(shared.report),
         depth_(shared.options.depth),
         plan_(shared.plan),
@@ -115,36 +119,40 @@ class BlockRun {
   BlockMeshes run() {
     sweep({"bricks", "octree", 0.03}, [&] { plan_.find_bricks(); });
     sweep({"plan", "octree", 0.04}, [&] {
-      plan_.divide();
-      shared_.coarse.emplace(
-          ex_, plan_,
-          CoarseLevels::Setup{options_.screening, options_.iterations, options_.boundary,
-                              picks_by_support() || options_.trim != 0 || options_.density_face > 0, shared_.passes});
+      team_.together([&] { plan_.divide(); });
+      shared_.coarse.emplace(ex_, plan_,
+                             CoarseLevels::Setup{options_.screening, options_.iterations, options_.boundary,
+                                                 picks_by_support() || options_.trim != 0 || options_.density_face > 0,
+                                                 shared_.passes, team_});
       report_.blocks = static_cast<int>(plan_.blocks().size());
       report_.coarse_level = plan_.level();
       report_.coarse_nodes = coarse().nodes();
     });
     const LimitOfPool limit(work_.pool(), options_.holds_to_memory ? options_.memory_bytes : 0);
-    over_blocks({"sums", "splat", 0.06, 0.1}, [&](const BlockRange& own) { work_.sum_facing(own); });
+    over_blocks({"sums", "splat", 0.06, 0.1}, [&](const BlockRange& own, std::size_t) { work_.sum_facing(own); });
     coarse().finish_facing();
-    over_blocks({"weights", "splat", 0.1, 0.15}, [&](const BlockRange& own) { work_.weigh(own); });
+    over_blocks({"weights", "splat", 0.1, 0.15}, [&](const BlockRange& own, std::size_t) { work_.weigh(own); });
     coarse().drop_facing();
-    sweep({"examine", "splat", 0.15}, [&] { examine(); });
-    over_blocks({"depths", "splat", 0.16, 0.19}, [&](const BlockRange& own) { work_.even_out(own); });
+    sweep({"examine", "splat", 0.15}, [&] {
+      if (team_.is_first()) examine();
+      join_examined();
+    });
+    over_blocks({"depths", "splat", 0.16, 0.19}, [&](const BlockRange& own, std::size_t) { work_.even_out(own); });
     const KeyIndex index(cloud_, plan_.level(), plan_.cells(), plan_.first());
     sweep({"look at samples", "splat", 0.19}, [&] { look_at_pairs(ex_, cloud_, values_, index, depth_, counts_); });
     if (options_.trim != 0) sweep({"trim limit", "splat", 0.19}, [&] { settle_trim(); });
     sweep({"coarse field", "splat", 0.19}, [&] { coarse().splat(); });
-    over_blocks({"splat", "splat", 0.19, 0.36}, [&](const BlockRange& own) { work_.splat(own); });
+    over_blocks({"splat", "splat", 0.19, 0.36}, [&](const BlockRange& own, std::size_t) { work_.splat(own); });
     sweep({"coarse solve", "solve", 0.36}, [&] {
       coarse().finish_channels();
       solve_coarse();
     });
     poisson::ValuesOfSamples values;
-    std::vector<std::unique_ptr<Spool>> fields;
+    std::vector<std::unique_ptr<Spool>> fields(plan_.blocks().size());  // of own blocks
     over_blocks({"solve", "solve", 0.36, 0.8},
-                [&](const BlockRange& own) { fields.push_back(work_.solve(own, values)); });
-    report_.isovalue = mean_of(values, fields);
+                [&](const BlockRange& own, std::size_t block) { fields[block] = work_.solve(own, values); });
+    report_.isovalue = mean_of(joined(values), fields);
+    join_levels();
     BlockMeshes meshes = extract_all(fields);
     sweep({"look at triangles", "extract", 0.98}, [&] { look_at(meshes); });
     report_.looks = looks();
@@ -239,14 +247,13 @@ class BlockRun {
   /// @param last  nobody needs the fields after this
   BlockMeshes extract_once(const Pass& pass, const BlockWork::Extraction& what, bool pieces,
                            std::vector<std::unique_ptr<Spool>>& fields, bool last) {
-    BlockMeshes meshes({options_.folder, depth_, plan_.level(), shared_.columns.bytes, pieces});
+    BlockMeshes meshes({options_.folder, depth_, plan_.level(), shared_.columns.bytes, pieces, team_});
     report_.lone_corners = 0;
-    std::size_t block = 0;
-    over_blocks(pass, [&](const BlockRange& own) {
+    over_blocks(pass, [&](const BlockRange& own, std::size_t block) {
       work_.extract(own, *fields[block], what, meshes);
       if (last) fields[block].reset();
-      ++block;
     });
+    report_.lone_corners = team_.reduce(report_.lone_corners, std::plus<>{});
     return meshes;
   }
 
@@ -293,24 +300,51 @@ class BlockRun {
     for (const Vec3f& p : cut.positions)
       places.emplace_back(octree::cell_key(octree::point_key(p.x, p.y, p.z), depth_), places.size());
     std::ranges::sort(places);
-    auto at = places.begin();
-    over_blocks({"values of the cut", "extract", 0.98, 0.98}, [&](const BlockRange& own) {
-      const auto end = std::find_if(at, places.end(), [&](const auto& place) { return place.first >= own.end; });
-      if (at == end) return;
+    const auto begin_of = [&](std::uint64_t cell) {
+      return static_cast<std::size_t>(std::ranges::lower_bound(places, std::pair(cell, std::size_t{0})) -
+                                      places.begin());
+    };
+    over_blocks({"values of the cut", "extract", 0.98, 0.98}, [&](const BlockRange& own, std::size_t) {
+      const std::span<const std::pair<std::uint64_t, std::size_t>> here =
+          std::span(places).subspan(begin_of(own.begin), begin_of(own.end) - begin_of(own.begin));
+      if (here.empty()) return;
       std::vector<Vec3f> points;
-      std::transform(at, end, std::back_inserter(points),
-                     [&](const auto& place) { return cut.positions[place.second]; });
+      std::ranges::transform(here, std::back_inserter(points),
+                             [&](const auto& place) { return cut.positions[place.second]; });
       const BlockWork::PointValues found = work_.values_at(own, points, faces);
       const auto put = [&](std::size_t column, const void* values) {
         const std::size_t bytes = bytes_of(column);
         for (std::size_t i = 0; i < points.size(); ++i)
-          std::memcpy(&cut.others[column][(at + static_cast<std::ptrdiff_t>(i))->second * bytes],
-                      static_cast<const std::byte*>(values) + i * bytes, bytes);
+          std::memcpy(&cut.others[column][here[i].second * bytes], static_cast<const std::byte*>(values) + i * bytes,
+                      bytes);
       };
       for (std::size_t i = 0; i < faces.size(); ++i) put(densities[i], found.densities[i].data());
       for (std::size_t i = 0; i < attributes; ++i) put(columns.attributes + i, found.attributes[i].data());
-      at = end;
     });
+    if (team_.is_alone()) return;
+    const auto own_of = [&](int rank) {  // places whose values it has found
+      const Team::Share blocks = team_.share_of(std::ssize(plan_.blocks()), rank);
+      if (blocks.begin == blocks.end) return std::span(places).first(0);
+      const std::size_t begin = begin_of(plan_.blocks()[static_cast<std::size_t>(blocks.begin)].begin);
+      return std::span(places).subspan(begin,
+                                       begin_of(plan_.blocks()[static_cast<std::size_t>(blocks.end) - 1].end) - begin);
+    };
+    for (std::size_t column = 0; column < cut.others.size(); ++column) {
+      std::vector<std::byte>& values = cut.others[column];
+      if (values.empty()) continue;
+      const std::size_t bytes = bytes_of(column);
+      std::vector<std::byte> own;
+      for (const auto& place : own_of(team_.rank()))
+        own.insert(own.end(), &values[place.second * bytes], &values[place.second * bytes] + bytes);
+      const std::vector<std::vector<std::byte>> all = team_.gather(std::move(own));
+      for (int rank = 0; rank < team_.size(); ++rank) {
+        const std::byte* from = all[static_cast<std::size_t>(rank)].data();
+        for (const auto& place : own_of(rank)) {
+          std::memcpy(&values[place.second * bytes], from, bytes);
+          from += bytes;
+        }
+      }
+    }
   }
 
   /// As detail::extract() has it.
@@ -327,7 +361,10 @@ class BlockRun {
 
   /// What has been counted so far.
   [[nodiscard]] diagnose::Counts looks() {
-    diagnose::Counts all = work_.looks();
+    diagnose::Counts all = team_.reduce(work_.looks(), [](diagnose::Counts a, const diagnose::Counts& b) {
+      diagnose::add(a, b);
+      return a;
+    });
     diagnose::add(all, counts_);
     return all;
   }
@@ -342,17 +379,22 @@ class BlockRun {
     report_.sweeps.push_back(
         {pass.name, pass.phase, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
   }
+  /// Calls work(block, its number) for this rank's blocks.
   template <class Work>
   void over_blocks(const Pass& pass, const Work& work) {
     sweep(pass, [&] {
-      const std::vector<BlockRange>& blocks = plan_.blocks();
-      for (std::size_t i = 0; i < blocks.size(); ++i) {
-        const double share = static_cast<double>(i) / static_cast<double>(blocks.size());
-        announce(options_.progress, pass.phase, pass.begin + share * (pass.end - pass.begin));
-        work(blocks[i]);
-      }
+      const Team::Share own = own_blocks();
+      team_.together([&] {
+        for (std::int64_t i = own.begin; i < own.end; ++i) {
+          const double share = static_cast<double>(i - own.begin) / static_cast<double>(own.end - own.begin);
+          announce(options_.progress, pass.phase, pass.begin + share * (pass.end - pass.begin));
+          const auto block = static_cast<std::size_t>(i);
+          work(plan_.blocks()[block], block);
+        }
+      });
     });
   }
+  [[nodiscard]] Team::Share own_blocks() const { return team_.share_of(std::ssize(plan_.blocks())); }
 
   /// Calls step(part, samples, own_side) for parts of the samples in their order, with those before and after.
   template <class Step>
@@ -401,6 +443,19 @@ class BlockRun {
     });
   }
 
+  /// What the first rank has found there.
+  void join_examined() {
+    struct Examined {
+      double mean_length;
+      diagnose::Counts counts;
+      BoxOfPoints inliers;
+    };
+    const Examined found = team_.of_first(Examined{shared_.mean_length, counts_, report_.inliers});
+    shared_.mean_length = found.mean_length;
+    counts_ = found.counts;
+    report_.inliers = found.inliers;
+  }
+
   /// Calls visit(normal) with all normals as they were given.
   template <class Visit>
   void for_normals(std::int64_t first, std::int64_t count, const Visit& visit) const {
@@ -440,6 +495,35 @@ class BlockRun {
                 [&](const Vec3f& normal) { areas[i++] *= static_cast<float>(poisson::length_of(normal) / mean); });
   }
 
+  [[nodiscard]] poisson::ValuesOfSamples joined(const poisson::ValuesOfSamples& own) const {
+    return team_.reduce(own, [](poisson::ValuesOfSamples a, const poisson::ValuesOfSamples& b) {
+      a.add(b);
+      return a;
+    });
+  }
+
+  /// Levels below the coarse ones have nodes of every rank.
+  void join_levels() {
+    struct Own {
+      int depth, iterations;
+      std::int64_t nodes;
+    };
+    std::vector<LevelReport>& levels = report_.levels;
+    const auto coarse_levels = std::min(std::ssize(levels), std::ptrdiff_t{plan_.level()} + 1);
+    std::vector<Own> own;
+    for (auto level = levels.begin() + coarse_levels; level != levels.end(); ++level)
+      own.push_back({level->depth, level->iterations, level->nodes});
+    levels.resize(static_cast<std::size_t>(coarse_levels));
+    for (const Own& found : team_.gather_all(std::move(own))) {
+      const auto place = static_cast<std::size_t>(found.depth);
+      if (levels.size() <= place) levels.push_back({found.depth, 0, 0, found.iterations, 0, 0});
+      levels[place].nodes += found.nodes;
+    }
+    const auto larger = [](std::int64_t a, std::int64_t b) { return std::max(a, b); };
+    report_.most_samples = team_.reduce(report_.most_samples, larger);
+    report_.most_nodes = team_.reduce(report_.most_nodes, larger);
+  }
+
   void solve_coarse() {
     for (const poisson::LevelSolve& level : coarse().solve())
       report_.levels.push_back(
@@ -453,10 +537,10 @@ class BlockRun {
     if (values.largest == 0) return 0;
     const int fraction = exec::fraction_for(values.largest);
     poisson::ValuesOfSamples again;
-    std::size_t number = 0;
-    over_blocks({"sum again", "solve", 0.8, 0.8},
-                [&](const BlockRange& own) { again.add(work_.sum_values(own, *fields[number++], fraction)); });
-    return again.mean(fraction);
+    over_blocks({"sum again", "solve", 0.8, 0.8}, [&](const BlockRange& own, std::size_t block) {
+      again.add(work_.sum_values(own, *fields[block], fraction));
+    });
+    return joined(again).mean(fraction);
   }
 
   exec::Cpu& ex_;
@@ -464,6 +548,7 @@ class BlockRun {
   BlockWork& work_;
   const SortedCloud& cloud_;
   const BlockOptions& options_;
+  const Team& team_;
   BlockReport& report_;
   int depth_;
   BlockPlan& plan_;
@@ -539,7 +624,7 @@ BlockMeshes reconstruct_blocks(const MakeBlockWork& make, exec::Cpu& host, const
                         options,
                         report,
                         {host, cloud, plan_setup(cloud, options)},
-                        {options.folder, cloud.size(), options.trim != 0},
+                        {options.team, options.folder, cloud.size(), options.trim != 0},
                         passes_of(cloud)};
   const std::unique_ptr<BlockWork> work = make(shared);
   return BlockRun(shared, *work).run();

@@ -19,6 +19,7 @@
 #include "octree/frame.hpp"
 #include "scale/block_meshes.hpp"
 #include "scale/sorted_cloud.hpp"
+#include "scale/team.hpp"
 #include "surface/pieces.hpp"
 #include "surface/trim.hpp"
 
@@ -55,6 +56,7 @@ struct BlockOptions {
   double density_face =
       0;  ///< area of a face of a finest cell in world units^2: samples per area are a column then; 0: none
   std::function<bool(const Progress&)> progress{};  ///< as Options has it, called for every block of every sweep
+  Team team{};  ///< of ranks that each work on some blocks; `folder` is one that they share
 };
 
 /// What of the options of a run is for its blocks; folder, division and memory are not.
@@ -114,9 +116,11 @@ BlockEstimate estimate_blocks(exec::Cpu& ex, const SortedCloud& cloud, const Blo
 /// the first columns.
 /// @param cloud  of at least one point
 /// @throws Error usage for levels and numbers beyond their ranges; over_limit if no number of blocks does with the memory, which
-///         says how much one that cannot be cut takes; output_not_written, over_limit, interrupted
+///         says how much one that cannot be cut takes; output_not_written, over_limit, interrupted. Of several ranks all throw
+///         FailedTogether where one has not had memory for a block
 /// Sweeps over all blocks six times, and builds the octree of a block in each; once more where corners turn out to be lone ones, or
-/// an automatic trim opens the faces of the cube, and once more for the density on the line of a cut.
+/// an automatic trim opens the faces of the cube, and once more for the density on the line of a cut. Collective: every rank has the
+/// coarse levels, and all of the mesh and the report in the end.
 BlockMeshes reconstruct_blocks(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                BlockReport& report);
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 #include "exec/cpu_primitives.hpp"
@@ -52,12 +53,41 @@ void CoarseLevels::take_own(const BlockRange& own, ArrayView<const T> from, Arra
   for_each(ex_, "scale.take", level.nodes(), TakeOwn<T>{level, {plan_.level(), plan_.depth(), own}, from, to, width});
 }
 
+template <class T>
+void CoarseLevels::join_own(exec::Buffer<T>& nodes, std::int64_t width) {
+  if (setup_.team.is_alone()) return;
+  if (nodes.empty()) nodes = exec::make_buffer<T>(ex_, this->nodes() * width);
+  const octree::LevelView level = last_level();
+  const auto blocks = std::ssize(plan_.blocks());
+  const auto for_own = [&](int rank, const auto& visit) {
+    const Team::Share share = setup_.team.share_of(blocks, rank);
+    if (share.begin == share.end) return;
+    BlockRange own = plan_.blocks()[static_cast<std::size_t>(share.begin)];
+    own.end = plan_.blocks()[static_cast<std::size_t>(share.end) - 1].end;
+    const OwnNodes holds{plan_.level(), plan_.depth(), own};
+    for (std::int64_t n = 0; n < level.nodes(); ++n)
+      if (holds.holds(level.node_key(static_cast<std::int32_t>(n)))) visit((level.first_node + n) * width);
+  };
+  std::vector<T> values;
+  for_own(setup_.team.rank(),
+          [&](std::int64_t at) { values.insert(values.end(), nodes.data() + at, nodes.data() + at + width); });
+  const std::vector<std::vector<T>> all = setup_.team.gather(std::move(values));
+  for (int rank = 0; rank < setup_.team.size(); ++rank) {
+    const T* from = all[static_cast<std::size_t>(rank)].data();
+    for_own(rank, [&](std::int64_t at) {
+      std::copy_n(from, width, nodes.data() + at);
+      from += width;
+    });
+  }
+}
+
 void CoarseLevels::add_facing(const BlockRange& own, ArrayView<const Facing> facing) {
   if (facing_.empty()) facing_ = exec::make_buffer<Facing>(ex_, nodes());
   take_own<Facing>(own, facing, facing_.view());
 }
 
 void CoarseLevels::finish_facing() {
+  join_own(facing_);
   const OctreeView view = tree_.view();
   for (int d = plan_.level() - 1; d >= 0; --d) {
     const octree::LevelView& level = view.levels[d];
@@ -102,7 +132,18 @@ void CoarseLevels::set_depths(poisson::Samples& samples) const {
   samples.coarsest_splat_depth = std::countr_zero(samples.splat_depth_set);
 }
 
+void CoarseLevels::join_samples() {
+  if (setup_.team.is_alone()) return;
+  depths_ = setup_.team.reduce(depths_, std::bit_or<>{});
+  const std::vector<std::vector<std::int8_t>> all = setup_.team.gather(resolved_);
+  for (const std::vector<std::int8_t>& levels : all)
+    for (std::size_t cell = 0; cell < resolved_.size(); ++cell)
+      resolved_[cell] = std::max(resolved_[cell], levels[cell]);
+  sparse_ = setup_.team.gather_all(std::move(sparse_));
+}
+
 void CoarseLevels::splat() {
+  join_samples();
   if (is_sparse()) find_resolution();
   splat_sparse();
   b_ = exec::make_buffer<float>(ex_, nodes());
@@ -167,11 +208,19 @@ void CoarseLevels::add_channels(const BlockRange& own, std::size_t pass, ArrayVi
 }
 
 void CoarseLevels::finish_channels() {
-  for (std::size_t pass = 0; pass < channels_.size(); ++pass)
+  channels_.resize(setup_.passes.size());
+  for (std::size_t pass = 0; pass < channels_.size(); ++pass) {
+    join_own(channels_[pass], static_cast<std::int64_t>(1 + setup_.passes[pass]));
     field::finish_coarse_channels(ex_, tree_, setup_.passes[pass], channels_[pass].view());
+  }
+}
+
+void CoarseLevels::join_collapsed() {
+  for (std::vector<CollapsedSample>& cells : collapsed_) cells = setup_.team.gather_all(std::move(cells));
 }
 
 std::vector<poisson::LevelSolve> CoarseLevels::solve() {
+  join_own(b_);
   poisson::Resolution resolution;
   if (is_sparse()) {
     auto bricks = exec::make_buffer<std::uint8_t>(ex_, resolved_bricks_.size());
@@ -196,6 +245,7 @@ std::vector<poisson::LevelSolve> CoarseLevels::solve() {
 }
 
 void CoarseLevels::place_collapsed(poisson::Screening& screening) {
+  join_collapsed();
   const OctreeView tree = tree_.view();
   screening = poisson::place_collapsed(ex_, tree_);
   for (int d = plan_.cut_level(); d <= plan_.level(); ++d) {

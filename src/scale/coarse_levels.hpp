@@ -19,11 +19,13 @@
 #include "poisson/screening.hpp"
 #include "poisson/solve.hpp"
 #include "scale/block_plan.hpp"
+#include "scale/team.hpp"
 
 namespace pointskin::scale {
 
 /// Each block adds what it finds at its own nodes and cells, in the order of the blocks; then the steps that follow for these levels
-/// are done once. Arrays over nodes have the numbers of these levels in every block's octree.
+/// are done once, by every rank: what the blocks of other ranks have added is joined first. Arrays over nodes have the numbers of
+/// these levels in every block's octree.
 class CoarseLevels {
  public:
   struct Setup {
@@ -32,6 +34,7 @@ class CoarseLevels {
     Boundary boundary = Boundary::free;
     bool needs_counts = false;          ///< keeps the counts of samples for the density
     std::vector<std::size_t> passes{};  ///< channels of attributes that share each pass
+    Team team{};
   };
 
   /// @param plan  divided
@@ -42,7 +45,7 @@ class CoarseLevels {
 
   /// @param facing  of the last coarse level, poisson::sum_facing() of a block with its ring
   void add_facing(const BlockRange& own, ArrayView<const poisson::Facing> facing);
-  /// Sums up the levels above K.
+  /// Sums up the levels above K, once all is added.
   void finish_facing();
   void drop_facing() { facing_.reset(); }
 
@@ -60,7 +63,7 @@ class CoarseLevels {
   };
   /// Keeps what of them the levels up to K need.
   void add_samples(const BlockRange& own, const OwnSamples& samples);
-  /// When all samples are noted: which bricks are resolved, and the normals that are splatted at these levels.
+  /// When all samples and depths are noted: which bricks are resolved, and the normals that are splatted at these levels.
   void splat();
 
   /// @param b  divergence of the last coarse level, in a block's octree
@@ -90,6 +93,13 @@ class CoarseLevels {
 
  private:
   /// @param width  values a node
+  /// Values of the last coarse level, each of the rank that has a node's block. Collective.
+  /// @param nodes  (nodes, width) or empty where this rank has no block
+  template <class T>
+  void join_own(exec::Buffer<T>& nodes, std::int64_t width = 1);
+  void join_samples();
+  void join_collapsed();
+
   template <class T>
   void take_own(const BlockRange& own, ArrayView<const T> from, ArrayView<T> to, std::int64_t width = 1);
   void find_resolution();

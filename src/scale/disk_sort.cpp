@@ -58,7 +58,8 @@ class DiskSort::Cursor {
 DiskSort::DiskSort(exec::Cpu& ex, Setup setup)
     : ex_(ex),
       setup_(std::move(setup)),
-      spool_(std::make_unique<Spool>(setup_.folder, setup_.records * setup_.record_bytes)) {
+      spool_(setup_.team.make_spool(setup_.folder, setup_.records * setup_.record_bytes)),
+      written_(setup_.before) {
   const std::int64_t fits = setup_.memory_bytes / (setup_.record_bytes + kScratch);
   run_records_ = std::clamp<std::int64_t>(fits, kFewestInRun, std::numeric_limits<std::int32_t>::max());
   run_records_ = std::min(run_records_, std::max<std::int64_t>(setup_.records, 1));
@@ -208,19 +209,46 @@ void DiskSort::merge_part(const std::vector<std::int64_t>& begins, const std::ve
   flush();
 }
 
+void DiskSort::join_runs() {
+  std::vector<std::int64_t> sizes;  // first record, records, samples
+  std::vector<Order> samples;
+  for (const Run& run : runs_) {
+    sizes.insert(sizes.end(), {run.first, run.records, std::ssize(run.samples)});
+    samples.insert(samples.end(), run.samples.begin(), run.samples.end());
+  }
+  sizes = setup_.team.gather_all(std::move(sizes));
+  samples = setup_.team.gather_all(std::move(samples));
+  runs_.clear();
+  auto sample = samples.begin();
+  for (std::size_t i = 0; i < sizes.size(); i += 3) {
+    runs_.push_back({sizes[i], sizes[i + 1], {sample, sample + sizes[i + 2]}});
+    sample += sizes[i + 2];
+  }
+}
+
 std::unique_ptr<Spool> DiskSort::finish() {
-  write_run();
+  const Team& team = setup_.team;
+  team.together([&] { write_run(); });
   records_ = {};
-  if (runs_.size() <= 1) return std::move(spool_);
-  auto to = std::make_unique<Spool>(setup_.folder, written_ * setup_.record_bytes);
-  const std::int64_t parts = ex_.threads();
-  const std::int64_t cursors = parts * static_cast<std::int64_t>(runs_.size());
+  if (!team.is_alone()) join_runs();
+  if (runs_.size() <= 1 && team.is_alone()) return std::move(spool_);
+  std::int64_t all = 0;
+  for (const Run& run : runs_) all += run.records;
+  std::unique_ptr<Spool> to = team.make_spool(setup_.folder, all * setup_.record_bytes);
+  const int threads = team.reduce(ex_.threads(), [](int a, int b) { return std::max(a, b); });
+  const std::int64_t parts = std::int64_t{threads} * team.size();
+  const Team::Share own = team.share_of(parts);
+  const std::int64_t cursors = ex_.threads() * static_cast<std::int64_t>(runs_.size());
   const std::int64_t block_bytes = std::clamp(setup_.memory_bytes / cursors, kSmallestBlock, kLargestBlock);
   const std::int64_t block = std::max<std::int64_t>(block_bytes / setup_.record_bytes, 1);
   const std::vector<std::vector<std::int64_t>> begins = part_begins(parts);
   const std::atomic<bool>* const cancelled = exec::cancel_flag();
-  ex_.run_blocks(
-      parts, [&](std::int64_t p) { merge_part(begins[as_size(p)], begins[as_size(p) + 1], block, cancelled, *to); });
+  team.together([&] {
+    ex_.run_blocks(own.end - own.begin, [&](std::int64_t p) {
+      const std::size_t part = as_size(own.begin + p);
+      merge_part(begins[part], begins[part + 1], block, cancelled, *to);
+    });
+  });
   spool_.reset();
   return to;
 }

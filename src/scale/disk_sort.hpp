@@ -12,6 +12,7 @@
 #include "exec/cpu.hpp"
 #include "exec/memory.hpp"
 #include "scale/spool.hpp"
+#include "scale/team.hpp"
 
 namespace pointskin::scale {
 
@@ -26,11 +27,14 @@ class DiskSort {
  public:
   struct Setup {
     std::string folder;              ///< for temporary data
-    std::int64_t records = 0;        ///< at most so many are added; their space is reserved
+    std::int64_t records = 0;        ///< at most so many are added by all; their space is reserved
     std::int64_t record_bytes = 16;  ///< at least 16
     std::int64_t memory_bytes = 0;   ///< that sorting may take; runs have 1,024 records and reads 4 KiB at least
+    Team team{};                     ///< of ranks that add records, those of the first one before those of the second
+    std::int64_t before = 0;         ///< at most so many records are added by the ranks before
   };
 
+  /// Collective.
   /// @throws Error output_not_written
   DiskSort(exec::Cpu& ex, Setup setup);
 
@@ -38,8 +42,8 @@ class DiskSort {
   /// @throws Error output_not_written, interrupted
   void add(const std::byte* records, std::int64_t count);
 
-  /// All records that were added, in order, from the first byte of a spool that may have room for more. To be called
-  /// once.
+  /// All records that were added by all ranks, in order, from the first byte of a spool that may have room for more. To be called
+  /// once. Collective.
   /// @throws Error output_not_written, interrupted
   std::unique_ptr<Spool> finish();
 
@@ -63,6 +67,8 @@ class DiskSort {
 
   static Order order_of(const std::byte* record);
   void write_run();
+  /// Those of all ranks, in their order.
+  void join_runs();
   /// Positions of the records of the run in memory, in order.
   exec::Buffer<std::int32_t> sorted_positions() const;
   /// Where each of `parts` parts begins in every run, and last where the runs end: shape (parts + 1, runs).

@@ -27,6 +27,7 @@
 #include "scale/block_run.hpp"
 #include "scale/cloud_extent.hpp"
 #include "scale/sorted_cloud.hpp"
+#include "scale/team.hpp"
 #include "scale/write_blocks.hpp"
 
 namespace pointskin {
@@ -67,7 +68,7 @@ struct Place {
 class FilesRun {
  public:
   FilesRun(const std::string& input, const Options& options, const ScaleOptions& scale)
-      : options_(options), scale_(scale), ex_(scale.threads), parts_(io::CloudParts::open(input)) {
+      : options_(options), scale_(scale), team_(scale.ranks), ex_(scale.threads), parts_(io::CloudParts::open(input)) {
     if (parts_ == nullptr)
       throw Error(ErrorCode::invalid_input,
                   fmt::format("{}: cannot be read in parts; blocks need a binary PLY or NPY file whose rows are of one "
@@ -75,6 +76,7 @@ class FilesRun {
                               io::printable(input)));
     if (scale_.device.kind != DeviceKind::cpu) gpu_.emplace(scale_.device);
     if (scale_.temp_folder.empty()) scale_.temp_folder = std::filesystem::temp_directory_path().string();
+    bytes_ = team_.reduce(bytes(), [](std::int64_t a, std::int64_t b) { return std::min(a, b); });
   }
 
   FilesPlan plan() {
@@ -110,12 +112,9 @@ class FilesRun {
     announce(options_.progress, "write", 0.99);
     const scale::VertexColumns columns = vertex_columns(fit);
     for (const auto& attribute : columns.attributes) result_.attributes.push_back(attribute.name);
-    if (scale_.split) {
-      result_.outputs = scale::write_split_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
-    } else {
-      scale::write_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
-      result_.outputs = {output};
-    }
+    if (team_.is_first()) write(fit, columns, output);
+    team_.wait();
+    if (!scale_.split) result_.outputs = {output};
     report(fit);
     return std::move(result_);
   }
@@ -125,6 +124,13 @@ class FilesRun {
 
   [[nodiscard]] NormalsVerdict judge_normals(const Fit& fit) const {
     return diagnose::judge_normals(findings(fit), options_.boundary == Boundary::free);
+  }
+
+  void write(const Fit& fit, const scale::VertexColumns& columns, const std::string& output) {
+    if (scale_.split)
+      result_.outputs = scale::write_split_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
+    else
+      scale::write_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
   }
 
   void place_cloud() {
@@ -182,8 +188,8 @@ class FilesRun {
   [[nodiscard]] scale::SortedCloud sorted() {
     return {ex_,
             *parts_,
-            {scale_.temp_folder, bytes() / kSortShare, place_.frame, place_.left_out.indices, turned_,
-             kept_attributes(options_, scale_)}};
+            {scale_.temp_folder, bytes_ / kSortShare, place_.frame, place_.left_out.indices, turned_,
+             kept_attributes(options_, scale_), team_}};
   }
 
   [[nodiscard]] scale::VertexColumns vertex_columns(const Fit& fit) const {
@@ -208,6 +214,7 @@ class FilesRun {
         return fit;
       } catch (const Error& error) {  // of what was planned for
         if (error.code() != ErrorCode::over_limit || fit.report.blocks == 0 || tries == kTries) throw;
+        if (!team_.is_alone() && dynamic_cast<const scale::FailedTogether*>(&error) == nullptr) throw;
         blocks.blocks = 2 * fit.report.blocks;
       }
     }
@@ -226,7 +233,7 @@ class FilesRun {
   }
 
   [[nodiscard]] std::int64_t planned_bytes() const {
-    return std::max<std::int64_t>(1, bytes() - bytes() / 32 - kUnplanned);
+    return std::max<std::int64_t>(1, bytes_ - bytes_ / 32 - kUnplanned);
   }
 
   [[nodiscard]] scale::BlockOptions block_options() const {
@@ -235,7 +242,8 @@ class FilesRun {
     blocks.folder = scale_.temp_folder;
     blocks.memory_bytes = planned_bytes();
     blocks.holds_to_memory = scale_.max_memory_bytes > 0;
-    blocks.part_samples = std::clamp(bytes() / 1000, kFewestSamples, kMostSamples);
+    blocks.part_samples = std::clamp(bytes_ / 1000, kFewestSamples, kMostSamples);
+    blocks.team = team_;
     return blocks;
   }
 
@@ -298,11 +306,13 @@ class FilesRun {
 
   Options options_;
   ScaleOptions scale_;
+  scale::Team team_;
   exec::Cpu ex_;
   std::optional<exec::AnySpace> gpu_;
   std::unique_ptr<io::CloudParts> parts_;
   Place place_;
   FilesReport result_;
+  std::int64_t bytes_ = 0;  ///< that every rank has
   std::int64_t points_ = 0;
   int fits_ = 0;
   bool turned_ = false, has_core_ = false;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "core/array_view.hpp"
 #include "scale/spool.hpp"
+#include "scale/team.hpp"
 
 namespace pointskin::scale {
 
@@ -16,19 +18,20 @@ class SampleValues {
   enum Column : std::uint8_t { area, depth, trust, own_side, examined_depth, spacing };
   static constexpr std::int64_t columns(bool trims) { return trims ? 6 : 5; }
 
+  /// Of all ranks. Collective.
   /// @throws Error as Spool
-  SampleValues(const std::string& folder, std::int64_t samples, bool trims)
-      : samples_(samples), spool_(folder, columns(trims) * samples * std::int64_t{sizeof(float)}) {}
+  SampleValues(const Team& team, const std::string& folder, std::int64_t samples, bool trims)
+      : samples_(samples), spool_(team.make_spool(folder, columns(trims) * samples * std::int64_t{sizeof(float)})) {}
 
   [[nodiscard]] std::int64_t samples() const { return samples_; }
 
   /// Of samples first .. first + size - 1; for many threads at once.
   /// @throws Error as Spool
   void read(Column column, std::int64_t first, ArrayView<float> out) const {
-    spool_.read(at(column, first), out.data, out.size * std::int64_t{sizeof(float)});
+    spool_->read(at(column, first), out.data, out.size * std::int64_t{sizeof(float)});
   }
   void write(Column column, std::int64_t first, ArrayView<const float> values) const {
-    spool_.write(at(column, first), values.data, values.size * std::int64_t{sizeof(float)});
+    spool_->write(at(column, first), values.data, values.size * std::int64_t{sizeof(float)});
   }
 
  private:
@@ -36,7 +39,7 @@ class SampleValues {
     return (column * samples_ + first) * std::int64_t{sizeof(float)};
   }
   std::int64_t samples_;
-  Spool spool_;
+  std::unique_ptr<Spool> spool_;
 };
 
 }  // namespace pointskin::scale

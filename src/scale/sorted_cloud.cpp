@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <functional>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -15,7 +17,6 @@
 #include "io/source.hpp"
 #include "octree/keys.hpp"
 #include "reconstruct/point_hash.hpp"
-#include "scale/disk_sort.hpp"
 
 namespace pointskin::scale {
 namespace {
@@ -49,7 +50,11 @@ TypedView view_of(const Attribute& attribute) {
 /// Indices of the points of a part that are not left out.
 class UsedOf {
  public:
-  explicit UsedOf(std::span<const std::int32_t> left_out) : left_out_(left_out) {}
+  /// @param before  points of the file that come before the first part
+  UsedOf(std::span<const std::int32_t> left_out, std::int64_t before)
+      : left_out_(
+            left_out.subspan(static_cast<std::size_t>(std::ranges::lower_bound(left_out, before) - left_out.begin()))),
+        before_(before) {}
 
   /// @returns (n) of the next part, which has `count` points, ascending
   const std::vector<std::int32_t>& next(std::int64_t count) {
@@ -66,9 +71,18 @@ class UsedOf {
 
  private:
   std::span<const std::int32_t> left_out_;  // those not met yet
-  std::int64_t before_ = 0;                 // points of the parts before
+  std::int64_t before_;                     // points of the parts before
   std::vector<std::int32_t> used_;
 };
+
+/// Points in the rows before those of this rank.
+std::int64_t points_before(exec::Cpu& ex, const io::CloudParts& points, Team::Share rows, const Team& team) {
+  if (team.is_alone()) return 0;
+  std::int64_t own = 0;
+  points.for_parts(ex, rows.begin, rows.end, [&](const Cloud& cloud) { own += cloud.size(); });
+  const std::vector<std::int64_t> all = team.gather_all(std::vector<std::int64_t>{own});
+  return std::accumulate(all.begin(), all.begin() + team.rank(), std::int64_t{0});
+}
 
 /// Makes the records of a part.
 struct MakeRecord {
@@ -116,11 +130,24 @@ SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setu
                   fmt::format("{} ({}) is a label", io::printable(attribute.name), name_of(attribute.type)));
     record_bytes_ += static_cast<std::int64_t>(size_of(attribute.type));
   }
-  DiskSort sort(ex, {setup.folder, points.rows(), record_bytes_, setup.memory_bytes});
-  UsedOf used_of(setup.left_out);
+  const Team::Share rows = setup.team.share_of(points.rows());
+  DiskSort sort(ex, {setup.folder, points.rows(), record_bytes_, setup.memory_bytes, setup.team, rows.begin});
+  const std::int64_t before = setup.left_out.empty() ? 0 : points_before(ex, points, rows, setup.team);
+  setup.team.together([&] { add_rows(ex, points, setup, rows, before, sort, attributes); });
+  spool_ = sort.finish();
+  size_ = setup.team.reduce(size_, std::plus<>{});
+  for (PointAttribute& attribute : attributes)
+    attribute.range = setup.team.reduce(
+        attribute.range, [](const field::ValueRange& a, const field::ValueRange& b) { return a.united(b); });
+  settle_attributes(std::move(attributes));
+}
+
+void SortedCloud::add_rows(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup, Team::Share rows,
+                           std::int64_t before, DiskSort& sort, std::vector<PointAttribute>& attributes) {
+  UsedOf used_of(setup.left_out, before);
   std::vector<std::uint64_t> hashes;
   std::vector<std::byte> records;
-  points.for_parts(ex, [&](Cloud& cloud) {
+  points.for_parts(ex, rows.begin, rows.end, [&](Cloud& cloud) {
     if (cloud.positions.empty()) return;
     if (!cloud.has_normals())
       throw Error(ErrorCode::no_normals, "the points have no normals; a surface needs oriented points");
@@ -152,8 +179,6 @@ SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setu
     sort.add(records.data(), count);
     size_ += count;
   });
-  spool_ = sort.finish();
-  settle_attributes(std::move(attributes));
 }
 
 void SortedCloud::settle_attributes(std::vector<PointAttribute> all) {

@@ -15,7 +15,9 @@
 #include "field/attributes.hpp"
 #include "io/cloud_parts.hpp"
 #include "octree/frame.hpp"
+#include "scale/disk_sort.hpp"
 #include "scale/spool.hpp"
+#include "scale/team.hpp"
 
 namespace pointskin::scale {
 
@@ -46,6 +48,7 @@ class SortedCloud {
     std::span<const std::int32_t> left_out{};  ///< points of the file to leave out, ascending
     bool turned = false;                       ///< all normals the other way round
     KeptAttributes attributes = KeptAttributes::none;
+    Team team{};  ///< of ranks that read the file, each a part
   };
 
   /// Points as arrays, for whoever needs them: shape (count), or null.
@@ -59,7 +62,7 @@ class SortedCloud {
   /// @param points  whose origin has been chosen
   /// @throws Error no_normals if they have none; usage if a label (is_label) is to be kept; output_not_written, interrupted; as
   ///         CloudParts::read
-  /// One pass over the file. O(n log n)
+  /// One pass over the file; by several ranks, two where points are left out. O(n log n). Collective.
   SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup);
 
   [[nodiscard]] std::int64_t size() const { return size_; }
@@ -83,6 +86,10 @@ class SortedCloud {
     AttributeType type = AttributeType::float32;
     field::ToShare to_share{};
   };
+  /// Adds what is found of some rows of the file to `attributes` and to the size.
+  /// @param before  points in the rows before, if any are left out
+  void add_rows(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup, Team::Share rows, std::int64_t before,
+                DiskSort& sort, std::vector<PointAttribute>& attributes);
   void settle_attributes(std::vector<PointAttribute> all);
   void read_shares(const std::byte* records, std::int64_t count, std::int64_t at, std::span<float* const> shares) const;
 

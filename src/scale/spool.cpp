@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <random>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -22,22 +24,57 @@ namespace {
 constexpr std::int64_t kAtOnce = std::int64_t{64} << 20;  // bytes; cancelling is looked for in between
 constexpr std::int64_t kOfAThread = 4 << 20;
 
-/// A new file without a name, or -1.
-int make_file(const std::string& folder) {
-  const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC | O_EXCL, 0600);
+constexpr std::string_view kName = ".pointskin_", kAnyLetters = "XXXXXX";
+
+/// A new file without a name, or -1; where a file system cannot do without names, of the name that is set.
+int make_file(const std::string& folder, SpoolName named, std::string& name) {
+  const int without_name = O_TMPFILE | O_RDWR | O_CLOEXEC | (named == SpoolName::never ? O_EXCL : 0);
+  const int file = ::open(folder.c_str(), without_name, 0600);
   if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL)) return file;
-  std::string name = folder + "/.pointskin_XXXXXX";  // file systems that cannot do without a name
-  const int named = ::mkostemp(name.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
+  std::string path = fmt::format("{}/{}{}", folder, kName, kAnyLetters);
+  const int named_file = ::mkostemp(path.data(), O_CLOEXEC);
+  if (named_file >= 0) name = path.substr(folder.size() + 1);
+  return named_file;
 }
 
 }  // namespace
 
-Spool::Spool(std::string folder, std::int64_t bytes)
-    : folder_(std::move(folder)), bytes_(bytes), file_(make_file(folder_)) {
-  if (!file_.valid()) fail("no temporary file can be made", errno);
-  reserve();
+Spool::Spool(std::string folder, std::int64_t bytes, SpoolName named)
+    : folder_(std::move(folder)), bytes_(bytes), file_(make_file(folder_, named, name_)) {
+  const int error = errno;
+  if (named == SpoolName::never) hide();
+  if (!file_.valid()) fail("no temporary file can be made", error);
+  try {
+    reserve();
+  } catch (...) {
+    hide();
+    throw;
+  }
+}
+
+std::unique_ptr<Spool> Spool::open(const std::string& folder, const std::string& name, std::int64_t bytes) {
+  std::unique_ptr<Spool> spool(new Spool(folder, bytes, ::open((folder + "/" + name).c_str(), O_RDWR | O_CLOEXEC)));
+  if (!spool->file_.valid())
+    spool->fail("a temporary file of another process is not there; all need one folder that they share", errno);
+  return spool;
+}
+
+const std::string& Spool::show() {
+  const std::string file = fmt::format("/proc/self/fd/{}", file_.get());
+  std::random_device random;
+  while (name_.empty()) {
+    const std::string name = fmt::format("{}{:08x}{:08x}", kName, random(), random());
+    if (::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, (folder_ + "/" + name).c_str(), AT_SYMLINK_FOLLOW) == 0)
+      name_ = name;
+    else if (errno != EEXIST)
+      fail("a temporary file cannot be named", errno);
+  }
+  return name_;
+}
+
+void Spool::hide() {
+  if (!name_.empty()) ::unlink((folder_ + "/" + name_).c_str());
+  name_.clear();
 }
 
 void Spool::fail(const char* what, int error) const {

@@ -21,6 +21,7 @@ LAYERS = {
     "mesh": {"core", "exec", "mesh"},
     "envelope": {"core", "exec", "octree", "mesh", "envelope"},
     "io": {"core", "exec", "io"},
+    "ranks": {"core", "exec", "ranks"},
     "diagnose": {"core", "exec", "octree", "poisson", "field", "surface", "diagnose"},
     # What joins the parts to one reconstruction, and the features that are built on it: none knows another.
     "reconstruct": SOLVE,

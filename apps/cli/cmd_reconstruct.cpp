@@ -82,6 +82,7 @@ void warn_about_options(const ReconstructArgs& args, const Options& options) {
 
 int run(const ReconstructArgs& given) {
   const Stopwatch watch;
+  (void)launched_ranks();  // so that what one finds wrong ends all
   ReconstructArgs args = given;
   args.inputs.insert(args.inputs.end(), args.named_inputs.begin(), args.named_inputs.end());
   const Options options = library_options(args);

@@ -13,6 +13,7 @@
 #include "console.hpp"
 #include "exhaustion.hpp"
 #include "manual.hpp"
+#include "ranks.hpp"
 #include "usage_errors.hpp"
 
 namespace pointskin::cli {
@@ -206,7 +207,8 @@ class Program {
 int report_usage(const CLI::App& program, const std::vector<std::string>& args, const std::string& story) {
   const char* const separator = story.ends_with('?') ? "" : ";";
   const bool known = command_of(program, args) != nullptr && args[0] != "help";
-  print_error(fmt::format("{}{} try 'pointskin{} --help'", story, separator, known ? " " + args[0] : ""));
+  if (tells_for_all())
+    print_error(fmt::format("{}{} try 'pointskin{} --help'", story, separator, known ? " " + args[0] : ""));
   return static_cast<int>(ErrorCode::usage);
 }
 

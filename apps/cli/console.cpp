@@ -60,7 +60,6 @@ void write_line(const std::string& text) {
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
 
 void print_error(const std::string& story) {
-  let_the_first_tell();
   const std::string name = use_colour() ? "\x1b[1;31mpointskin:\x1b[0m" : "pointskin:";
   write_line(fmt::format("{} {}", name, one_line(story)));
 }

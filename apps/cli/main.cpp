@@ -46,7 +46,7 @@ int guarded_main(const std::vector<std::string>& args) {
     return run_command_line(all_commands(), join_optional_values(args));
   } catch (const Error& error) {
     // The library tells in which phase it was cancelled; people care about their file.
-    print_error(error.code() == ErrorCode::interrupted ? interrupted_text() : error.what());
+    if (tells_of(error.code())) print_error(error.code() == ErrorCode::interrupted ? interrupted_text() : error.what());
     return static_cast<int>(error.code());
   } catch (const std::bad_alloc&) {
     throw;

@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include "signals.hpp"
+
 namespace pointskin::cli {
 namespace {
 
@@ -34,12 +36,21 @@ bool tells_for_all() noexcept {
   return is_first;
 }
 
-void let_the_first_tell() noexcept {
-  if (!tells_for_all()) sleep(1);
+bool tells_of(ErrorCode error) noexcept {
+  if (tells_for_all()) return true;
+  if (error == ErrorCode::usage) return false;
+  constexpr int kLooks = 20;
+  for (int look = 0; look < kLooks && !interrupted(); ++look) usleep(1'000'000 / kLooks);
+  return !interrupted();
 }
 
 int end_with_ranks(int exit_code) {
-  if (ranks() && exit_code != 0) ranks()->end_all(exit_code);
+  if (ranks() && exit_code != 0) {
+    constexpr int kMicroseconds = 200'000;
+    ignore_interrupts();    // by which the launcher ends this process, too
+    usleep(kMicroseconds);  // until it has passed on what was told
+    ranks()->end_all(exit_code);
+  }
   ranks().reset();  // waits for all
   return exit_code;
 }

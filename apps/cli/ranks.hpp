@@ -1,6 +1,7 @@
 // The processes of a run that a launcher of MPI started.
 #pragma once
 
+#include <pointskin/error.hpp>
 #include <pointskin/ranks.hpp>
 
 namespace pointskin::cli {
@@ -15,8 +16,9 @@ Ranks* launched_ranks();
 /// False in all but one of the processes that a launcher started: what all find alike, one of them tells.
 bool tells_for_all() noexcept;
 
-/// To be called before an error is told: where all ranks meet the same one, the first has told it and ended all meanwhile.
-void let_the_first_tell() noexcept;
+/// Whether this process tells of its error: of errors that all ranks meet, and of what one error leads to in the others, one tells.
+/// Where that is not known, the first rank has a second for telling and ending all.
+bool tells_of(ErrorCode error) noexcept;
 
 /// The end of main(): of ranks all end where one has met an error, which may be before the others know.
 /// @returns the exit code

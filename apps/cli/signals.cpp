@@ -4,10 +4,13 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
 #include <pointskin/error.hpp>
+
+#include "ranks.hpp"
 
 namespace pointskin::cli {
 namespace {
@@ -16,6 +19,7 @@ std::atomic<OnInterrupt> what_to_do{OnInterrupt::exit_now};
 std::atomic<bool> signal_came{false};
 std::atomic<bool> stop_work{false};
 std::atomic<bool> never_stop{false};
+std::atomic<bool> tells{true};
 std::atomic<std::int64_t> written_frames{0}, written_files{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<OnInterrupt>::is_always_lock_free,
               "a signal handler must not take a lock");
@@ -24,7 +28,8 @@ void handle(int /*signal*/) {
   const OnInterrupt what = what_to_do.load();
   if (what == OnInterrupt::exit_now) {
     constexpr char kStory[] = "pointskin: interrupted; nothing was written\n";
-    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kStory, sizeof kStory - 1);
+    const std::size_t bytes = tells.load() ? sizeof kStory - 1 : 0;
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kStory, bytes);
     _exit(static_cast<int>(ErrorCode::interrupted));
   }
   signal_came.store(true);
@@ -48,6 +53,7 @@ void install(int signal, void (*handler)(int), int flags) {
 }  // namespace
 
 void install_signal_handlers() {
+  tells.store(tells_for_all());
   install(SIGINT, handle, static_cast<int>(SA_RESETHAND));  // RESETHAND: the second one kills.
   install(SIGTERM, handle, static_cast<int>(SA_RESETHAND));
   install(SIGALRM, ring_again, 0);

@@ -16,9 +16,12 @@
 namespace pointskin::io {
 namespace {
 
+/// @throws Error invalid_input if there is none
 bool is_regular(const std::string& path) {
   std::error_code error;
-  return path != "-" && std::filesystem::is_regular_file(path, error);
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (path != "-" && status.type() == std::filesystem::file_type::not_found) (void)Input(path);  // tells so
+  return path != "-" && std::filesystem::is_regular_file(status);
 }
 
 /// The vertices of a binary PLY file; nothing where rows have lists: only walking over them shows that the file is

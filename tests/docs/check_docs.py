@@ -18,7 +18,7 @@ DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/
 OURS = r"\.(hpp|cpp|cu|cuh|md|py|sh|cmake|mjs|ts|schema\.json)"
 # What users have: a name without a folder, or in a folder of theirs, with the ending of a kind of data.
 USERS_FILE = re.compile(r"[\w.{}*/-]*\.(ply|xyz|pts|asc|txt|csv|obj|off|stl|vtk|json|png|svg)")
-OTHER_PROGRAMS = {"cmake", "ctest", "ncu", "perf", "apt-get", "nvcc", "PoissonRecon", "docker"}
+OTHER_PROGRAMS = {"cmake", "ctest", "ncu", "perf", "apt-get", "nvcc", "PoissonRecon", "docker", "mpirun", "mpiexec", "srun"}
 SPAN = re.compile(r"(?<!`)`([^`]+)`(?!`)")
 NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:-[A-Za-z]\w*)*(?:(?:::|\.)[A-Za-z_]\w*)*")
 LINK = re.compile(r"\[([^\[\]]*)\]\(([^()\s]+)\)")

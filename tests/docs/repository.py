@@ -4,7 +4,7 @@ import os
 import pathlib
 import re
 
-SOURCES = ("src", "include", "apps", "python", "packaging", "bench", "examples", "tests", "cmake", ".ci", "docs/pictures")
+SOURCES = ("src", "include", "apps", "mpi", "python", "packaging", "bench", "examples", "tests", "cmake", ".ci", "docs/pictures")
 TEXT = {".hpp", ".cpp", ".cu", ".cuh", ".h", ".py", ".sh", ".txt", ".cmake", ".json", ".mjs", ".ts", ".in", ""}
 CPLUSPLUS = {".hpp", ".cpp", ".cu", ".cuh", ".h"}
 SKIPPED = {".git", "node_modules", "__pycache__", ".cache", "corpus"}

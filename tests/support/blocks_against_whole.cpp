@@ -27,8 +27,10 @@
 #include "scale/block_run.hpp"
 #include "scale/cloud_extent.hpp"
 #include "scale/sorted_cloud.hpp"
+#include "scale/team.hpp"
 #include "support/io_files.hpp"
 #include "support/shapes.hpp"
+#include "support/thread_ranks.hpp"
 
 namespace pointskin::test {
 namespace {
@@ -248,19 +250,44 @@ class OnDisk {
     parts_->leave_out_zero_normals();
     const scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options.keep_strays);
     frame_ = octree::frame_around(extent.strays.core, options.scale);
-    const auto kept = options.attributes ? scale::KeptAttributes::all : scale::KeptAttributes::none;
-    sorted_ = std::make_unique<scale::SortedCloud>(
-        ex_, *parts_, scale::SortedCloud::Setup{folder(), 1 << 20, frame_, {}, false, kept});
+    sorted_ = std::make_unique<scale::SortedCloud>(ex_, *parts_, setup({}));
   }
 
   Found in_blocks(int coarse_level, int blocks, const Device& device, scale::BlockReport& report) {
-    scale::BlockOptions options = block_options();
-    options.coarse_level = coarse_level;
-    options.blocks = blocks;
+    return in_blocks(ex_, *sorted_, block_options(coarse_level, blocks, {}), device, report);
+  }
+
+  /// By several ranks, each of which sorts a part of the cloud and has some of the blocks.
+  /// @param report  of one of them
+  Found in_blocks_of_ranks(int ranks, int coarse_level, int blocks, const Device& device, scale::BlockReport& report) {
+    Found found;
+    run_as_ranks(ranks, [&](Ranks& all) {
+      const scale::Team team(&all);
+      exec::Cpu ex(1);
+      const scale::SortedCloud sorted(ex, *parts_, setup(team));
+      scale::BlockReport own;
+      Found of_rank = in_blocks(ex, sorted, block_options(coarse_level, blocks, team), device, own);
+      if (all.rank() != all.size() - 1) return;
+      found = std::move(of_rank);
+      report = std::move(own);
+    });
+    return found;
+  }
+
+ private:
+  [[nodiscard]] std::string folder() const { return std::filesystem::path(folder_.file("any")).parent_path().string(); }
+
+  [[nodiscard]] scale::SortedCloud::Setup setup(const scale::Team& team) const {
+    const auto kept = options_.attributes ? scale::KeptAttributes::all : scale::KeptAttributes::none;
+    return {folder(), 1 << 20, frame_, {}, false, kept, team};
+  }
+
+  Found in_blocks(exec::Cpu& ex, const scale::SortedCloud& sorted, const scale::BlockOptions& options,
+                  const Device& device, scale::BlockReport& report) const {
     std::optional<exec::AnySpace> gpu;
     if (device.kind != DeviceKind::cpu) gpu.emplace(device);
-    const scale::BlockMeshes meshes = gpu ? scale::reconstruct_blocks(*gpu, ex_, *sorted_, options, report)
-                                          : scale::reconstruct_blocks(ex_, *sorted_, options, report);
+    const scale::BlockMeshes meshes = gpu ? scale::reconstruct_blocks(*gpu, ex, sorted, options, report)
+                                          : scale::reconstruct_blocks(ex, sorted, options, report);
     Found found;
     const auto read = [&](std::size_t column, auto& values) {
       values.resize(static_cast<std::size_t>(meshes.vertices()));
@@ -271,7 +298,7 @@ class OnDisk {
     read(1, found.normals);
     std::size_t column = 2;
     if (options.density_face > 0) read(column++, found.density);
-    for (const scale::PointAttribute& attribute : sorted_->attributes())
+    for (const scale::PointAttribute& attribute : sorted.attributes())
       visit_type(attribute.type, [&](auto tag) {
         std::vector<decltype(tag)> values;
         read(column++, values);
@@ -283,13 +310,13 @@ class OnDisk {
     return found;
   }
 
- private:
-  [[nodiscard]] std::string folder() const { return std::filesystem::path(folder_.file("any")).parent_path().string(); }
-
-  [[nodiscard]] scale::BlockOptions block_options() const {
+  [[nodiscard]] scale::BlockOptions block_options(int coarse_level, int blocks, const scale::Team& team) const {
     scale::BlockOptions options = scale::block_options_of(options_, frame_);
     options.folder = folder();
     options.part_samples = 7001;
+    options.coarse_level = coarse_level;
+    options.blocks = blocks;
+    options.team = team;
     return options;
   }
 
@@ -331,9 +358,12 @@ BlocksCompared compare_blocks(std::uint64_t seed, int divisions, const Device& d
     const int counts[] = {1, 2, 3, 4, 7};
     const int count = counts[random.below(5)], above = 2 + random.below(4);
     const int level = std::max(5, options.depth - above);
-    SCOPED_TRACE(std::to_string(count) + " blocks, K " + std::to_string(level));
+    const int ranks = compared.divisions % 2 == 0 ? 1 : static_cast<int>(2 + random.below(3));
+    SCOPED_TRACE(std::to_string(count) + " blocks, K " + std::to_string(level) + ", ranks " + std::to_string(ranks));
     scale::BlockReport report;
-    expect_same(blocks.in_blocks(level, count, device, report), whole);
+    expect_same(ranks == 1 ? blocks.in_blocks(level, count, device, report)
+                           : blocks.in_blocks_of_ranks(ranks, level, count, device, report),
+                whole);
     expect_same(report, reconstructor.report());
   }
   compared.is_cut = reconstructor.report().trim.triangles_split > 0;

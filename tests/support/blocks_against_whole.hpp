@@ -16,7 +16,7 @@ struct BlocksCompared {
 };
 
 /// Reconstructs one cloud as a whole on the CPU and, on `device`, in 1, 2, 3, 4 and 7 blocks below a coarse level 2 to 5 above
-/// the finest, `divisions` of these, and expects the same vertices, normals, density, triangles, warnings' counts and trim.
+/// the finest, `divisions` of these, every second one by 2 to 4 ranks, and expects the same vertices, normals, density, triangles, warnings' counts and trim.
 /// Scans of ../shared/data are among the clouds where they are there.
 BlocksCompared compare_blocks(std::uint64_t seed, int divisions, const Device& device);
 

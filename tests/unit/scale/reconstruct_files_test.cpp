@@ -22,6 +22,7 @@
 
 #include "support/io_files.hpp"
 #include "support/shapes.hpp"
+#include "support/thread_ranks.hpp"
 
 namespace pointskin::test {
 namespace {
@@ -47,6 +48,37 @@ class ReconstructFiles : public testing::Test {
     EXPECT_EQ(files_.dropped + files_.without_normal, cloud.dropped);
     expect_report(reconstructor.report());
     EXPECT_EQ(temporary_.file_count(), 0U);
+    if (ranks_ > 1) expect_the_same_of_ranks(options, memory_bytes);
+  }
+
+  /// What expect_as_whole() has found.
+  void expect_the_same_of_ranks(const Options& options, std::int64_t memory_bytes) const {
+    SCOPED_TRACE(std::to_string(ranks_) + " ranks");
+    const std::string output = folder_.file("ranks.ply");
+    std::vector<FilesReport> reports(static_cast<std::size_t>(ranks_));
+    run_as_ranks(ranks_, [&](Ranks& ranks) {
+      ScaleOptions own = scale(memory_bytes);
+      own.threads = 1;
+      own.ranks = &ranks;
+      reports[static_cast<std::size_t>(ranks.rank())] = reconstruct_files({input_}, output, options, own);
+    });
+    EXPECT_TRUE(bytes_of_file(output) == bytes_of_file(whole_));
+    EXPECT_EQ(temporary_.file_count(), 0U);
+    for (const FilesReport& report : reports) {
+      EXPECT_GE(report.blocks, ranks_);
+      EXPECT_EQ(report.triangles, files_.triangles);
+      EXPECT_EQ(report.vertices, files_.vertices);
+      EXPECT_EQ(report.attributes, files_.attributes);
+      EXPECT_EQ(report.run.isovalue, files_.run.isovalue);
+      EXPECT_EQ(report.run.nodes, files_.run.nodes);
+      EXPECT_EQ(report.run.normals_done, files_.run.normals_done);
+      EXPECT_EQ(report.run.strays, files_.run.strays);
+      EXPECT_EQ(report.run.pieces.pieces_removed, files_.run.pieces.pieces_removed);
+      EXPECT_EQ(report.run.trim.triangles_split, files_.run.trim.triangles_split);
+      ASSERT_EQ(report.run.warnings.size(), files_.run.warnings.size());
+      for (std::size_t i = 0; i < report.run.warnings.size(); ++i)
+        EXPECT_EQ(report.run.warnings[i].text, files_.run.warnings[i].text);
+    }
   }
 
   void expect_report(const RunReport& whole) const {
@@ -123,6 +155,7 @@ class ReconstructFiles : public testing::Test {
   std::string input_ = folder_.file("cloud.ply"), output_ = folder_.file("blocks.ply"),
               whole_ = folder_.file("whole.ply");
   FilesReport files_;
+  int ranks_ = 1;  ///< that then do the same
 };
 
 Options at_depth(int depth) {
@@ -132,6 +165,7 @@ Options at_depth(int depth) {
 }
 
 TEST_F(ReconstructFiles, WritesTheFileOfTheWhole) {
+  ranks_ = 3;
   Cloud cloud = torus_cloud(60000, 1);
   for (std::size_t i = 0; i < 50; ++i) cloud.normals[100 * i + 1] = {};
   start(cloud);
@@ -258,6 +292,7 @@ TEST_F(ReconstructFiles, TurnsNormalsThatPointInwards) {
 }
 
 TEST_F(ReconstructFiles, LeavesStraysOut) {
+  ranks_ = 3;
   Cloud cloud = sphere_cloud(20000, 4);
   for (const float far : {40.0F, 50.0F}) {
     cloud.positions.push_back({far, 0, far});
@@ -272,6 +307,7 @@ TEST_F(ReconstructFiles, LeavesStraysOut) {
 }
 
 TEST_F(ReconstructFiles, MakesTheCubeForInliersAsTheWholeDoes) {
+  ranks_ = 3;
   Cloud cloud = sphere_cloud(20000, 5);
   append(cloud, scaled(jittered(box_cloud(300, 6), 7, 0.5), 3));
   start(cloud);
@@ -357,6 +393,7 @@ TEST_F(ReconstructFiles, CutsWhereSamplesEnd) {
 }
 
 TEST_F(ReconstructFiles, CutsAmongOutliers) {
+  ranks_ = 3;
   Cloud cloud = open_cloud();
   append(cloud, jittered(box_cloud(300, 6), 7, 0.5));
   start(cloud);
@@ -416,6 +453,7 @@ TEST_F(ReconstructFiles, KeepsAttributes) {
 }
 
 TEST_F(ReconstructFiles, KeepsAttributesOfACut) {
+  ranks_ = 3;
   Cloud cloud = sphere_cloud(60000, 2);
   std::vector<bool> keep;
   for (const Vec3f& p : cloud.positions) keep.push_back(p.z < 0.5F);
@@ -458,6 +496,7 @@ TEST_F(ReconstructFiles, KeepsAttributesWithoutNormals) {
 }
 
 TEST_F(ReconstructFiles, KeepsAttributesOfTurnedNormals) {
+  ranks_ = 3;
   Cloud cloud = torus_cloud(60000, 1);
   for (Vec3f& n : cloud.normals) n = n * -1.0F;
   start(with_attributes(cloud));

@@ -53,8 +53,9 @@ std::int64_t BlockPlan::coarse_bytes() const {
 template <class Visit>
 void BlockPlan::for_keys(const Visit& visit) const {
   std::vector<std::uint64_t> keys;
-  for (std::int64_t first = 0; first < cloud_.size(); first += std::ssize(keys)) {
-    keys.resize(static_cast<std::size_t>(std::min(setup_.part_samples, cloud_.size() - first)));
+  const Team::Share own = setup_.team.share_of(cloud_.size());
+  for (std::int64_t first = own.begin; first < own.end; first += std::ssize(keys)) {
+    keys.resize(static_cast<std::size_t>(std::min(setup_.part_samples, own.end - first)));
     cloud_.read(ex_, first, std::ssize(keys), {.keys = keys.data()});
     visit(first, keys);
   }
@@ -80,6 +81,10 @@ void BlockPlan::find_bricks() {
     most = 2 * std::max(split_.size(), most / 2);
   });
   join_split();
+  if (!setup_.team.is_alone()) {
+    split_ = setup_.team.gather_all(std::move(split_));
+    join_split();
+  }
   for (SplitCell& cell : split_) ++cell.bricks;  // its own children
 }
 
@@ -170,7 +175,23 @@ void BlockPlan::find_cells() {
       first_.push_back(first + static_cast<std::int64_t>(i));
     }
   });
+  join_cells();
   first_.push_back(cloud_.size());
+}
+
+/// A cell that ranks share begins in the first one's.
+void BlockPlan::join_cells() {
+  if (setup_.team.is_alone()) return;
+  cells_ = setup_.team.gather_all(std::move(cells_));
+  first_ = setup_.team.gather_all(std::move(first_));
+  std::size_t joined = 0;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (joined > 0 && cells_[joined - 1] == cells_[i]) continue;
+    cells_[joined] = cells_[i];
+    first_[joined++] = first_[i];
+  }
+  cells_.resize(joined);
+  first_.resize(joined);
 }
 
 /// Cells with children, and all around them.
@@ -189,7 +210,8 @@ std::int64_t BlockPlan::choose_blocks() {
   }
   const double left = std::max(1.0, static_cast<double>(setup_.memory_bytes - planned_coarse_bytes_));
   for (int blocks = guess_blocks(left);;) {
-    blocks = (blocks + setup_.ranks - 1) / setup_.ranks * setup_.ranks;
+    const int ranks = setup_.team.size();
+    blocks = (blocks + ranks - 1) / ranks * ranks;
     cut(blocks);
     std::int64_t most = 0;
     std::vector<std::int64_t> bytes;

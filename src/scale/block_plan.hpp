@@ -12,6 +12,7 @@
 #include "scale/cell_set.hpp"
 #include "scale/sample_runs.hpp"
 #include "scale/sorted_cloud.hpp"
+#include "scale/team.hpp"
 
 namespace pointskin::scale {
 
@@ -59,11 +60,12 @@ class BlockPlan {
     std::int64_t pass_floats = 0;    ///< that nodes have for them in the widest pass
     std::int64_t coarse_floats = 0;  ///< that nodes of the coarse levels have for them in all passes
     std::int64_t vertex_bytes = 0;   ///< that vertices have for them
-    int ranks = 1;                   ///< each gets as many blocks, where their number is chosen
+    Team team{};                     ///< each of its ranks gets as many blocks, where their number is chosen
   };
   BlockPlan(exec::Cpu& ex, const SortedCloud& cloud, const Setup& setup) : ex_(ex), cloud_(cloud), setup_(setup) {}
 
-  /// Counts the bricks that the octree will have, in one pass over the keys. O(n), 16 bytes a cell of level depth - 2 with children
+  /// Counts the bricks that the octree will have, in one pass over the keys. O(n), 16 bytes a cell of level depth - 2 with children.
+  /// Collective, as divide()
   void find_bricks();
 
   /// Chooses K and the blocks, in a second pass, once bricks are known.
@@ -110,12 +112,13 @@ class BlockPlan {
     std::int64_t bricks = 0;
   };
 
-  /// Calls visit(first, keys) with all keys, part by part.
+  /// Calls visit(first, keys) with the keys of this rank's share, part by part.
   template <class Visit>
   void for_keys(const Visit& visit) const;
   void join_split();
   void choose_coarse_level(int deepest);
   void find_cells();
+  void join_cells();
   void find_cells_near_finer();
   std::int64_t choose_blocks();
   [[nodiscard]] int guess_blocks(double left) const;

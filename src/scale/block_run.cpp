@@ -93,7 +93,7 @@ BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& option
   setup.lowest_splat_depth = poisson::coarsest_splat_depth(cloud.size(), options.depth);
   setup.sample_floats = std::ssize(cloud.attributes()) + (options.confidence && !cloud.attributes().empty() ? 1 : 0);
   setup.vertex_bytes = attribute_bytes(cloud);
-  setup.ranks = options.team.size();
+  setup.team = options.team;
   for (const std::size_t channels : passes_of(cloud)) {
     const auto floats = static_cast<std::int64_t>(1 + channels);
     setup.pass_floats = std::max(setup.pass_floats, floats);
@@ -119,7 +119,7 @@ class BlockRun {
   BlockMeshes run() {
     sweep({"bricks", "octree", 0.03}, [&] { plan_.find_bricks(); });
     sweep({"plan", "octree", 0.04}, [&] {
-      team_.together([&] { plan_.divide(); });
+      plan_.divide();
       shared_.coarse.emplace(ex_, plan_,
                              CoarseLevels::Setup{options_.screening, options_.iterations, options_.boundary,
                                                  picks_by_support() || options_.trim != 0 || options_.density_face > 0,

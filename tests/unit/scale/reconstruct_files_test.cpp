@@ -393,7 +393,6 @@ TEST_F(ReconstructFiles, CutsWhereSamplesEnd) {
 }
 
 TEST_F(ReconstructFiles, CutsAmongOutliers) {
-  ranks_ = 3;
   Cloud cloud = open_cloud();
   append(cloud, jittered(box_cloud(300, 6), 7, 0.5));
   start(cloud);
@@ -496,7 +495,6 @@ TEST_F(ReconstructFiles, KeepsAttributesWithoutNormals) {
 }
 
 TEST_F(ReconstructFiles, KeepsAttributesOfTurnedNormals) {
-  ranks_ = 3;
   Cloud cloud = torus_cloud(60000, 1);
   for (Vec3f& n : cloud.normals) n = n * -1.0F;
   start(with_attributes(cloud));

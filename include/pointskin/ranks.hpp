@@ -24,7 +24,7 @@ class Ranks {
 
   /// Every rank has the bytes of rank `root` when it returns. All ranks call it in the same order with the same count and root.
   /// Waits without taking the processor from others, and looks for cancelling meanwhile.
-  /// @throws Error interrupted; internal if a message is lost
+  /// @throws Error interrupted; internal if a message is lost. Nothing but end_all() may be called then
   virtual void broadcast(void* data, std::int64_t bytes, int root) = 0;
 
   /// Ends all ranks, wherever they are: where one meets an error, the others wait for it in vain.
@@ -32,8 +32,8 @@ class Ranks {
 };
 
 /// The ranks of the launcher of MPI that started this process, as mpirun, mpiexec or srun; null where none did, or where it started
-/// one process alone. Open MPI and MPICH (and what has its binary interface) are known by the variables of the environment that they
-/// set; each has a module beside the program that is loaded then, so that nobody else needs MPI. Ranks that go without end_all()
+/// one process alone. Open MPI and MPICH are known by the variables of the environment that they set; each has a module beside the
+/// program that is loaded then, so that nobody else needs MPI. Ranks that go without end_all()
 /// wait for all others to go. To be called once.
 /// @throws Error device_unavailable if this build has no module for the launcher, or it cannot be loaded, with the reason
 std::unique_ptr<Ranks> ranks_of_launcher();

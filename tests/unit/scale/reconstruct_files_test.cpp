@@ -178,6 +178,14 @@ TEST_F(ReconstructFiles, WritesTheFileOfTheWhole) {
   EXPECT_EQ(files_.blocks, 1);
 }
 
+/// Few points at a great depth: their octree needs more than what blocks are planned for.
+TEST_F(ReconstructFiles, CutsBlocksThatNeedMoreThanPlanned) {
+  start(box_cloud(900, 3));
+  EXPECT_EQ(plan_files({input_}, at_depth(10), scale(60 * kMegabyte)).blocks, 1);
+  expect_as_whole(at_depth(10), 60 * kMegabyte);
+  EXPECT_EQ(files_.blocks, 2);
+}
+
 TEST_F(ReconstructFiles, IsPlannedAsItIsDone) {
   start(torus_cloud(60000, 1));
   write_old_output();

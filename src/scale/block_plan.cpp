@@ -307,6 +307,14 @@ void BlockPlan::cut(int blocks) {
   }
 }
 
+BlockRange BlockPlan::range_of(int rank) const {
+  const Team::Share share = setup_.team.share_of(std::ssize(blocks_), rank);
+  if (share.begin == share.end) return {};
+  const BlockRange& first = blocks_[static_cast<std::size_t>(share.begin)];
+  const BlockRange& last = blocks_[static_cast<std::size_t>(share.end) - 1];
+  return {first.begin, last.end, {first.samples.begin, last.samples.end}};
+}
+
 CellSet BlockPlan::around_nodes(const BlockRange& own, const octree::LevelView& coarse) const {
   const OwnNodes nodes{level_, setup_.depth, own};
   std::vector<std::uint64_t> cells;

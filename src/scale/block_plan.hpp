@@ -38,9 +38,11 @@ struct OwnNodes {
 
   /// Corners on the upper faces of the cube belong to the last cell before them.
   [[nodiscard]] bool holds(std::uint64_t node) const {
-    const std::uint64_t finest = cell_beside(node) << 3 * (depth - level);
+    const std::uint64_t finest = first_cell(node);
     return finest >= own.begin && finest < own.end;
   }
+  /// The first of the finest cells in the cell at a node.
+  [[nodiscard]] std::uint64_t first_cell(std::uint64_t node) const { return cell_beside(node) << 3 * (depth - level); }
   /// The cell at a node, or the last one before it.
   [[nodiscard]] std::uint64_t cell_beside(std::uint64_t node) const;
 };
@@ -77,6 +79,8 @@ class BlockPlan {
   /// Blocks are cut between cells of this level.
   [[nodiscard]] int cut_level() const { return cut_level_; }
   [[nodiscard]] const std::vector<BlockRange>& blocks() const { return blocks_; }
+  /// All cells and samples of the blocks that a rank works on; none if it has no block.
+  [[nodiscard]] BlockRange range_of(int rank) const;
 
   /// Cells of level K that hold samples, ascending, and (cells + 1) the first sample of each and the number of all.
   [[nodiscard]] const std::vector<std::uint64_t>& cells() const { return cells_; }

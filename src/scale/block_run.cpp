@@ -296,55 +296,55 @@ class BlockRun {
     const auto make_room = [&](std::size_t column) { cut.others[column].resize(cut.edges.size() * bytes_of(column)); };
     for (const std::size_t column : densities) make_room(column);
     for (std::size_t i = 0; i < attributes; ++i) make_room(columns.attributes + i);
-    std::vector<std::pair<std::uint64_t, std::size_t>> places;  // cell of the finest level, vertex
+    std::vector<PlaceOnLine> places;
     for (const Vec3f& p : cut.positions)
-      places.emplace_back(octree::cell_key(octree::point_key(p.x, p.y, p.z), depth_), places.size());
-    std::ranges::sort(places);
-    const auto begin_of = [&](std::uint64_t cell) {
-      return static_cast<std::size_t>(std::ranges::lower_bound(places, std::pair(cell, std::size_t{0})) -
-                                      places.begin());
-    };
+      places.push_back({octree::cell_key(octree::point_key(p.x, p.y, p.z), depth_), places.size()});
+    std::ranges::sort(places, {}, [](const PlaceOnLine& place) { return std::pair(place.cell, place.vertex); });
     over_blocks({"values of the cut", "extract", 0.98, 0.98}, [&](const BlockRange& own, std::size_t) {
-      const std::span<const std::pair<std::uint64_t, std::size_t>> here =
-          std::span(places).subspan(begin_of(own.begin), begin_of(own.end) - begin_of(own.begin));
+      const std::span<const PlaceOnLine> here = places_in(own, places);
       if (here.empty()) return;
       std::vector<Vec3f> points;
       std::ranges::transform(here, std::back_inserter(points),
-                             [&](const auto& place) { return cut.positions[place.second]; });
+                             [&](const PlaceOnLine& place) { return cut.positions[place.vertex]; });
       const BlockWork::PointValues found = work_.values_at(own, points, faces);
       const auto put = [&](std::size_t column, const void* values) {
-        const std::size_t bytes = bytes_of(column);
-        for (std::size_t i = 0; i < points.size(); ++i)
-          std::memcpy(&cut.others[column][here[i].second * bytes], static_cast<const std::byte*>(values) + i * bytes,
-                      bytes);
+        put_values(static_cast<const std::byte*>(values), bytes_of(column), here, cut.others[column]);
       };
       for (std::size_t i = 0; i < faces.size(); ++i) put(densities[i], found.densities[i].data());
       for (std::size_t i = 0; i < attributes; ++i) put(columns.attributes + i, found.attributes[i].data());
     });
     if (team_.is_alone()) return;
-    const auto own_of = [&](int rank) {  // places whose values it has found
-      const Team::Share blocks = team_.share_of(std::ssize(plan_.blocks()), rank);
-      if (blocks.begin == blocks.end) return std::span(places).first(0);
-      const std::size_t begin = begin_of(plan_.blocks()[static_cast<std::size_t>(blocks.begin)].begin);
-      return std::span(places).subspan(begin,
-                                       begin_of(plan_.blocks()[static_cast<std::size_t>(blocks.end) - 1].end) - begin);
+    for (std::size_t column = 0; column < cut.others.size(); ++column)
+      if (!cut.others[column].empty()) join_values_on_line(places, bytes_of(column), cut.others[column]);
+  }
+
+  /// A vertex on the line of a cut, by the cell of the finest level that it lies in.
+  struct PlaceOnLine {
+    std::uint64_t cell = 0;
+    std::size_t vertex = 0;
+  };
+  /// @param places  by their cells
+  static std::span<const PlaceOnLine> places_in(const BlockRange& own, std::span<const PlaceOnLine> places) {
+    const auto begin_of = [&](std::uint64_t cell) {
+      return std::ranges::lower_bound(places, cell, {}, &PlaceOnLine::cell) - places.begin();
     };
-    for (std::size_t column = 0; column < cut.others.size(); ++column) {
-      std::vector<std::byte>& values = cut.others[column];
-      if (values.empty()) continue;
-      const std::size_t bytes = bytes_of(column);
-      std::vector<std::byte> own;
-      for (const auto& place : own_of(team_.rank()))
-        own.insert(own.end(), &values[place.second * bytes], &values[place.second * bytes] + bytes);
-      const std::vector<std::vector<std::byte>> all = team_.gather(std::move(own));
-      for (int rank = 0; rank < team_.size(); ++rank) {
-        const std::byte* from = all[static_cast<std::size_t>(rank)].data();
-        for (const auto& place : own_of(rank)) {
-          std::memcpy(&values[place.second * bytes], from, bytes);
-          from += bytes;
-        }
-      }
-    }
+    const std::ptrdiff_t begin = begin_of(own.begin), end = begin_of(own.end);
+    return places.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+  }
+  /// @param from  (places) values of `bytes` each
+  /// @param to    of all vertices on the line
+  static void put_values(const std::byte* from, std::size_t bytes, std::span<const PlaceOnLine> places,
+                         std::vector<std::byte>& to) {
+    for (std::size_t i = 0; i < places.size(); ++i) std::memcpy(&to[places[i].vertex * bytes], from + i * bytes, bytes);
+  }
+  /// Those that the blocks of other ranks have found.
+  void join_values_on_line(std::span<const PlaceOnLine> places, std::size_t bytes, std::vector<std::byte>& values) {
+    std::vector<std::byte> own;
+    for (const PlaceOnLine& place : places_in(plan_.range_of(team_.rank()), places))
+      own.insert(own.end(), &values[place.vertex * bytes], &values[place.vertex * bytes] + bytes);
+    const std::vector<std::vector<std::byte>> all = team_.gather(std::move(own));
+    for (int rank = 0; rank < team_.size(); ++rank)
+      put_values(all[static_cast<std::size_t>(rank)].data(), bytes, places_in(plan_.range_of(rank), places), values);
   }
 
   /// As detail::extract() has it.

@@ -55,30 +55,31 @@ void CoarseLevels::take_own(const BlockRange& own, ArrayView<const T> from, Arra
 
 template <class T>
 void CoarseLevels::join_own(exec::Buffer<T>& nodes, std::int64_t width) {
-  if (setup_.team.is_alone()) return;
+  const Team& team = setup_.team;
+  if (team.is_alone()) return;
   if (nodes.empty()) nodes = exec::make_buffer<T>(ex_, this->nodes() * width);
   const octree::LevelView level = last_level();
-  const auto blocks = std::ssize(plan_.blocks());
-  const auto for_own = [&](int rank, const auto& visit) {
-    const Team::Share share = setup_.team.share_of(blocks, rank);
-    if (share.begin == share.end) return;
-    BlockRange own = plan_.blocks()[static_cast<std::size_t>(share.begin)];
-    own.end = plan_.blocks()[static_cast<std::size_t>(share.end) - 1].end;
-    const OwnNodes holds{plan_.level(), plan_.depth(), own};
-    for (std::int64_t n = 0; n < level.nodes(); ++n)
-      if (holds.holds(level.node_key(static_cast<std::int32_t>(n)))) visit((level.first_node + n) * width);
+  std::vector<std::uint64_t> ends;  // of the cells of each rank, which ascend
+  for (int rank = 0; rank < team.size(); ++rank)
+    ends.push_back(std::max(ends.empty() ? 0 : ends.back(), plan_.range_of(rank).end));
+  const OwnNodes cells{plan_.level(), plan_.depth(), {}};
+  const auto for_nodes = [&](const auto& visit) {
+    for (std::int64_t n = 0; n < level.nodes(); ++n) {
+      const std::uint64_t cell = cells.first_cell(level.node_key(static_cast<std::int32_t>(n)));
+      visit(std::ranges::upper_bound(ends, cell) - ends.begin(), nodes.data() + (level.first_node + n) * width);
+    }
   };
-  std::vector<T> values;
-  for_own(setup_.team.rank(),
-          [&](std::int64_t at) { values.insert(values.end(), nodes.data() + at, nodes.data() + at + width); });
-  const std::vector<std::vector<T>> all = setup_.team.gather(std::move(values));
-  for (int rank = 0; rank < setup_.team.size(); ++rank) {
-    const T* from = all[static_cast<std::size_t>(rank)].data();
-    for_own(rank, [&](std::int64_t at) {
-      std::copy_n(from, width, nodes.data() + at);
-      from += width;
-    });
-  }
+  std::vector<T> own;
+  for_nodes([&](std::ptrdiff_t rank, const T* values) {
+    if (rank == team.rank()) own.insert(own.end(), values, values + width);
+  });
+  const std::vector<std::vector<T>> all = team.gather(std::move(own));
+  std::vector<std::size_t> next(all.size(), 0);
+  for_nodes([&](std::ptrdiff_t rank, T* values) {
+    const auto r = static_cast<std::size_t>(rank);
+    std::copy_n(all[r].data() + next[r], width, values);
+    next[r] += static_cast<std::size_t>(width);
+  });
 }
 
 void CoarseLevels::add_facing(const BlockRange& own, ArrayView<const Facing> facing) {

@@ -117,9 +117,11 @@ bool may_work_in_blocks(const ReconstructArgs& args) { return args.options.max_m
 
 void check_ranks(const ReconstructArgs& args) {
   if (!suits_blocks(args))
-    throw_usage(fmt::format(
-        "several ranks reconstruct one binary PLY or NPY file to a .ply file, with a --depth of at least {}",
-        kShallowest));
+    throw_usage(
+        fmt::format("several ranks reconstruct one binary PLY or NPY file to a binary .ply file, with a --depth of at "
+                    "least {}; not with "
+                    "--each, --repeat or --width",
+                    kShallowest));
 }
 
 Device device_of_rank(const ReconstructArgs& args) {

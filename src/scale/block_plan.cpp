@@ -303,7 +303,7 @@ void BlockPlan::cut(int blocks) {
       blocks_.back().end = begin;
       blocks_.back().samples.end = first_in(begin);
     }
-    blocks_.push_back({begin, end, {first_in(begin), cloud_.size()}});
+    blocks_.push_back({begin, end, {first_in(begin), cloud_.size()}, blocks_.size()});
   }
 }
 
@@ -312,7 +312,7 @@ BlockRange BlockPlan::range_of(int rank) const {
   if (share.begin == share.end) return {};
   const BlockRange& first = blocks_[static_cast<std::size_t>(share.begin)];
   const BlockRange& last = blocks_[static_cast<std::size_t>(share.end) - 1];
-  return {first.begin, last.end, {first.samples.begin, last.samples.end}};
+  return {first.begin, last.end, {first.samples.begin, last.samples.end}, first.number};
 }
 
 CellSet BlockPlan::around_nodes(const BlockRange& own, const octree::LevelView& coarse) const {

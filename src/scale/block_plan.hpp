@@ -1,6 +1,7 @@
 // How a cloud is divided into blocks: which levels of the octree all share, and which cells each block owns and needs around them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,6 +30,7 @@ inline constexpr int kSumRing = 5;
 struct BlockRange {
   std::uint64_t begin = 0, end = 0;
   SampleRun samples;
+  std::size_t number = 0;  ///< of the block, from 0 on
 };
 
 /// The nodes of a level that a block owns.

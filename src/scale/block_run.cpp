@@ -26,7 +26,6 @@
 #include "octree/keys.hpp"
 #include "octree/view.hpp"
 #include "poisson/in_blocks.hpp"
-#include "poisson/mean_length.hpp"
 #include "poisson/spacing.hpp"
 #include "reconstruct/mesh_of_field.hpp"
 #include "reconstruct/pieces_by_support.hpp"
@@ -36,6 +35,7 @@
 #include "scale/block_trim.hpp"
 #include "scale/block_work.hpp"
 #include "scale/coarse_levels.hpp"
+#include "scale/examine_samples.hpp"
 #include "scale/key_index.hpp"
 #include "scale/kth_value.hpp"
 #include "scale/sample_values.hpp"
@@ -43,8 +43,6 @@
 
 namespace pointskin::scale {
 namespace {
-
-using poisson::Samples;
 
 /// Limits what buffers may take together as long as it is there; 0: they may take what they like.
 class LimitOfPool {
@@ -129,20 +127,23 @@ class BlockRun {
       report_.coarse_nodes = coarse().nodes();
     });
     const LimitOfPool limit(work_.pool(), options_.holds_to_memory ? options_.memory_bytes : 0);
-    over_blocks({"sums", "splat", 0.06, 0.1}, [&](const BlockRange& own, std::size_t) { work_.sum_facing(own); });
+    over_blocks({"sums", "splat", 0.06, 0.1}, [&](const BlockRange& own) { work_.sum_facing(own); });
     coarse().finish_facing();
-    over_blocks({"weights", "splat", 0.1, 0.15}, [&](const BlockRange& own, std::size_t) { work_.weigh(own); });
+    over_blocks({"weights", "splat", 0.1, 0.15}, [&](const BlockRange& own) { work_.weigh(own); });
     coarse().drop_facing();
     sweep({"examine", "splat", 0.15}, [&] {
-      if (team_.is_first()) examine();
-      join_examined();
+      const ExaminedSamples found =
+          team_.of_first(team_.is_first() ? examine_samples(ex_, cloud_, options_, values_) : ExaminedSamples{});
+      shared_.mean_length = found.mean_length;
+      counts_.sums[diagnose::kLonely] += found.lonely;
+      report_.inliers = found.inliers;
     });
-    over_blocks({"depths", "splat", 0.16, 0.19}, [&](const BlockRange& own, std::size_t) { work_.even_out(own); });
+    over_blocks({"depths", "splat", 0.16, 0.19}, [&](const BlockRange& own) { work_.even_out(own); });
     const KeyIndex index(cloud_, plan_.level(), plan_.cells(), plan_.first());
     sweep({"look at samples", "splat", 0.19}, [&] { look_at_pairs(ex_, cloud_, values_, index, depth_, counts_); });
     if (options_.trim != 0) sweep({"trim limit", "splat", 0.19}, [&] { settle_trim(); });
     sweep({"coarse field", "splat", 0.19}, [&] { coarse().splat(); });
-    over_blocks({"splat", "splat", 0.19, 0.36}, [&](const BlockRange& own, std::size_t) { work_.splat(own); });
+    over_blocks({"splat", "splat", 0.19, 0.36}, [&](const BlockRange& own) { work_.splat(own); });
     sweep({"coarse solve", "solve", 0.36}, [&] {
       coarse().finish_channels();
       solve_coarse();
@@ -150,7 +151,7 @@ class BlockRun {
     poisson::ValuesOfSamples values;
     std::vector<std::unique_ptr<Spool>> fields(plan_.blocks().size());  // of own blocks
     over_blocks({"solve", "solve", 0.36, 0.8},
-                [&](const BlockRange& own, std::size_t block) { fields[block] = work_.solve(own, values); });
+                [&](const BlockRange& own) { fields[own.number] = work_.solve(own, values); });
     report_.isovalue = mean_of(joined(values), fields);
     join_levels();
     BlockMeshes meshes = extract_all(fields);
@@ -249,9 +250,9 @@ class BlockRun {
                            std::vector<std::unique_ptr<Spool>>& fields, bool last) {
     BlockMeshes meshes({options_.folder, depth_, plan_.level(), shared_.columns.bytes, pieces, team_});
     report_.lone_corners = 0;
-    over_blocks(pass, [&](const BlockRange& own, std::size_t block) {
-      work_.extract(own, *fields[block], what, meshes);
-      if (last) fields[block].reset();
+    over_blocks(pass, [&](const BlockRange& own) {
+      work_.extract(own, *fields[own.number], what, meshes);
+      if (last) fields[own.number].reset();
     });
     report_.lone_corners = team_.reduce(report_.lone_corners, std::plus<>{});
     return meshes;
@@ -300,7 +301,7 @@ class BlockRun {
     for (const Vec3f& p : cut.positions)
       places.push_back({octree::cell_key(octree::point_key(p.x, p.y, p.z), depth_), places.size()});
     std::ranges::sort(places, {}, [](const PlaceOnLine& place) { return std::pair(place.cell, place.vertex); });
-    over_blocks({"values of the cut", "extract", 0.98, 0.98}, [&](const BlockRange& own, std::size_t) {
+    over_blocks({"values of the cut", "extract", 0.98, 0.98}, [&](const BlockRange& own) {
       const std::span<const PlaceOnLine> here = places_in(own, places);
       if (here.empty()) return;
       std::vector<Vec3f> points;
@@ -379,120 +380,19 @@ class BlockRun {
     report_.sweeps.push_back(
         {pass.name, pass.phase, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
   }
-  /// Calls work(block, its number) for this rank's blocks.
+  /// Calls work(block) for this rank's blocks.
   template <class Work>
   void over_blocks(const Pass& pass, const Work& work) {
     sweep(pass, [&] {
-      const Team::Share own = own_blocks();
+      const Team::Share own = team_.share_of(std::ssize(plan_.blocks()));
       team_.together([&] {
         for (std::int64_t i = own.begin; i < own.end; ++i) {
           const double share = static_cast<double>(i - own.begin) / static_cast<double>(own.end - own.begin);
           announce(options_.progress, pass.phase, pass.begin + share * (pass.end - pass.begin));
-          const auto block = static_cast<std::size_t>(i);
-          work(plan_.blocks()[block], block);
+          work(plan_.blocks()[static_cast<std::size_t>(i)]);
         }
       });
     });
-  }
-  [[nodiscard]] Team::Share own_blocks() const { return team_.share_of(std::ssize(plan_.blocks())); }
-
-  /// Calls step(part, samples, own_side) for parts of the samples in their order, with those before and after.
-  template <class Step>
-  void for_parts(const Step& step) {
-    const std::int64_t n = cloud_.size();
-    for (std::int64_t first = 0; first < n; first += options_.part_samples) {
-      const std::int64_t begin = std::max<std::int64_t>(0, first - poisson::kExamineReach);
-      const std::int64_t end = std::min(n, first + options_.part_samples + poisson::kExamineReach);
-      const poisson::PartOfCloud part{first, std::min(options_.part_samples, n - first), first - begin, n};
-      const auto column = [&](SampleValues::Column which) {
-        auto values = exec::make_buffer<float>(ex_, end - begin);
-        values_.read(which, begin, values.view());
-        return values;
-      };
-      Samples samples;
-      samples.positions = exec::make_buffer<Vec3f>(ex_, end - begin);
-      samples.normals = exec::make_buffer<Vec3f>(ex_, end - begin);
-      cloud_.read(ex_, begin, end - begin, {samples.positions.data(), samples.normals.data()});
-      poisson::normalise_normals(ex_, samples.normals.view());
-      samples.areas = column(SampleValues::area);
-      samples.splat_depths = column(SampleValues::depth);
-      step(part, samples, column(SampleValues::own_side));
-    }
-  }
-
-  void examine() {
-    const double mean = options_.confidence ? mean_length() : 0;
-    shared_.mean_length = mean;
-    poisson::LookAtCloud look;
-    for_parts([&](const poisson::PartOfCloud& part, const Samples& samples, const exec::Buffer<float>& own_side) {
-      look.add(poisson::look_at_part(ex_, depth_, part, own_side.cview(), samples));
-    });
-    for_parts([&](const poisson::PartOfCloud& part, Samples& samples, exec::Buffer<float> own_side) {
-      auto bends = exec::make_buffer<float>(ex_, samples.areas.size());
-      values_.read(SampleValues::trust, part.first - part.before, bends.view());
-      poisson::examine_part(ex_, depth_, poisson::coarsest_splat_depth(cloud_.size(), depth_), part, look,
-                            std::move(own_side), std::move(bends), samples);
-      if (options_.confidence) scale_areas(part, mean, samples.areas.view());
-      counts_.sums[diagnose::kLonely] += *samples.lonely.data();
-      for (std::int64_t i = part.before; i < part.before + part.count; ++i)
-        if (samples.areas.data()[i] > 0) report_.inliers.add(samples.positions.data()[i]);
-      const auto own = [&](const exec::Buffer<float>& values) { return values.cview().part(part.before, part.count); };
-      values_.write(SampleValues::area, part.first, own(samples.areas));
-      values_.write(SampleValues::examined_depth, part.first, own(samples.splat_depths));
-      values_.write(SampleValues::trust, part.first, own(samples.trust));
-    });
-  }
-
-  /// What the first rank has found there.
-  void join_examined() {
-    struct Examined {
-      double mean_length;
-      diagnose::Counts counts;
-      BoxOfPoints inliers;
-    };
-    const Examined found = team_.of_first(Examined{shared_.mean_length, counts_, report_.inliers});
-    shared_.mean_length = found.mean_length;
-    counts_ = found.counts;
-    report_.inliers = found.inliers;
-  }
-
-  /// Calls visit(normal) with all normals as they were given.
-  template <class Visit>
-  void for_normals(std::int64_t first, std::int64_t count, const Visit& visit) const {
-    std::vector<Vec3f> normals;
-    for (const std::int64_t end = first + count; first < end; first += std::ssize(normals)) {
-      normals.resize(static_cast<std::size_t>(std::min(options_.part_samples, end - first)));
-      cloud_.read(ex_, first, std::ssize(normals), {nullptr, normals.data()});
-      for (const Vec3f& normal : normals) visit(normal);
-    }
-  }
-
-  /// As poisson::mean_length() has it.
-  [[nodiscard]] double mean_length() const {
-    double largest = 0;
-    const auto sum_in = [&](int fraction) {
-      exec::ExactSum sum;
-      for_normals(0, cloud_.size(), [&](const Vec3f& normal) {
-        const double length = poisson::length_of(normal);
-        largest = exec::Largest{}(largest, length);
-        sum = exec::AddExactly{}(sum, exec::exact_term(length, fraction));
-      });
-      return sum;
-    };
-    const auto n = static_cast<double>(cloud_.size());
-    const exec::ExactSum sum = sum_in(poisson::kLengthFraction);
-    if (sum.reliable(cloud_.size())) return sum.value(poisson::kLengthFraction) / n;
-    if (!std::isfinite(largest)) return std::numeric_limits<double>::quiet_NaN();
-    if (largest == 0) return 0;
-    const int fraction = exec::fraction_for(largest);
-    return sum_in(fraction).value(fraction) / n;
-  }
-
-  /// By the lengths of the normals, over their mean.
-  void scale_areas(const poisson::PartOfCloud& part, double mean, ArrayView<float> areas) const {
-    std::int64_t i = part.before;
-    for_normals(part.first, part.count,
-                [&](const Vec3f& normal) { areas[i++] *= static_cast<float>(poisson::length_of(normal) / mean); });
   }
 
   [[nodiscard]] poisson::ValuesOfSamples joined(const poisson::ValuesOfSamples& own) const {
@@ -537,9 +437,8 @@ class BlockRun {
     if (values.largest == 0) return 0;
     const int fraction = exec::fraction_for(values.largest);
     poisson::ValuesOfSamples again;
-    over_blocks({"sum again", "solve", 0.8, 0.8}, [&](const BlockRange& own, std::size_t block) {
-      again.add(work_.sum_values(own, *fields[block], fraction));
-    });
+    over_blocks({"sum again", "solve", 0.8, 0.8},
+                [&](const BlockRange& own) { again.add(work_.sum_values(own, *fields[own.number], fraction)); });
     return joined(again).mean(fraction);
   }
 

@@ -46,10 +46,6 @@ struct SignedDistance {
   FieldView original;
   BetweenFrames to_original;
 
-  [[nodiscard]] PSK_HD double operator()(const Vec3f& q) const {
-    const double d = std::sqrt(surface.squared_distance(q));
-    return is_inside(to_original(q)) ? -d : d;
-  }
   [[nodiscard]] PSK_HD bool is_within(const Vec3f& q, double low, double high) const {
     return is_inside(to_original(q)) ? surface.is_within(q, -high, -low) : surface.is_within(q, low, high);
   }
@@ -100,13 +96,65 @@ struct PointInCell {
   PSK_HD void operator()(std::int64_t i) const { keys[i] = cells[kept[i]] << 3 * (octree::kPointBits - depth); }
 };
 
-struct ValueAtCorner {
+/// Values at the corners of a level, after those of the level above. A corner that is no unknown has the interpolation of
+/// these, and an unknown that is one of theirs, too, the same value. For all others the nearest triangle is searched, from
+/// that of the parent's corner on.
+struct FillLevel {
+  octree::OctreeView tree;
+  int depth;
   SignedDistance signed_distance;
-  PSK_HD float operator()(const octree::OctreeView& tree, int depth, std::int32_t node) const {
-    const Vec3f x = corners::place_of(tree.levels[depth], node);
-    return -static_cast<float>(signed_distance(x) * static_cast<double>(std::int64_t{1} << tree.depth));
+  ArrayView<const std::int32_t> nearest_above;  ///< at the nodes of the level above
+  ArrayView<std::int32_t> nearest;              ///< at the nodes of this level; empty: not kept
+  float* values;                                ///< of all levels
+
+  PSK_HD void operator()(std::int64_t n) const {
+    const octree::LevelView& level = tree.levels[depth];
+    std::int32_t at = 0;
+    float value = 0;
+    if (depth > 0) {
+      const octree::LevelView& above = tree.levels[depth - 1];
+      const std::int32_t parent = level.parent[n >> 3];
+      const float* values_above = values + above.first_node;
+      at = nearest_above[parent];
+      if (!corners::is_unknown(level, n)) {
+        value = octree::prolonged(above, values_above, parent, static_cast<int>(n & 7));
+      } else if ((n & 7) == 0 && corners::is_unknown(above, parent)) {
+        value = values_above[parent];
+      } else {
+        value = search(level, n, at);
+      }
+    } else if (corners::is_unknown(level, n)) {
+      value = search(level, n, at);
+    }
+    values[level.first_node + n] = value;
+    if (!nearest.empty()) nearest[n] = at;
+  }
+
+  /// Minus the signed distance, in finest cells.
+  /// @param nearest  the triangle to begin at; then the nearest one
+  [[nodiscard]] PSK_HD float search(const octree::LevelView& level, std::int64_t n, std::int32_t& at) const {
+    const Vec3f x = corners::place_of(level, static_cast<std::int32_t>(n));
+    const NearTriangle found = signed_distance.surface.nearest(x, at);
+    at = found.place;
+    const double cells = std::sqrt(found.squared) * static_cast<double>(std::int64_t{1} << tree.depth);
+    return static_cast<float>(signed_distance.is_inside(signed_distance.to_original(x)) ? cells : -cells);
   }
 };
+
+/// At all levels, level-major. One launch a level; 4 bytes a node of two levels above the finest besides the result.
+template <exec::Space Exec>
+exec::Buffer<float> fill_levels(Exec& ex, const octree::OctreeView& tree, const SignedDistance& signed_distance) {
+  auto values = exec::make_buffer<float>(ex, tree.nodes);
+  exec::Buffer<std::int32_t> above;
+  for (int d = 0; d <= tree.depth; ++d) {
+    const std::int64_t nodes = tree.levels[d].nodes();
+    auto nearest = exec::make_buffer<std::int32_t>(ex, d < tree.depth ? nodes : 0);
+    for_each(ex, "offset.distance", nodes,
+             FillLevel{tree, d, signed_distance, above.cview(), nearest.view(), values.data()});
+    above = std::move(nearest);
+  }
+  return values;
+}
 
 /// Keys of points, one in every cell of level `depth` that may hold a place at the offset.
 template <exec::Space Exec>
@@ -153,7 +201,7 @@ OffsetField make_offset(Exec& ex, const SurfaceOfField& surface, const octree::F
   const exec::Buffer<std::uint64_t> band = find_band(ex, signed_distance, depth, offset_cells);
   result.band_cells = band.size();
   result.tree = octree::build_octree(ex, band.cview(), depth);
-  result.values = fill_corners(ex, "offset.distance", result.tree.view(), ValueAtCorner{signed_distance});
+  result.values = fill_levels(ex, result.tree.view(), signed_distance);
   return result;
 }
 

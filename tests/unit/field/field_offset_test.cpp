@@ -82,14 +82,16 @@ void expect_exact(const Mesh& mesh) {
     const Vec3f centred = point_in(random, 0.5);
     const Vec3f q{centred.x + 0.5F, centred.y + 0.5F, centred.z + 0.5F};
     const double truth = brute_distance(mesh, q);
-    ASSERT_NEAR(std::sqrt(boxes.view().squared_distance(q)), truth, 1e-9);
+    ASSERT_NEAR(std::sqrt(boxes.view().nearest(q).squared), truth, 1e-9);
+    const auto start = static_cast<std::int32_t>(random.below(static_cast<std::int64_t>(mesh.triangles.size())));
+    ASSERT_NEAR(std::sqrt(boxes.view().nearest(q, start).squared), truth, 1e-9);
     ASSERT_TRUE(boxes.view().is_within(q, truth - 1e-6, truth + 1e-6));
     ASSERT_TRUE(boxes.view().is_within(q, -1, 2));
     ASSERT_FALSE(boxes.view().is_within(q, truth + 1e-6, 2));
     ASSERT_FALSE(boxes.view().is_within(q, -1, truth - 1e-6));
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 7)
-    ASSERT_EQ(boxes.view().squared_distance(mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][2])]), 0);
+    ASSERT_EQ(boxes.view().nearest(mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][2])]).squared, 0);
 }
 
 TEST(TriangleBoxes, FindTheNearestTriangle) { expect_exact(moved_to_the_middle(test::torus_mesh(40, 20, 0.3, 0.1))); }
@@ -114,6 +116,61 @@ TEST(TriangleBoxes, OfTrianglesThatAreAllTheSame) {
   Mesh mesh = test::icosphere_mesh(1, 0.3, {0.5, 0.5, 0.5});
   mesh.triangles.assign(1'000, mesh.triangles[5]);
   expect_exact(mesh);
+}
+
+TEST(BoundingDisc, IsNoFartherThanWhatItHolds) {
+  test::Random random(5);
+  for (int i = 0; i < 2'000; ++i) {
+    // From patches that lie about in a plane to triangles all over, from tiny to large, and without area.
+    const double size = std::pow(10.0, random.in(-4, 0)), thickness = size * std::pow(10.0, random.in(-3, 0));
+    std::vector<field::offset::PlacedTriangle> triangles(1 + static_cast<std::size_t>(i % 9));
+    const auto corner = [&] {
+      const Vec3f p = point_in(random, size);
+      return Vec3f{0.3F + p.x, 0.5F + p.y, 0.4F + p.x + p.y + static_cast<float>(random.in(-thickness, thickness))};
+    };
+    for (auto& t : triangles) t = {corner(), corner(), corner()};
+    if (i % 7 == 0) triangles[0].c = triangles[0].b;
+    const auto count = static_cast<std::int64_t>(triangles.size());
+    const auto disc = field::offset::disc_around({triangles.data(), count}, 0, count);
+    for (int k = 0; k < 20; ++k) {
+      const Vec3f away = point_in(random, size * std::pow(10.0, random.in(-1, 2)));
+      const Vec3f q{0.3F + away.x, 0.5F + away.y, 0.4F + away.z};
+      double least = 1e300;
+      for (const auto& t : triangles) least = std::min(least, t.squared_distance(q));
+      ASSERT_LE(disc.squared_distance(q), least * (1 + 1e-6) + 1e-12) << i << ' ' << k;
+    }
+  }
+}
+
+TEST(BoundingDisc, StaysThinWhereTrianglesLieAskew) {
+  const field::offset::PlacedTriangle triangle{{0.5F, 0.1F, 0.1F}, {0.1F, 0.5F, 0.1F}, {0.1F, 0.1F, 0.5F}};
+  const auto disc = field::offset::disc_around({&triangle, 1}, 0, 1);
+  EXPECT_LT(disc.half_thickness, 1e-6F);
+  EXPECT_NEAR(std::sqrt(disc.squared_distance({0.9F, 0.9F, 0.9F})), (2.7 - 0.7) / std::sqrt(3.0), 1e-6);
+}
+
+/// A place near a sphere sees few triangles as near as the nearest one; one that is many of them away, hundreds, but for
+/// less than they are wide.
+TEST(TriangleBoxes, LookAtFewTrianglesFromAfar) {
+  const Mesh mesh = test::icosphere_mesh(6, 0.3, {0.5, 0.5, 0.5});
+  exec::Cpu ex(2);
+  const auto boxes =
+      field::offset::make_triangle_boxes(ex, {mesh.vertices.data(), static_cast<std::int64_t>(mesh.vertices.size())},
+                                         {mesh.triangles.data(), static_cast<std::int64_t>(mesh.triangles.size())});
+  const field::offset::TriangleBoxesView view = boxes.view();
+  test::Random random(7);
+  for (const double distance : {0.01, 0.1, -0.1}) {
+    std::int64_t looked_at = 0;
+    for (int i = 0; i < 1'000; ++i) {
+      const Vec3d way = (0.3 + distance) * random.direction();
+      const Vec3f q{static_cast<float>(0.5 + way.x), static_cast<float>(0.5 + way.y), static_cast<float>(0.5 + way.z)};
+      double least = view.nearest(q).squared;
+      view.visit_near(
+          q, [&](float squared) { return squared > static_cast<float>(least); },
+          [&](double, std::int64_t) { return ++looked_at > 0; });
+    }
+    EXPECT_LT(looked_at, 60 * 1'000) << distance;
+  }
 }
 
 }  // namespace

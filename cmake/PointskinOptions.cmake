@@ -27,18 +27,30 @@ option(POINTSKIN_HARDEN "Stop the process at overruns: stack protector, fortifie
 option(POINTSKIN_ASSERTIONS "Check what containers of the C++ library are asked for (_GLIBCXX_ASSERTIONS)" OFF)
 
 # Where CMAKE_UNITY_BUILD is on, the files of a folder compile as one: most of the time of a build that hardly optimises goes
-# into reading the same headers, file by file. A release is built without it, and so are its tests.
+# into reading the same headers, file by file. A release of the library is built without it, and so are its tests.
+# pointskin_unite_folders(<target> [<files>]): so many files compile as one in every build. For programs, whose headers (of the
+# command line, JSON, the studio) take longer to read than the files to optimise.
 function(pointskin_unite_folders target)
   get_target_property(sources ${target} SOURCES)
+  list(SORT sources)
+  set(number 0)
   foreach(source IN LISTS sources)
     get_filename_component(group ${source} DIRECTORY)
     if(group MATCHES "^io")  # of a format, which the first word of their names tells: each has helpers of the same names
       string(REGEX REPLACE "_[^/]*$" "" group ${source})
     endif()
+    if(ARGC GREATER 1 AND NOT CMAKE_UNITY_BUILD)
+      math(EXPR part "${number} / ${ARGV1}")
+      math(EXPR number "${number} + 1")
+      set(group ${part})
+    endif()
     string(MAKE_C_IDENTIFIER "in_${group}" group)
     set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  if(ARGC GREATER 1)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+  endif()
 endfunction()
 
 set(POINTSKIN_HAS_CUDA OFF)

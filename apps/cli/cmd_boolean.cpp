@@ -64,7 +64,7 @@ BooleanOperand operand_of(const Solid& solid) {
   return std::get<Mesh>(solid);
 }
 
-void warn_about_strays(const char* name, const BooleanPart& part) {
+void warn_about_strays_of(const char* name, const BooleanPart& part) {
   if (part.strays > 0)
     print_warning(fmt::format("{}: {} stray points far from all others are left out; use --keep-strays to keep them",
                               name, part.strays));
@@ -81,8 +81,8 @@ BooleanResult compute(const BooleanArgs& args, const Solid& a, const Solid& b, B
   BooleanResult result = booleans.combine(operand_of(a), operand_of(b), args.op, options);
   line.clear();
   record.run = result.report;
-  warn_about_strays("A", record.run.a);
-  warn_about_strays("B", record.run.b);
+  warn_about_strays_of("A", record.run.a);
+  warn_about_strays_of("B", record.run.b);
   for (const Warning& warning : record.run.result.warnings) print_warning(warning.text);
   return result;
 }

@@ -44,14 +44,14 @@ struct Findings {
 
 const char* kind_of(const IntersectingPair& pair) { return pair.touching ? "touching" : "crossing"; }
 
-Json to_json(const SelfIntersections& found) {
+Json check_json(const SelfIntersections& found) {
   Json listed = Json::array();
   for (const IntersectingPair& pair : found.listed)
     listed.push_back({{"triangles", pair.triangles}, {"kind", kind_of(pair)}, {"place", pair.place_world}});
   return {{"pairs", found.pairs}, {"touching", found.touching}, {"triangles", found.triangles}, {"listed", listed}};
 }
 
-Json to_json(const CheckArgs& args, const Findings& findings) {
+Json check_json(const CheckArgs& args, const Findings& findings) {
   const MeshReport& r = findings.mesh;
   Json json = {{"version", 1},
                {"command", "check"},
@@ -73,7 +73,7 @@ Json to_json(const CheckArgs& args, const Findings& findings) {
                {"misoriented_edges", r.misoriented_edges},
                {"non_manifold_vertices", r.non_manifold_vertices},
                {"degenerate_triangles", r.degenerate_triangles}};
-  if (findings.self_intersections) json["self_intersections"] = to_json(*findings.self_intersections);
+  if (findings.self_intersections) json["self_intersections"] = check_json(*findings.self_intersections);
   return json;
 }
 
@@ -136,11 +136,11 @@ int run(const CheckArgs& args) {
   const Findings findings = find(args);
   if (findings.mesh.triangles == 0)
     throw Error(ErrorCode::invalid_input, args.file + ": has no triangles; name a mesh, not a cloud");
-  write_stdout(args.json ? json_text(to_json(args, findings)) : human_text(args, findings));
+  write_stdout(args.json ? json_text(check_json(args, findings)) : human_text(args, findings));
   return findings.good() ? 0 : static_cast<int>(ErrorCode::empty_result);
 }
 
-constexpr char kFooter[] =
+constexpr char kCheckFooter[] =
     "Watertight means: every edge has two triangles, which run through it in opposite directions; every vertex has "
     "one\n"
     "fan; no triangle names a vertex twice; the enclosed volume is positive. Volume is in world units^3, area in "
@@ -168,8 +168,8 @@ OptionTable check_options(CheckArgs& args) {
 }  // namespace
 
 Command check_command() {
-  return make_command({"check", "Tell whether a mesh is watertight: exit code 0, or 5 if not.", kFooter}, check_options,
-                      run);
+  return make_command({"check", "Tell whether a mesh is watertight: exit code 0, or 5 if not.", kCheckFooter},
+                      check_options, run);
 }
 
 }  // namespace pointskin::cli

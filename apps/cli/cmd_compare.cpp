@@ -68,7 +68,7 @@ Json side_json(const std::string& file, const Content& content, std::int64_t sam
   return json;
 }
 
-Json to_json(const CompareArgs& args, const Comparison& comparison) {
+Json compare_json(const CompareArgs& args, const Comparison& comparison) {
   const MeshComparison& c = comparison.result;
   Json json = {{"version", 1},
                {"command", "compare"},
@@ -136,7 +136,7 @@ void check(const CompareArgs& args) {
   check_replaceable(args.heat);
 }
 
-Content read(const std::string& file, const CompareArgs& args) {
+Content read_side(const std::string& file, const CompareArgs& args) {
   Content content = read_cloud_or_mesh(file, {.shift = std::nullopt, .threads = args.options.threads});
   const auto* cloud = std::get_if<Cloud>(&content);
   const std::string name = file == "-" ? "stdin" : file;
@@ -167,8 +167,8 @@ void write_heat(const CompareArgs& args, Comparison& comparison, const std::vect
 
 int run(const CompareArgs& args) {
   check(args);
-  Content a = read(args.a, args);
-  Comparison comparison{std::move(a), read(args.b, args), {}};
+  Content a = read_side(args.a, args);
+  Comparison comparison{std::move(a), read_side(args.b, args), {}};
   const ComparedSurface surface = surface_of(comparison.a), reference = surface_of(comparison.b);
   std::vector<double> heat;  // first: a reference without an inside is found before the longer part
   if (!args.heat.empty())
@@ -178,11 +178,11 @@ int run(const CompareArgs& args) {
   throw_if_interrupted();
   if (!args.heat.empty()) write_heat(args, comparison, heat);
   ignore_interrupts();
-  write_stdout(args.json ? json_text(to_json(args, comparison)) : human_text(args, comparison));
+  write_stdout(args.json ? json_text(compare_json(args, comparison)) : human_text(args, comparison));
   return 0;
 }
 
-constexpr char kFooter[] =
+constexpr char kCompareFooter[] =
     "Of a mesh, area-uniform samples are measured, and its triangles are what is near; of a cloud, its points are "
     "both:\n"
     "distances to a cloud are not below about half of its spacing. A PLY with faces, an OBJ, STL or OFF is a mesh, "
@@ -207,7 +207,7 @@ OptionTable compare_options(CompareArgs& args) {
 }  // namespace
 
 Command compare_command() {
-  return make_command({"compare", "Measure how far a mesh or cloud is from a reference, both ways.", kFooter},
+  return make_command({"compare", "Measure how far a mesh or cloud is from a reference, both ways.", kCompareFooter},
                       compare_options, run);
 }
 

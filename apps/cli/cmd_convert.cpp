@@ -33,7 +33,7 @@ WriteOptions write_options(const ConvertArgs& args) {
   return {.ascii = args.ascii, .threads = args.threads, .double_coordinates = args.wide, .compress = args.compress};
 }
 
-std::string write(const ConvertArgs& args, const Mesh& mesh) {
+std::string write_content(const ConvertArgs& args, const Mesh& mesh) {
   write_mesh(args.output, mesh, write_options(args));
   ignore_interrupts();
   if (args.quiet) return "";
@@ -41,7 +41,7 @@ std::string write(const ConvertArgs& args, const Mesh& mesh) {
                      shape_words(mesh, args.threads));
 }
 
-std::string write(const ConvertArgs& args, const Cloud& cloud) {
+std::string write_content(const ConvertArgs& args, const Cloud& cloud) {
   check_cloud_name(args.output, "{} holds a cloud, and clouds are written as {} only", args.input);
   warn_about_dropped(cloud.dropped);
   write_cloud(args.output, cloud, write_options(args));
@@ -62,7 +62,7 @@ int run(const ConvertArgs& args) {
   const std::variant<Cloud, Mesh> content = read_cloud_or_mesh(args.input, options);
   on_interrupt(OnInterrupt::remember);
   throw_if_interrupted();
-  const std::string written = std::visit([&](const auto& held) { return write(args, held); }, content);
+  const std::string written = std::visit([&](const auto& held) { return write_content(args, held); }, content);
   if (!args.quiet) print_note(file_words(args.output) + written);
   return 0;
 }

@@ -109,9 +109,9 @@ Deformation checked(const DeformArgs& args, Deformation deformation, std::int64_
 }
 
 /// Deforms, writes and measures one frame after another.
-class Frames {
+class DeformedFrames {
  public:
-  Frames(const DeformArgs& args, Deformer& deformer, const Deformation& deformation)
+  DeformedFrames(const DeformArgs& args, Deformer& deformer, const Deformation& deformation)
       : args_(args), deformer_(deformer), deformation_(deformation) {}
 
   void run_all() {
@@ -190,7 +190,7 @@ void warn_about_unused(const DeformArgs& args, const Options& options, const Def
 }
 
 /// The last line.
-std::string summary(const DeformArgs& args, const DeformReport& report, const Frames& frames) {
+std::string deform_summary(const DeformArgs& args, const DeformReport& report, const DeformedFrames& frames) {
   const std::string mesh = args.output.empty() ? ""
                                                : fmt::format("; triangles {}, {}", frames.mesh().triangles.size(),
                                                              shape_words(frames.mesh(), args.threads));
@@ -235,7 +235,7 @@ int run(const DeformArgs& args) {
   json["options"] = report_of(deform_options, args);
   cloud = Cloud();
 
-  Frames frames(args, deformer, deformation);
+  DeformedFrames frames(args, deformer, deformation);
   memory.within_limit([&] { frames.run_all(); });
   const DeformReport& report = deformer.report();
   json["frames"] = frames.json();
@@ -243,7 +243,7 @@ int run(const DeformArgs& args) {
       {"read", read_ms}, {"upload", report.upload_ms}, {"rest", report.rest_ms}, {"frame_median", frames.median_ms()}};
   if (!args.report.empty()) write_file_atomically(args.report, json_text(json));
   warn_about_envelope(report.run.envelope, report.run.points);
-  if (!args.quiet) print_note(summary(args, report, frames));
+  if (!args.quiet) print_note(deform_summary(args, report, frames));
   return 0;
 }
 

@@ -231,7 +231,7 @@ void write_points(const scene::Scene& scene, const EditArgs& args) {
   write_cloud(args.cloud, cloud, args.threads);
 }
 
-std::string summary(const scene::Scene& scene, const EditArgs& args, double total_ms) {
+std::string edit_summary(const scene::Scene& scene, const EditArgs& args, double total_ms) {
   const Mesh& mesh = scene.mesh();
   const std::string file = args.output.empty() ? args.cloud : args.output;
   return fmt::format("{}operations {}, triangles {}, {}; ms: total {:.1f}; memory {} host", file_words(file),
@@ -300,7 +300,7 @@ int run(const EditArgs& given) {
     write_file_atomically(args.report, json_text(json));
     ignore_interrupts();
   }
-  if (!args.quiet) print_note(summary(scene, args, total_ms));
+  if (!args.quiet) print_note(edit_summary(scene, args, total_ms));
   return 0;
 }
 

@@ -62,9 +62,9 @@ void check_outputs(const FluidArgs& args, const std::vector<FluidFrameRecord>& f
 }
 
 /// Reads, makes and writes frames, with memory that is used again. One a thread.
-class Worker {
+class FluidWorker {
  public:
-  Worker(const FluidArgs& args, const FluidOptions& options, const Device& device)
+  FluidWorker(const FluidArgs& args, const FluidOptions& options, const Device& device)
       : args_(args), options_(options), surfacer_(device), threads_(device.threads) {}
 
   void run(FluidFrameRecord& frame) {
@@ -117,7 +117,7 @@ class Sequence {
   /// @throws the error of the first frame that failed
   void run() {
     {
-      Worker first(args_, options_, device_);
+      FluidWorker first(args_, options_, device_);
       first.run(frames_.front());
       done(frames_.front());
       at_once_ = frames_at_once();
@@ -160,7 +160,7 @@ class Sequence {
   void run_together() {
     const Device share = Device::cpu(std::max(1, thread_count(args_.threads) / at_once_));
     run_at_once(1, frames_.size(), at_once_, [&] {
-      return [this, worker = std::make_unique<Worker>(args_, options_, share)](std::size_t i) {
+      return [this, worker = std::make_unique<FluidWorker>(args_, options_, share)](std::size_t i) {
         worker->run(frames_[i]);
         done(frames_[i]);
       };

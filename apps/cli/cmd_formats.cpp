@@ -19,7 +19,7 @@ struct FormatsArgs {
   bool markdown = false;
 };
 
-std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
+std::string words_joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
 /// "points", "meshes, points" or nothing.
 std::string kinds(bool meshes, bool clouds) {
@@ -33,7 +33,7 @@ std::string markdown() {
       "| format | extensions | read | what is read | written | what is written | library | tested against |\n"
       "|---|---|---|---|---|---|---|---|\n";
   for (const FormatInfo& f : file_formats())
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", f.name, joined(f.extensions),
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", f.name, words_joined(f.extensions),
                         kinds(f.reads_meshes, f.reads_clouds), f.read, kinds(f.writes_meshes, f.writes_clouds),
                         f.written, library_of(f), f.tested_against);
   return text;
@@ -42,7 +42,7 @@ std::string markdown() {
 std::string table() {
   std::vector<std::array<std::string, 4>> rows{{"format", "extensions", "reads", "writes"}};
   for (const FormatInfo& f : file_formats())
-    rows.push_back({f.name, joined(f.extensions),
+    rows.push_back({f.name, words_joined(f.extensions),
                     f.built ? kinds(f.reads_meshes, f.reads_clouds) : "not in this build: needs " + f.library,
                     kinds(f.writes_meshes, f.writes_clouds)});
   std::array<std::size_t, 4> widths{};

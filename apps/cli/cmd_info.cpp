@@ -140,7 +140,7 @@ int run(const InfoArgs& args) {
   return 0;
 }
 
-constexpr char kFooter[] =
+constexpr char kInfoFooter[] =
     "Prints counts, normals, attributes and their types, the bounding box in world coordinates, the origin that was\n"
     "subtracted while reading, stray points far from all others (`reconstruct` leaves them out), the spacing (the "
     "median\n"
@@ -157,7 +157,7 @@ OptionTable info_options(InfoArgs& args) {
 }  // namespace
 
 Command info_command() {
-  return make_command({"info", "Print what a cloud or mesh file holds.", kFooter}, info_options, run);
+  return make_command({"info", "Print what a cloud or mesh file holds.", kInfoFooter}, info_options, run);
 }
 
 }  // namespace pointskin::cli

@@ -59,7 +59,7 @@ CloudOrMesh read(const std::string& path, const RenderArgs& args) {
 }
 
 /// What the pictures of a sequence have shown, for warnings.
-struct Shown {
+struct Pictured {
   int pictures = 0, with_backs = 0, empty = 0;
   double most_behind = 0;
   std::int64_t strays = 0, dropped = 0;
@@ -79,7 +79,7 @@ struct Shown {
   }
 };
 
-std::string backs_text(const Shown& shown) {
+std::string backs_text(const Pictured& shown) {
   const int percent = std::max(1, static_cast<int>(100 * shown.most_behind + 0.5));
   const std::string where =
       shown.pictures > 1 ? fmt::format("in {} of {} pictures, up to {} %", shown.with_backs, shown.pictures, percent)
@@ -93,7 +93,7 @@ std::string backs_text(const Shown& shown) {
          "--cull leaves backs out";
 }
 
-void warn(const Shown& shown) {
+void warn(const Pictured& shown) {
   warn_about_dropped(shown.dropped);
   if (shown.strays > 0)
     print_warning(fmt::format("{} stray points far from all others do not count for the camera", shown.strays));
@@ -155,7 +155,7 @@ int run(const RenderArgs& args) {
   ProgressLine line(!args.quiet && stderr_is_terminal());
   if (sequence) on_interrupt(OnInterrupt::remember);
   if (sequence) unite(pictures, args, line, options);
-  Shown shown;
+  Pictured shown;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     with_name(pictures[i], [&] {
       const CloudOrMesh what = read(pictures[i].input.path, args);

@@ -67,7 +67,7 @@ void print_error(const std::string& story) {
 void print_out_of_memory() noexcept {
   constexpr std::string_view kStory = "pointskin: out of memory; use a smaller --depth or fewer points\n";
   last_line_written = true;
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kStory.data(), kStory.size());
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kStory.data(), kStory.size());
 }
 
 WarningsOf::WarningsOf(std::string file) : file_(std::move(file)), stories_(warnings()) { about = this; }

@@ -34,9 +34,9 @@ void check_stdout(const std::vector<OutputFile>& outputs) {
 }
 
 /// Compares one output after another with what came before.
-class Comparison {
+class PathComparison {
  public:
-  explicit Comparison(const FilePlan& plan) : plan_(plan) {
+  explicit PathComparison(const FilePlan& plan) : plan_(plan) {
     for (const InputFile& input : plan.inputs) {
       FileIdentity identity = input.file == "-" ? identify_descriptor(STDIN_FILENO) : identify(input.file);
       if (identity.kind != Kind::missing) inputs_.emplace(std::move(identity), &input);
@@ -89,7 +89,7 @@ void FilePlan::add_frame(const std::string& input, const std::string& output, Ou
 void check_files(const FilePlan& plan) {
   check_stdin(plan.inputs);
   check_stdout(plan.outputs);
-  Comparison comparison(plan);
+  PathComparison comparison(plan);
   for (const OutputFile& output : plan.outputs)
     if (!output.file.empty()) comparison.add(output);
 }

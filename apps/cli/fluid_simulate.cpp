@@ -102,9 +102,9 @@ Cloud cloud_of(simulation::ParticleStates particles) {
 }
 
 /// Steps, makes surfaces, writes and reports, one frame after another.
-class Frames {
+class SimulatedFrames {
  public:
-  Frames(const SimulateArgs& args, const SimulateOutput& output, simulation::Simulation& fluid)
+  SimulatedFrames(const SimulateArgs& args, const SimulateOutput& output, simulation::Simulation& fluid)
       : args_(args), output_(output), fluid_(fluid) {}
 
   void run_all(ProgressLine& progress) {
@@ -187,7 +187,7 @@ class Frames {
 };
 
 void write_report(const SimulateArgs& args, const SimulateOutput& output, const simulation::Simulation& fluid,
-                  const Frames& frames) {
+                  const SimulatedFrames& frames) {
   const Device& device = fluid.device();
   const simulation::Scene& scene = fluid.scene();
   Json json = {{"version", 1}, {"command", "fluid --simulate"}};
@@ -236,7 +236,7 @@ int run_simulation(const SimulateArgs& args, const SimulateOutput& output) {
   if (output.warn) output.warn(device.kind == DeviceKind::cuda);
   on_interrupt(OnInterrupt::remember);
   simulation::Simulation fluid(simulation::make_scene(kind, args.particles), options, device);
-  Frames frames(args, output, fluid);
+  SimulatedFrames frames(args, output, fluid);
   {
     ProgressLine progress(!output.quiet && stderr_is_terminal());
     frames.run_all(progress);

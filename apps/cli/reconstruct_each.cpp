@@ -96,9 +96,9 @@ ReconstructArgs args_of(const ReconstructArgs& all, const OneOfMany& cloud, cons
 }
 
 /// Runs one cloud after another, with memory that is used again. One a thread.
-class Worker {
+class EachWorker {
  public:
-  Worker(const ReconstructArgs& args, const Device& device) : args_(args), device_(device) {}
+  EachWorker(const ReconstructArgs& args, const Device& device) : args_(args), device_(device) {}
 
   /// @throws Error interrupted; any other stays with the cloud
   void run(OneOfMany& cloud) {
@@ -153,7 +153,7 @@ class Batch {
  private:
   auto worker(const Device& device) {
     return [this, device] {
-      return [this, worker = std::make_unique<Worker>(args_, device)](std::size_t i) {
+      return [this, worker = std::make_unique<EachWorker>(args_, device)](std::size_t i) {
         worker->run(*order_[i]);
         done(*order_[i]);
       };

@@ -29,7 +29,7 @@ void handle(int /*signal*/) {
   if (what == OnInterrupt::exit_now) {
     constexpr char kStory[] = "pointskin: interrupted; nothing was written\n";
     const std::size_t bytes = tells.load() ? sizeof kStory - 1 : 0;
-    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kStory, bytes);
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kStory, bytes);
     _exit(static_cast<int>(ErrorCode::interrupted));
   }
   signal_came.store(true);

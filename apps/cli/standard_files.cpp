@@ -26,7 +26,7 @@ void hold(int number, int access) {
 
 void write_all(int file, const char* bytes, std::size_t count) {
   while (count > 0) {
-    const ssize_t written = write(file, bytes, count);
+    const ssize_t written = ::write(file, bytes, count);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) throw Error(ErrorCode::over_limit, "stdin does not fit into memory");
     bytes += written;
@@ -37,7 +37,7 @@ void write_all(int file, const char* bytes, std::size_t count) {
 void copy_stdin_to(int file) {
   std::vector<char> block(std::size_t{1} << 20);
   for (;;) {
-    const ssize_t count = read(STDIN_FILENO, block.data(), block.size());
+    const ssize_t count = ::read(STDIN_FILENO, block.data(), block.size());
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw Error(ErrorCode::invalid_input, fmt::format("stdin: {}", std::strerror(errno)));
     if (count == 0) return;

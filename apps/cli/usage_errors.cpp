@@ -16,7 +16,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-Names commands_of(const CLI::App& program) {
+Names names_of_commands(const CLI::App& program) {
   Names names;
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
@@ -71,7 +71,7 @@ std::string no_such_option(const CLI::App& program, const CLI::App& command, con
 
 /// The arguments begin with something that is no command.
 std::string no_command(const CLI::App& program, const Names& args) {
-  if (args.empty()) return "a command is missing: " + listed(commands_of(program));
+  if (args.empty()) return "a command is missing: " + listed(names_of_commands(program));
   const std::string& first = args.front();
   std::error_code ignored;
   const bool is_file = first == "-" || std::filesystem::exists(first, ignored) || first.find('.') != std::string::npos;
@@ -143,7 +143,7 @@ const CLI::App* command_of(const CLI::App& program, const Names& args) {
 }
 
 std::string no_such_command(const CLI::App& program, const std::string& name) {
-  const Names commands = commands_of(program);
+  const Names commands = names_of_commands(program);
   const std::string meant = nearest(name, commands);
   return fmt::format("there is no command '{}'; {}", name,
                      meant.empty() ? "there are " + listed(commands) : fmt::format("did you mean '{}'?", meant));

@@ -42,7 +42,7 @@ test('trim cuts what was tinted', { skip: noBrowser(), timeout: 180_000 }, async
   const studio = await Studio.open({ args: ['--demo'] });
   try {
     await studio.drawn();
-    const whole = (await studio.client.request('hello')).scene.triangles;
+    const whole = (await state(studio, 0, now => now.triangles > 0)).triangles;  // a mesh may be drawn before it is told
     const plain = await studio.picture();
     const since = studio.client.events.length;
     const slider = studio.at('opt-trim');

@@ -19,7 +19,7 @@ class ClosestPointOf : public testing::TestWithParam<const char*> {
   std::unique_ptr<Shape> shape_ = make_shape(GetParam());
   exec::Cpu ex_;
   ClosestPoint closest_{ex_, *shape_, 100'000};
-  Cloud cloud_ = sample_surface(*shape_, {.points = 200'000, .seed = 21});
+  Cloud cloud_ = sample_surface(*shape_, {.points = 50'000, .seed = 21});
 
   [[nodiscard]] double nearest_sample(const Vec3d& q) const {
     double nearest = std::numeric_limits<double>::infinity();

@@ -106,8 +106,8 @@ TEST(Metrics, AgreeWithThoseOfAFineMeshOfTheShape) {
 
 TEST(Metrics, DoNotDependOnThreadsOrTheOriginOfTheMesh) {
   const auto shape = make_shape("gyroid");
-  const CompareOptions one{.samples = 3'000, .tau = 0.01, .threads = 1},
-      three{.samples = 3'000, .tau = 0.01, .threads = 3};
+  const CompareOptions one{.samples = 1'000, .tau = 0.01, .threads = 1},
+      three{.samples = 1'000, .tau = 0.01, .threads = 3};
   const Mesh mesh = sphere_mesh(1, 3);
   const auto text = [&](const Mesh& of, const CompareOptions& options) {
     return to_json(measure_against(of, "gyroid", *shape, options), options, 100).dump();

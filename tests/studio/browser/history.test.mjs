@@ -6,7 +6,7 @@ import { Client } from './client.mjs';
 import { Program } from './program.mjs';
 import { operationFrom, randomFrom } from './random_operations.mjs';
 
-const operations = Number(process.env.POINTSKIN_HISTORY_OPERATIONS ?? 60);
+const operations = Number(process.env.POINTSKIN_HISTORY_OPERATIONS ?? 100);
 
 test(`${operations} random operations undone to the first and redone to the last`, { timeout: 900_000 }, async () => {
   const program = await Program.start();

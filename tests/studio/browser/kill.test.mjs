@@ -5,7 +5,7 @@ import { Client } from './client.mjs';
 import { Program, temporaryFolder } from './program.mjs';
 import { operationFrom, randomFrom } from './random_operations.mjs';
 
-const rounds = 20;
+const rounds = Number(process.env.POINTSKIN_KILL_ROUNDS ?? 8);
 
 /** Applies operations until the program dies. @returns the acknowledged ones, with the digest after some */
 async function workUntilKilled(program, client, random, known) {

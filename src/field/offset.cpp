@@ -131,7 +131,7 @@ struct FillLevel {
   }
 
   /// Minus the signed distance, in finest cells.
-  /// @param nearest  the triangle to begin at; then the nearest one
+  /// @param at  the triangle to begin at; then the nearest one
   [[nodiscard]] PSK_HD float search(const octree::LevelView& level, std::int64_t n, std::int32_t& at) const {
     const Vec3f x = corners::place_of(level, static_cast<std::int32_t>(n));
     const NearTriangle found = signed_distance.surface.nearest(x, at);
@@ -141,7 +141,8 @@ struct FillLevel {
   }
 };
 
-/// At all levels, level-major. One launch a level; 4 bytes a node of two levels above the finest besides the result.
+/// At all levels, level-major. One launch a level; besides the result 4 bytes a node of two levels at a time, the finest not
+/// among them.
 template <exec::Space Exec>
 exec::Buffer<float> fill_levels(Exec& ex, const octree::OctreeView& tree, const SignedDistance& signed_distance) {
   auto values = exec::make_buffer<float>(ex, tree.nodes);

@@ -2,10 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <utility>
 #include <vector>
 
+#include "core/hilbert.hpp"
 #include "core/vec3.hpp"
 #include "exec/cpu_primitives.hpp"
 #include "field/triangle_boxes.hpp"
@@ -116,6 +120,33 @@ TEST(TriangleBoxes, OfTrianglesThatAreAllTheSame) {
   Mesh mesh = test::icosphere_mesh(1, 0.3, {0.5, 0.5, 0.5});
   mesh.triangles.assign(1'000, mesh.triangles[5]);
   expect_exact(mesh);
+}
+
+/// The cells of a cube that is one of a power of two lie together on the curve, and it goes from each to a neighbour.
+TEST(HilbertKey, GoesFromCellToNeighbour) {
+  constexpr int kCells = 1 << kHilbertBits;
+  constexpr int kWide = 16;
+  for (const std::array<int, 3>& first : {std::array<int, 3>{0, 0, 0}, {48, 16, 32}, {kCells - kWide, 0, kCells / 2}}) {
+    std::vector<std::pair<std::uint64_t, std::array<int, 3>>> cells;
+    for (int i = 0; i < kWide * kWide * kWide; ++i) {
+      const std::array<int, 3> c{first[0] + i % kWide, first[1] + i / kWide % kWide, first[2] + i / (kWide * kWide)};
+      const auto middle = [&](std::size_t a) { return (static_cast<float>(c[a]) + 0.5F) / static_cast<float>(kCells); };
+      cells.emplace_back(hilbert_key({middle(0), middle(1), middle(2)}), c);
+    }
+    std::sort(cells.begin(), cells.end());
+    for (std::size_t i = 1; i < cells.size(); ++i) {
+      ASSERT_EQ(cells[i].first, cells[i - 1].first + 1);
+      int steps = 0;
+      for (std::size_t a = 0; a < 3; ++a) steps += std::abs(cells[i].second[a] - cells[i - 1].second[a]);
+      ASSERT_EQ(steps, 1) << i;
+    }
+  }
+}
+
+TEST(HilbertKey, MovesPlacesIntoTheCube) {
+  EXPECT_EQ(hilbert_key({-3, 0.25F, 0.5F}), hilbert_key({0, 0.25F, 0.5F}));
+  EXPECT_EQ(hilbert_key({0.25F, 7, 1e30F}), hilbert_key({0.25F, 0.999999F, 0.999999F}));
+  EXPECT_LT(hilbert_key({1, 1, 1}), std::uint64_t{1} << 3 * kHilbertBits);
 }
 
 TEST(BoundingDisc, IsNoFartherThanWhatItHolds) {

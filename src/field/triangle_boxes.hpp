@@ -164,16 +164,18 @@ struct TriangleBoxes {
   [[nodiscard]] TriangleBoxesView view() const { return {triangles.cview(), discs.cview(), boxes.cview(), levels}; }
 };
 
+/// The triangle with its corners' places in place of their numbers.
+PSK_HD inline PlacedTriangle placed(ArrayView<const Vec3f> vertices, const Triangle& ids) {
+  return {vertices[ids[0]], vertices[ids[1]], vertices[ids[2]]};
+}
+
 struct KeyOfTriangle {
   ArrayView<const Vec3f> vertices;
   ArrayView<const Triangle> triangles;
   ArrayView<std::uint64_t> keys;
   ArrayView<std::int32_t> order;
   PSK_HD void operator()(std::int64_t t) const {
-    const std::int32_t* ids = triangles[t].data();
-    const Vec3f& a = vertices[ids[0]];
-    const Vec3f& b = vertices[ids[1]];
-    const Vec3f& c = vertices[ids[2]];
+    const auto& [a, b, c] = placed(vertices, triangles[t]);
     keys[t] = hilbert_key({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3});
     order[t] = static_cast<std::int32_t>(t);
   }
@@ -183,11 +185,8 @@ struct PlaceTriangle {
   ArrayView<const Vec3f> vertices;
   ArrayView<const Triangle> triangles;
   ArrayView<const std::int32_t> order;
-  ArrayView<PlacedTriangle> placed;
-  PSK_HD void operator()(std::int64_t i) const {
-    const std::int32_t* ids = triangles[order[i]].data();
-    placed[i] = {vertices[ids[0]], vertices[ids[1]], vertices[ids[2]]};
-  }
+  ArrayView<PlacedTriangle> placed_triangles;
+  PSK_HD void operator()(std::int64_t i) const { placed_triangles[i] = placed(vertices, triangles[order[i]]); }
 };
 
 struct DiscOfNode {

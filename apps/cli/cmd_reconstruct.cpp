@@ -20,6 +20,7 @@
 #include "reconstruct_each.hpp"
 #include "reconstruct_run.hpp"
 #include "report.hpp"
+#include "spooled_input.hpp"
 #include "stopwatch.hpp"
 #include "summary_words.hpp"
 #include "unused_options.hpp"
@@ -44,7 +45,8 @@ void check_split(const ReconstructArgs& args) {
     throw_usage("--split needs --max-memory: blocks are what it holds");
   if (!args.report.empty()) throw_usage("--split and --report exclude each other: a report measures one mesh");
   if (!is_one_of_ranks() && !may_work_in_blocks(args))
-    throw_usage("--split needs one binary PLY or NPY file as input, .ply as output, and a depth of at least 7");
+    throw_usage(
+        "--split needs one file of text, binary PLY or NPY as input, .ply as output, and a depth of at least 7");
   for (const std::string& input : args.inputs)
     if (is_a_split_output(input, args.output))
       throw_usage(fmt::format("{}: --split with -o {} may write this file", input, args.output));
@@ -95,6 +97,8 @@ int run(const ReconstructArgs& given) {
   (void)(args.leaves_device_open() ? parse_device("cpu", args.threads) : args.chosen());
   warn_about_options(args, options);
   if (args.each) return reconstruct_each(args);
+  if (may_work_in_blocks(args) && comes_through_pipe(args))
+    args.inputs.front() = spool_pipe(args.inputs.front(), args.temp);
 
   std::unique_ptr<Reconstructor> reconstructor;
   const Record record = run_reconstruction(args, watch, reconstructor);

@@ -23,6 +23,7 @@
 #include "ranks.hpp"
 #include "run_memory.hpp"
 #include "signals.hpp"
+#include "spooled_input.hpp"
 #include "summary_words.hpp"
 
 namespace pointskin::cli {
@@ -101,27 +102,31 @@ void warn_about_left_out(const FilesReport& files) {
   warn_about_zero_normals(files.without_normal);
 }
 
-/// From one file that can be read in parts to binary PLY.
+/// From one file that can be read in parts, or a pipe, to binary PLY.
 bool suits_blocks(const ReconstructArgs& args) {
   if (args.each || args.repeat > 0 || args.problems) return false;
   if (args.options.depth != Options::kAutomaticDepth && args.options.depth < kShallowest) return false;
   const bool to_ply = !args.ascii && (std::filesystem::path(args.output).extension() == ".ply" ||
                                       (args.dry_run && args.output.empty()));
   if (args.inputs.size() != 1 || !to_ply || args.given.has("--width")) return false;
-  return reads_in_parts(args.inputs.front());
+  return comes_through_pipe(args) || reads_in_parts(args.inputs.front());
 }
 
 }  // namespace
+
+bool comes_through_pipe(const ReconstructArgs& args) {
+  return !is_one_of_ranks() && args.inputs.size() == 1 && is_pipe(args.inputs.front());
+}
 
 bool may_work_in_blocks(const ReconstructArgs& args) { return args.options.max_memory_bytes > 0 && suits_blocks(args); }
 
 void check_ranks(const ReconstructArgs& args) {
   if (!suits_blocks(args))
-    throw_usage(
-        fmt::format("several ranks reconstruct one binary PLY or NPY file to a binary .ply file, with a --depth of at "
-                    "least {}; not with "
-                    "--each, --repeat or --width",
-                    kShallowest));
+    throw_usage(fmt::format(
+        "several ranks reconstruct one file of text, binary PLY or NPY to a binary .ply file, with a --depth of at "
+        "least {}; not with "
+        "--each, --repeat or --width",
+        kShallowest));
 }
 
 Device device_of_rank(const ReconstructArgs& args) {
@@ -136,7 +141,8 @@ bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, co
   if (args.split) return true;
   if (!missing(args, options).empty()) return false;
   std::error_code error;
-  const auto bytes = std::filesystem::file_size(args.inputs.front(), error);
+  const std::string& input = args.inputs.front();
+  const auto bytes = std::filesystem::file_size(input == "-" ? "/dev/stdin" : input, error);
   return !error && static_cast<std::int64_t>(bytes) > bytes_for_work(args, device) / 2;
 }
 

@@ -43,7 +43,8 @@ struct FilesReport {
       outputs;  ///< that were written; with ranks the first one's report names those of ScaleOptions::split
 };
 
-/// Whether the points of a file can be read in parts: a binary PLY or NPY file whose rows are of one length.
+/// Whether the points of a file can be read in parts: text (of columns, or PLY), or a binary PLY or NPY file whose rows are of one
+/// length; "-" for stdin if that is such a file.
 /// @throws Error invalid_input if it cannot be opened, or its header is garbled
 bool reads_in_parts(const std::string& path);
 
@@ -65,7 +66,7 @@ std::vector<std::string> missing_in_blocks(const std::vector<std::string>& input
 /// 60, and 4 a node of the octree, and the mesh; with attributes twice and then once their own, with Options::trim 4 more a point,
 /// and the mesh twice. Time: some two and a half
 /// times that of the whole in memory.
-/// @param inputs   one binary PLY or NPY file of oriented points
+/// @param inputs   one file of oriented points, for which reads_in_parts() is true; text is parsed anew in every pass
 /// @param output   a PLY file, written whole or not at all; with ScaleOptions::split one for each block that has triangles, named by
 ///                 it and a number from 0 on before the extension, such as mesh_0003.ply: each has its own triangles, and the
 ///                 vertices that they have, those at borders with the same bytes in several; all appear when all are written

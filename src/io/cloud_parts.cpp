@@ -8,10 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "io/formats.hpp"
 #include "io/numpy_table.hpp"
 #include "io/ply_body.hpp"
 #include "io/ply_header.hpp"
+#include "io/readers.hpp"
 #include "io/shift.hpp"
+#include "io/table_parts.hpp"
+#include "io/text_parts.hpp"
 
 namespace pointskin::io {
 namespace {
@@ -19,16 +23,18 @@ namespace {
 /// @throws Error invalid_input if there is none
 bool is_regular(const std::string& path) {
   std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const std::filesystem::file_status status = std::filesystem::status(path == "-" ? "/dev/stdin" : path, error);
   if (path != "-" && status.type() == std::filesystem::file_type::not_found) (void)Input(path);  // tells so
-  return path != "-" && std::filesystem::is_regular_file(status);
+  return std::filesystem::is_regular_file(status);
 }
+
+/// How the points of a file are read in parts.
+enum class Layout : std::uint8_t { none, ply_text, columns_of_text, in_place };
 
 /// The vertices of a binary PLY file; nothing where rows have lists: only walking over them shows that the file is
 /// whole.
 std::optional<PointTable> vertices_in_place(const Source& source) {
   const PlyHeader header = parse_ply_header(source);
-  if (header.encoding == PlyEncoding::ascii) return std::nullopt;
   std::optional<PointTable> vertices;
   std::size_t at = header.body;
   for (const PlyElement& element : header.elements) {
@@ -44,14 +50,30 @@ std::optional<PointTable> vertices_in_place(const Source& source) {
 }
 
 std::optional<PointTable> points_in_place(const Source& source) {
-  if (is_ply(source.bytes)) return vertices_in_place(source);
-  if (is_npy(source.bytes)) return table_of(source, parse_npy(source)).table();
-  return std::nullopt;
+  return is_ply(source.bytes) ? vertices_in_place(source) : table_of(source, parse_npy(source)).table();
+}
+
+bool is_text(const Source& source) {
+  const bool has_columns = read_format(source, false).run.read_cloud == parse_text;
+  return has_columns && !(extension_of(source.name) == ".xyz" && is_binary_xyz(source));
+}
+
+Layout layout_of(const Input& input) {
+  const Source source = input.source();
+  if (is_ply(source.bytes)) {
+    const PlyHeader header = parse_ply_header(source);
+    if (header.encoding == PlyEncoding::ascii)
+      return header.find("vertex") != nullptr ? Layout::ply_text : Layout::none;
+  } else if (!is_npy(source.bytes)) {
+    return is_text(source) ? Layout::columns_of_text : Layout::none;
+  }
+  const std::optional<PointTable> table = points_in_place(source);
+  return table && TableParts::holds(input, *table) ? Layout::in_place : Layout::none;
 }
 
 /// Rows that are read at once; whole runs of OriginSearch.
-std::int64_t rows_at_once(const TableParts& table) {
-  const std::int64_t row_bytes = std::max<std::int64_t>(1, table.row_bytes());
+std::int64_t rows_at_once(const PointRows& points) {
+  const std::int64_t row_bytes = std::max<std::int64_t>(1, points.row_bytes());
   return std::max(kRunRows, CloudParts::kBufferBytes / row_bytes / kRunRows * kRunRows);
 }
 
@@ -62,28 +84,44 @@ PointTable coordinates_of(PointTable table) {
 
 }  // namespace
 
-std::unique_ptr<CloudParts> CloudParts::open(const std::string& path) {
+bool CloudParts::can_open(const std::string& path) {
+  return is_regular(path) && layout_of(Input(path)) != Layout::none;
+}
+
+std::unique_ptr<CloudParts> CloudParts::open(exec::Cpu& ex, const std::string& path) {
   if (!is_regular(path)) return nullptr;
   std::unique_ptr<CloudParts> parts(new CloudParts(path));
-  const std::optional<PointTable> table = points_in_place(parts->input_.source());
-  if (!table || !TableParts::holds(parts->input_, *table)) return nullptr;
-  parts->rows_.emplace(parts->input_, *table);
-  parts->coordinates_.emplace(parts->input_, coordinates_of(*table));
+  const Input& input = parts->input_;
+  switch (layout_of(input)) {
+    case Layout::none:
+      return nullptr;
+    case Layout::ply_text:
+      parts->rows_ = TextParts::of_ply(ex, input, parse_ply_header(input.source()));
+      break;
+    case Layout::columns_of_text:
+      parts->rows_ = TextParts::of_columns(ex, input);
+      break;
+    case Layout::in_place: {
+      const PointTable table = *points_in_place(input.source());
+      parts->rows_ = std::make_unique<TableParts>(input, table);
+      parts->coordinates_ = std::make_unique<TableParts>(input, coordinates_of(table));
+    }
+  }
   return parts;
 }
 
 void CloudParts::choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift) {
   if (shift) {
     Bytes none;
-    assemble(ex, input_.source(), rows_->read(0, 0, none), shift);  // refuses what cannot be
+    assemble(ex, input_.source(), rows_->read(ex, 0, 0, none), shift);  // refuses what cannot be
     origin_ = *shift;
     return;
   }
   Bytes buffer;
-  const std::int64_t step = rows_at_once(*coordinates_);
+  const std::int64_t step = rows_at_once(coordinates());
   const auto for_parts = [&](const auto& use) {
     for (std::int64_t first = 0; first < rows(); first += step)
-      use(coordinates_->read(first, std::min(step, rows() - first), buffer));
+      use(coordinates().read(ex, first, std::min(step, rows() - first), buffer));
   };
   OriginSearch search;
   for_parts([&](const PointTable& part) { search.add(ex, input_.source(), part); });
@@ -99,11 +137,11 @@ void CloudParts::choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift)
 
 std::vector<Attribute> CloudParts::attributes(exec::Cpu& ex) const {
   Bytes none;
-  return std::move(assemble(ex, input_.source(), rows_->read(0, 0, none), Vec3d{}).attributes);
+  return std::move(assemble(ex, input_.source(), rows_->read(ex, 0, 0, none), Vec3d{}).attributes);
 }
 
 Cloud CloudParts::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, Bytes& buffer) const {
-  Cloud cloud = assemble(ex, input_.source(), rows_->read(first, count, buffer), origin_);
+  Cloud cloud = assemble(ex, input_.source(), rows_->read(ex, first, count, buffer), origin_);
   if (!keeps_zero_normals_ && std::find(cloud.normals.begin(), cloud.normals.end(), Vec3f{}) != cloud.normals.end()) {
     std::vector<bool> keep(cloud.normals.size());
     std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(),

@@ -12,23 +12,28 @@
 
 #include "exec/cpu.hpp"
 #include "io/input.hpp"
-#include "io/table_parts.hpp"
+#include "io/point_rows.hpp"
 
 namespace pointskin::io {
 
 /// The points that read_cloud() reads, in its order and with its origin, part by part.
 class CloudParts {
  public:
-  using Bytes = TableParts::Bytes;
+  using Bytes = PointRows::Bytes;
 
-  /// @returns null if the points do not lie at equal distances in a file, or it cannot be known that the file is whole:
-  ///          text, compressed data, streams, PLY with lists, formats other than PLY and NPY
+  /// True for text (PLY too), and for binary PLY and NPY files whose points lie at equal distances; false for pipes, compressed data,
+  /// binary PLY with lists of vertices or faces, as it cannot be known that the file is whole, and for other formats.
   /// @throws Error invalid_input if it cannot be read, or its header is garbled
-  static std::unique_ptr<CloudParts> open(const std::string& path);
+  static bool can_open(const std::string& path);
+
+  /// Of text all lines are read.
+  /// @returns null where can_open() is false
+  /// @throws Error invalid_input if it cannot be read, or is garbled
+  static std::unique_ptr<CloudParts> open(exec::Cpu& ex, const std::string& path);
 
   /// Rows of the file; some may hold no point.
   [[nodiscard]] std::int64_t rows() const { return rows_->rows(); }
-  /// Of a row in the file.
+  /// About that of a row in the file.
   [[nodiscard]] std::int64_t row_bytes() const { return rows_->row_bytes(); }
 
   /// Chooses the origin, as ReadOptions::shift says: where that is unset one pass over the coordinates, or two; 48
@@ -60,9 +65,10 @@ class CloudParts {
 
  private:
   explicit CloudParts(const std::string& path) : input_(path) {}
+  [[nodiscard]] const PointRows& coordinates() const { return coordinates_ ? *coordinates_ : *rows_; }
 
-  Input input_;  // the header is read from the mapping, the rest is not
-  std::optional<TableParts> rows_, coordinates_;
+  Input input_;                                    // the header is read from the mapping, the rest is not
+  std::unique_ptr<PointRows> rows_, coordinates_;  ///< where coordinates cannot be read alone, these are null
   Vec3d origin_{0, 0, 0};
   bool keeps_zero_normals_ = true;
 };

@@ -274,22 +274,6 @@ const Format* guess(Formats table, std::string_view bytes, bool want_mesh) {
   return last == table.rend() ? nullptr : &*last;
 }
 
-const Format& detect(Formats table, const Source& source, bool want_mesh) {
-  const std::string extension = extension_of(source.name);
-  const Format* format = find_magic(table, source.bytes);
-  if (format == nullptr)
-    format = extension.empty() ? guess(table, source.bytes, want_mesh) : find_extension(table, extension);
-  if (format != nullptr && format->info.built && !format->info.reads_clouds)
-    fail(source, "is " + format->info.name + ", which is written, but not read",
-         "use " + extension_list(want_mesh ? &FormatInfo::reads_meshes : &FormatInfo::reads_clouds, infos_of(table)));
-  if (format != nullptr && format->info.built) return *format;
-  if (format != nullptr)
-    fail(source, "is " + format->info.name + ", which this build was made without",
-         "build it where " + format->info.library + " is installed");
-  fail(source, "has the unknown extension " + in_quotes(extension),
-       "use " + extension_list(want_mesh ? &FormatInfo::reads_meshes : &FormatInfo::reads_clouds, infos_of(table)));
-}
-
 }  // namespace
 
 Format::Format(FormatInfo about, const FormatFunctions& functions) : info(std::move(about)), run(functions) {
@@ -311,15 +295,31 @@ std::vector<FormatInfo> infos_of(Formats table) {
   return infos;
 }
 
+const Format& read_format(const Source& source, bool want_mesh, Formats table) {
+  const std::string extension = extension_of(source.name);
+  const Format* format = find_magic(table, source.bytes);
+  if (format == nullptr)
+    format = extension.empty() ? guess(table, source.bytes, want_mesh) : find_extension(table, extension);
+  if (format != nullptr && format->info.built && !format->info.reads_clouds)
+    fail(source, "is " + format->info.name + ", which is written, but not read",
+         "use " + extension_list(want_mesh ? &FormatInfo::reads_meshes : &FormatInfo::reads_clouds, infos_of(table)));
+  if (format != nullptr && format->info.built) return *format;
+  if (format != nullptr)
+    fail(source, "is " + format->info.name + ", which this build was made without",
+         "build it where " + format->info.library + " is installed");
+  fail(source, "has the unknown extension " + in_quotes(extension),
+       "use " + extension_list(want_mesh ? &FormatInfo::reads_meshes : &FormatInfo::reads_clouds, infos_of(table)));
+}
+
 Cloud parse_cloud(const Source& source, const ReadOptions& options, Formats table) {
-  const Format& format = detect(table, source, false);
+  const Format& format = read_format(source, false, table);
   exec::Cpu ex(options.threads);
   if (format.run.read_cloud != nullptr) return format.run.read_cloud(ex, source, options);
   return cloud_of_vertices(format.run.read_mesh(ex, source, options));
 }
 
 Mesh parse_mesh(const Source& source, const ReadOptions& options, Formats table) {
-  const Format& format = detect(table, source, true);
+  const Format& format = read_format(source, true, table);
   if (!format.info.reads_meshes)
     fail(source, "is a file of points, not a mesh",
          "name a " + extension_list(&FormatInfo::reads_meshes, infos_of(table)) + " file");

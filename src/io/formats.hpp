@@ -48,7 +48,11 @@ Formats formats();
 /// What the public functions tell of a table.
 std::vector<FormatInfo> infos_of(Formats table);
 
-/// Reads `source` in the format that its first bytes tell, else its extension, else (no extension, stdin) its content.
+/// The format in which `source` is read: the one that its first bytes tell, else its extension, else (no extension, stdin) its content.
+/// @throws Error invalid_input for an unknown extension, or a format that is not read
+const Format& read_format(const Source& source, bool want_mesh, Formats table = formats());
+
+/// Reads `source` in that format.
 /// @throws Error invalid_input for an unknown extension, for points where a mesh is wanted, or as the reader
 Cloud parse_cloud(const Source& source, const ReadOptions& options, Formats table = formats());
 Mesh parse_mesh(const Source& source, const ReadOptions& options, Formats table = formats());

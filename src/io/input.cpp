@@ -24,26 +24,26 @@ void fail_to_read(const std::string& name, int error) {
 
 namespace {
 
-/// Does not wait until somebody opens a pipe to write into it; -1 for stdin.
+/// Does not wait until somebody opens a pipe to write into it.
 int open_input(const std::string& path) {
-  return path == "-" ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  return path == "-" ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                     : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
 }
+
+/// False for a stdin of which another program has read a part.
+bool is_at_its_beginning(int fd) { return ::lseek(fd, 0, SEEK_CUR) == 0; }
 
 }  // namespace
 
 Input::Input(const std::string& path) : name_(path == "-" ? "stdin" : path), file_(open_input(path)) {
-  if (path == "-") {
-    read_all(STDIN_FILENO);
-  } else {
-    if (!file_.valid()) fail_to_read(name_, errno);
-    struct stat status {};
-    if (::fstat(file_.get(), &status) != 0) fail_to_read(name_, errno);
-    if (S_ISDIR(status.st_mode)) fail({name_, {}}, "is a folder", "name a file in it");
-    if (S_ISREG(status.st_mode) && status.st_size > 0)
-      mapping_.map(file_.get(), static_cast<std::size_t>(status.st_size));
-    // Some file systems cannot map, and files of /proc claim to be empty.
-    if (!mapping_.mapped()) read_all(file_.get());
-  }
+  if (!file_.valid()) fail_to_read(name_, errno);
+  struct stat status {};
+  if (::fstat(file_.get(), &status) != 0) fail_to_read(name_, errno);
+  if (S_ISDIR(status.st_mode)) fail({name_, {}}, "is a folder", "name a file in it");
+  if (S_ISREG(status.st_mode) && status.st_size > 0 && is_at_its_beginning(file_.get()))
+    mapping_.map(file_.get(), static_cast<std::size_t>(status.st_size));
+  // Some file systems cannot map, and files of /proc claim to be empty.
+  if (!mapping_.mapped()) read_all(file_.get());
   if (source().bytes.empty()) fail({name_, {}}, "is empty", "check the program that wrote it");
 }
 

@@ -14,8 +14,8 @@ namespace pointskin::io {
 /// @throws Error invalid_input with the system's words for `error`, an errno
 [[noreturn]] void fail_to_read(const std::string& name, int error);
 
-/// Opens `path` ("-": stdin) and holds its bytes. Regular files are mapped read-only; pipes, devices and stdin are
-/// read to their end.
+/// Opens `path` ("-": stdin) and holds its bytes. Regular files are mapped read-only, stdin too if it is one from its
+/// beginning; pipes and devices are read to their end.
 class Input {
  public:
   /// @throws Error invalid_input if `path` is missing, a directory, unreadable or empty
@@ -29,6 +29,11 @@ class Input {
   /// Copies bytes of the file without looking at its mapping, whose pages would stay in memory. For many threads at once.
   /// @throws Error invalid_input if they are not there any more, or cannot be read
   void read_at(std::size_t at, std::size_t bytes, char* out) const;
+
+  /// Gives back the memory of bytes of the source that are not needed for a while.
+  void release(std::string_view some) const noexcept {
+    if (mapping_.mapped()) mapping_.release(some);
+  }
 
   /// To be called when the bytes have been used: a mapped file may have lost some since, which then read as zeros.
   /// @throws Error invalid_input if it did

@@ -28,8 +28,8 @@ bool is_row(std::string_view line) {
   return !(*first == '/' && first + 1 != line.end() && first[1] == '/');
 }
 
-LineIndex index_lines(exec::Cpu& ex, std::string_view text, std::int64_t first_line) {
-  LineIndex index{cut_at_lines(text), 0};
+LineIndex index_lines(exec::Cpu& ex, std::string_view text, std::int64_t first_line, std::int64_t first_row) {
+  LineIndex index{cut_at_lines(text), first_row};
   run_in_order(ex, index.block_count(), [&](std::int64_t b) {
     LineBlock& block = index.blocks[static_cast<std::size_t>(b)];
     for_each_line(block.text, [&](std::string_view line) {
@@ -47,7 +47,20 @@ LineIndex index_lines(exec::Cpu& ex, std::string_view text, std::int64_t first_l
     first_line += lines;
     index.rows += rows;
   }
+  index.end_line = first_line;
   return index;
+}
+
+LineIndex blocks_of_rows(const LineIndex& index, std::int64_t first, std::int64_t last) {
+  const auto begins_behind = [](std::int64_t row, const LineBlock& block) { return row < block.first_row; };
+  const auto begin = index.blocks.begin();
+  const auto behind = std::upper_bound(begin, index.blocks.end(), first, begins_behind);
+  const auto from = behind == begin ? begin : behind - 1;  // of blocks without rows the last
+  const auto to =
+      std::max(from, std::lower_bound(begin, index.blocks.end(), last,
+                                      [](const LineBlock& block, std::int64_t row) { return block.first_row < row; }));
+  const auto in = [&](auto at) { return at == index.blocks.end(); };
+  return {{from, to}, in(to) ? index.rows : to->first_row, in(to) ? index.end_line : to->first_line};
 }
 
 void Values::fail_garbled(const char* what) {

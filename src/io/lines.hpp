@@ -35,7 +35,8 @@ struct LineBlock {
 /// Blocks of a text with the line and row numbers at which they start. Borders depend on the text alone.
 struct LineIndex {
   std::vector<LineBlock> blocks;
-  std::int64_t rows = 0;
+  std::int64_t rows = 0;      ///< up to its end
+  std::int64_t end_line = 1;  ///< the line behind its last
 
   [[nodiscard]] std::int64_t block_count() const noexcept { return static_cast<std::int64_t>(blocks.size()); }
   [[nodiscard]] std::int64_t rows_before(std::int64_t block) const noexcept {
@@ -45,7 +46,11 @@ struct LineIndex {
 
 /// Counts lines and rows of `text` in parallel. O(n), even for a text without a line end.
 /// @param first_line  number of the first line of `text` in its file
-LineIndex index_lines(exec::Cpu& ex, std::string_view text, std::int64_t first_line = 1);
+/// @param first_row   rows of the file before it
+LineIndex index_lines(exec::Cpu& ex, std::string_view text, std::int64_t first_line = 1, std::int64_t first_row = 0);
+
+/// The blocks that hold rows [first, last).
+LineIndex blocks_of_rows(const LineIndex& index, std::int64_t first, std::int64_t last);
 
 /// Calls f(text of the line) for every line of `text`, in order, until it returns false.
 template <class F>

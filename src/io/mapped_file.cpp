@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -111,6 +112,14 @@ bool MappedFile::map(int fd, std::size_t size) {
 
 bool MappedFile::lost_bytes() const noexcept {
   return slot_ >= 0 && ranges[static_cast<std::size_t>(slot_)].lost.load();
+}
+
+void MappedFile::release(std::string_view some) const noexcept {
+  if (some.empty()) return;
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t begin = static_cast<std::size_t>(some.data() - begin_) / page * page;
+  const std::size_t end = std::min(size_, static_cast<std::size_t>(some.data() - begin_) + some.size());
+  ::madvise(const_cast<char*>(begin_) + begin, end - begin, MADV_DONTNEED);
 }
 
 void MappedFile::unmap() noexcept {

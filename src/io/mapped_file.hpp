@@ -24,6 +24,9 @@ class MappedFile {
   [[nodiscard]] std::string_view bytes() const noexcept { return {begin_, size_}; }
   [[nodiscard]] bool lost_bytes() const noexcept;
 
+  /// Gives back the memory in which bytes of the file lie; they are read again when they are looked at.
+  void release(std::string_view some) const noexcept;
+
  private:
   void unmap() noexcept;
 

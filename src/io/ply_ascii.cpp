@@ -5,20 +5,20 @@
 #include "core/format.hpp"
 #include "io/lines.hpp"
 #include "io/ply_body.hpp"
+#include "io/ply_row.hpp"
 #include "io/polygon.hpp"
 
 namespace pointskin::io {
 namespace {
-
-/// Lines of an element: one a row, none if its rows hold nothing.
-std::int64_t lines_of(const PlyElement& element) { return element.properties.empty() ? 0 : element.count; }
 
 /// Where an element lies.
 struct RowRange {
   std::int64_t first, last;
 };
 
-double scalar(Values& values, const PlyProperty& property) {
+}  // namespace
+
+double read_scalar(Values& values, const PlyProperty& property) {
   if (!is_integer(property.type)) return values.number();
   Values before = values;
   const double value = values.number();
@@ -35,7 +35,7 @@ double scalar(Values& values, const PlyProperty& property) {
   return value;
 }
 
-std::int64_t list_length(Values& values) {
+std::int64_t read_list_length(Values& values) {
   Values before = values;
   const std::int64_t length = values.whole();
   if (length < 0) {
@@ -45,19 +45,23 @@ std::int64_t list_length(Values& values) {
   return length;
 }
 
+void check_lines(const Source& source, const PlyElement& element, std::int64_t lines) {
+  if (lines < lines_of(element))
+    fail_at_byte(source,
+                 fmt::format("is truncated, element {} promises {} rows but {} are left", in_quotes(element.name),
+                             element.count, lines),
+                 source.bytes.size(), "copy or export the file again");
+}
+
+namespace {
+
 void read_vertices(exec::Cpu& ex, const PlyInput& input, const PlyElement& vertex, const LineIndex& index,
                    const RowRange& range, PlyBody& body) {
   add_scalars(vertex, body.parsed);
   for_each_row(ex, index, range.first, range.last, [&](const Line& line, std::size_t) {
     Values values(input.source, line);
-    std::size_t column = 0;
-    for (const PlyProperty& property : vertex.properties) {
-      if (property.is_list)
-        for (std::int64_t i = list_length(values); i > 0; --i) values.number();
-      else
-        body.parsed.set(column++, line.row - range.first, scalar(values, property));
-    }
-    values.expect_end();
+    read_scalars(values, vertex,
+                 [&](std::size_t column, double value) { body.parsed.set(column, line.row - range.first, value); });
   });
   body.vertices = body.parsed.table();
 }
@@ -81,7 +85,7 @@ void read_faces(exec::Cpu& ex, const PlyInput& input, const PlyElement& face, co
     Values values(input.source, line);
     std::vector<std::int32_t> corners;
     for (std::size_t p = 0; p < face.properties.size(); ++p) {
-      const std::int64_t count = face.properties[p].is_list ? list_length(values) : 1;
+      const std::int64_t count = face.properties[p].is_list ? read_list_length(values) : 1;
       for (std::int64_t i = 0; i < count; ++i) {
         if (p == list)
           corners.push_back(corner_of(values, vertices));
@@ -102,11 +106,7 @@ void read_ascii_body(exec::Cpu& ex, const PlyInput& input, PlyBody& body) {
   RowRange range{0, 0};
   for (const PlyElement& element : input.header.elements) {
     range.last = range.first + lines_of(element);
-    if (index.rows < range.last)
-      fail_at_byte(input.source,
-                   fmt::format("is truncated, element {} promises {} rows but {} are left", in_quotes(element.name),
-                               element.count, index.rows - range.first),
-                   input.source.bytes.size(), "copy or export the file again");
+    check_lines(input.source, element, index.rows - range.first);
     if (element.name == "vertex" && !element.properties.empty())
       read_vertices(ex, input, element, index, range, body);
     else if (element.name == "face" && input.want_faces && element.count > 0)

@@ -57,7 +57,7 @@ std::int64_t TableParts::row_bytes() const {
                          [](std::int64_t sum, const Band& band) { return sum + std::max(band.stride, band.width); });
 }
 
-PointTable TableParts::read(std::int64_t first, std::int64_t count, Bytes& buffer) const {
+PointTable TableParts::read(exec::Cpu& /*ex*/, std::int64_t first, std::int64_t count, Bytes& buffer) const {
   std::size_t size = 0;
   for (const Band& band : bands_) size += span_bytes(count, band.stride, band.width);
   buffer.resize(size);

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/format.hpp"
 #include "io/lines.hpp"
+#include "io/point_table.hpp"
+#include "io/scalar.hpp"
 
 namespace pointskin::io {
 namespace {
@@ -150,7 +153,19 @@ TextLayout find_layout(const Source& source) {
   return layout;
 }
 
-void add_columns(const Source& source, const TextLayout& layout, ParsedColumns& parsed) {
+void check_rows(const Source& source, const TextLayout& layout, std::int64_t rows) {
+  if (layout.promised >= 0 && layout.promised != rows)
+    fail_at_line(source, fmt::format("the first line promises {} points, but {} follow", layout.promised, rows), 1,
+                 "copy the file again or correct its first line");
+  // Memory is taken for what the first point has, so the other lines must be able to hold as much. In small files the
+  // parser finds the line to blame.
+  constexpr std::size_t kSmall = std::size_t{1} << 20;
+  if (!fits(static_cast<std::uint64_t>(rows), 2 * layout.columns, std::max(kSmall, source.bytes.size() + 1)))
+    fail_at_line(source, fmt::format("most lines have fewer values than the {} of this one", layout.columns),
+                 layout.first_line, "export the file again");
+}
+
+std::vector<std::string> column_names(const Source& source, const TextLayout& layout) {
   std::vector<std::string> names = layout.names;
   if (names.empty()) {
     constexpr std::array<std::size_t, 5> kAgreed{3, 4, 6, 7, 9};
@@ -167,60 +182,76 @@ void add_columns(const Source& source, const TextLayout& layout, ParsedColumns& 
     fail(source, "has two columns named " + in_quotes(*twice), "give every column its own name");
   for (const char* axis : {"x", "y", "z"})
     if (!has_name(names, axis)) fail(source, fmt::format("has no column named {}", axis), kNameAdvice);
-  for (const std::string& name : names)
-    parsed.add(name, is_coordinate(name) ? AttributeType::float64 : AttributeType::float32);
+  return names;
 }
 
 namespace {
 
-bool are_bytes(const ParsedColumns& parsed, std::size_t first) {
-  return parsed.holds_bytes(first) && parsed.holds_bytes(first + 1) && parsed.holds_bytes(first + 2);
+bool is_colour(const std::string& name) {
+  return name == "red" || name == "green" || name == "blue" || name == "alpha";
 }
 
-/// Whole numbers up to one could as well be normals along the axes.
-bool are_surely_colours(const ParsedColumns& parsed, std::size_t first) {
-  return are_bytes(parsed, first) &&
-         (parsed.exceeds(first, 1) || parsed.exceeds(first + 1, 1) || parsed.exceeds(first + 2, 1));
+/// Where columns without names hold a scalar.
+bool holds_scalar(std::size_t columns, std::size_t column) { return column == 3 && (columns == 4 || columns == 7); }
+
+void name_three(std::vector<TextColumn>& columns, std::size_t first, std::array<const char*, 3> names,
+                AttributeType type) {
+  for (std::size_t i = 0; i < 3; ++i) columns[first + i] = {names[i], type};
 }
 
-void name_colours(ParsedColumns& parsed, std::size_t first) {
-  parsed.redeclare(first, "red", AttributeType::uint8);
-  parsed.redeclare(first + 1, "green", AttributeType::uint8);
-  parsed.redeclare(first + 2, "blue", AttributeType::uint8);
+void name_colours(std::vector<TextColumn>& columns, std::size_t first) {
+  name_three(columns, first, {"red", "green", "blue"}, AttributeType::uint8);
 }
 
-void name_normals(ParsedColumns& parsed, std::size_t first) {
-  parsed.redeclare(first, "nx", AttributeType::float32);
-  parsed.redeclare(first + 1, "ny", AttributeType::float32);
-  parsed.redeclare(first + 2, "nz", AttributeType::float32);
+void name_normals(std::vector<TextColumn>& columns, std::size_t first) {
+  name_three(columns, first, {"nx", "ny", "nz"}, AttributeType::float32);
+}
+
+void name_by_values(const Source& source, const SeenValues& seen, std::vector<TextColumn>& columns) {
+  const auto are_bytes = [&](std::size_t first) {
+    return seen.are_bytes(first) && seen.are_bytes(first + 1) && seen.are_bytes(first + 2);
+  };
+  // Whole numbers up to one could as well be normals along the axes.
+  const auto are_surely_colours = [&](std::size_t first) {
+    return are_bytes(first) &&
+           (seen.are_bytes_over_one(first) || seen.are_bytes_over_one(first + 1) || seen.are_bytes_over_one(first + 2));
+  };
+  const std::size_t count = columns.size();
+  for (std::size_t c = 0; c < count; ++c)
+    if (holds_scalar(count, c)) columns[c].name = "scalar";
+  if (count == 6 && are_surely_colours(3))
+    name_colours(columns, 3);
+  else if (count == 6)
+    name_normals(columns, 3);
+  if (count == 7) {
+    if (!are_bytes(4)) fail(source, "the columns 5 to 7 are no colours in 0..255", kNameAdvice);
+    name_colours(columns, 4);
+  }
+  if (count == 9) {
+    const bool colours_last = !are_bytes(3) && are_bytes(6);
+    if (!colours_last && !are_bytes(3))
+      fail(source, "neither the columns 4 to 6 nor 7 to 9 are colours in 0..255", kNameAdvice);
+    name_colours(columns, colours_last ? 6 : 3);
+    name_normals(columns, colours_last ? 3 : 6);
+  }
 }
 
 }  // namespace
 
-void name_columns(const Source& source, const TextLayout& layout, ParsedColumns& parsed) {
-  for (std::size_t c = 0; c < layout.names.size(); ++c) {
-    const std::string& name = layout.names[c];
-    if ((name == "red" || name == "green" || name == "blue" || name == "alpha") && parsed.holds_bytes(c))
-      parsed.redeclare(c, name, AttributeType::uint8);
+std::vector<TextColumn> describe_columns(const Source& source, const TextLayout& layout, const SeenValues& seen) {
+  std::vector<TextColumn> columns;
+  for (std::string& name : column_names(source, layout)) {
+    const AttributeType type = is_coordinate(name) ? AttributeType::float64 : AttributeType::float32;
+    columns.push_back({std::move(name), type});
   }
-  if (!layout.names.empty()) return;
-  const std::size_t columns = layout.columns;
-  if (columns == 4 || columns == 7) parsed.redeclare(3, "scalar", AttributeType::float32);
-  if (columns == 6 && are_surely_colours(parsed, 3))
-    name_colours(parsed, 3);
-  else if (columns == 6)
-    name_normals(parsed, 3);
-  if (columns == 7) {
-    if (!are_bytes(parsed, 4)) fail(source, "the columns 5 to 7 are no colours in 0..255", kNameAdvice);
-    name_colours(parsed, 4);
+  if (layout.names.empty()) name_by_values(source, seen, columns);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (!layout.names.empty() && is_colour(columns[c].name) && seen.are_bytes(c))
+      columns[c].type = AttributeType::uint8;
+    else if (seen.may_be_scalar(c))
+      columns[c].type = seen.scalar_type(c);
   }
-  if (columns == 9) {
-    const bool colours_last = !are_bytes(parsed, 3) && are_bytes(parsed, 6);
-    if (!colours_last && !are_bytes(parsed, 3))
-      fail(source, "neither the columns 4 to 6 nor 7 to 9 are colours in 0..255", kNameAdvice);
-    name_colours(parsed, colours_last ? 6 : 3);
-    name_normals(parsed, colours_last ? 3 : 6);
-  }
+  return columns;
 }
 
 namespace {
@@ -237,37 +268,62 @@ bool loses_digits_as_float(double value) {
 
 }  // namespace
 
-NeededTypes::NeededTypes(const TextLayout& layout) : looked_at_(layout.columns), columns_(layout.columns) {
-  const std::size_t columns = layout.columns;
-  if (layout.names.empty() && (columns == 4 || columns == 7)) looked_at_[3] = true;
-  for (std::size_t c = 0; c < layout.names.size(); ++c) {
-    looked_at_[c] = !is_coordinate(layout.names[c]) && !is_normal(layout.names[c]);
-    columns_[c].may_be_label = sounds_like_label(layout.names[c]);
+SeenValues::SeenValues(const TextLayout& layout) : columns_(layout.columns) {
+  for (std::size_t c = 0; c < layout.columns; ++c) {
+    Column& column = columns_[c];
+    if (layout.names.empty()) {
+      column.may_be_scalar = holds_scalar(layout.columns, c);
+      column.may_be_colour = c >= 3 && layout.columns >= 6 && !column.may_be_scalar;
+      continue;
+    }
+    const std::string& name = layout.names[c];
+    column.may_be_scalar = !is_coordinate(name) && !is_normal(name);
+    column.may_be_colour = is_colour(name);
+    column.may_be_label = sounds_like_label(name);
   }
 }
 
-void NeededTypes::look_at(std::size_t column, double value) {
-  Column& c = columns_[column];
-  const auto is_set = [](const std::atomic<bool>& flag) { return flag.load(std::memory_order_relaxed); };
-  const auto set = [](std::atomic<bool>& flag) { flag.store(true, std::memory_order_relaxed); };
-  if (c.may_be_label && !is_set(c.no_int32)) {
+namespace {
+
+bool is_set(const std::atomic<bool>& flag) { return flag.load(std::memory_order_relaxed); }
+void set(std::atomic<bool>& flag) { flag.store(true, std::memory_order_relaxed); }
+
+}  // namespace
+
+void SeenValues::look_for_bytes(Column& column, double value) {
+  if (is_set(column.no_bytes)) return;
+  const float v = to_float(value);
+  if (!(v >= 0 && v <= 255) || v != std::floor(v))
+    set(column.no_bytes);
+  else if (v > 1 && !is_set(column.over_one))
+    set(column.over_one);
+}
+
+void SeenValues::look_for_digits(Column& column, double value) {
+  if (column.may_be_label && !is_set(column.no_int32)) {
     constexpr double kLowest = std::numeric_limits<std::int32_t>::min();
     constexpr double kHighest = std::numeric_limits<std::int32_t>::max();
-    if (!(value >= kLowest && value <= kHighest) || value != std::floor(value)) set(c.no_int32);
+    if (!(value >= kLowest && value <= kHighest) || value != std::floor(value)) set(column.no_int32);
   }
-  if (is_set(c.loses_digits) || std::isnan(value) || static_cast<double>(to_float(value)) == value) return;
-  if (!is_set(c.inexact)) set(c.inexact);
-  if (loses_digits_as_float(value)) set(c.loses_digits);
+  if (is_set(column.loses_digits) || std::isnan(value) || static_cast<double>(to_float(value)) == value) return;
+  if (!is_set(column.inexact)) set(column.inexact);
+  if (loses_digits_as_float(value)) set(column.loses_digits);
 }
 
-AttributeType NeededTypes::type_of(std::size_t column) const {
+bool SeenValues::are_bytes(std::size_t column) const {
+  return columns_[column].may_be_colour && !columns_[column].no_bytes;
+}
+
+bool SeenValues::are_bytes_over_one(std::size_t column) const { return are_bytes(column) && columns_[column].over_one; }
+
+AttributeType SeenValues::scalar_type(std::size_t column) const {
   const Column& c = columns_[column];
   if (c.may_be_label && !c.no_int32) return AttributeType::int32;
   return c.loses_digits ? AttributeType::float64 : AttributeType::float32;
 }
 
-bool NeededTypes::exceeds_float(std::size_t column) const {
-  const AttributeType type = type_of(column);
+bool SeenValues::exceed_float(std::size_t column) const {
+  const AttributeType type = scalar_type(column);
   return type == AttributeType::float64 || (type == AttributeType::int32 && columns_[column].inexact);
 }
 

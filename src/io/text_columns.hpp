@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/parsed_columns.hpp"
+#include <pointskin/attribute.hpp>
+
 #include "io/source.hpp"
 
 namespace pointskin::io {
@@ -29,44 +30,57 @@ std::vector<std::string> canonical_names(std::vector<std::string> names);
 /// @throws Error invalid_input if there is no point, or its numbers have decimal commas
 TextLayout find_layout(const Source& source);
 
-/// Makes columns for `layout` in `parsed`; columns without names are called x, y, z, "3", "4", ...
+/// @throws Error invalid_input if the file promises another number of points, or cannot hold as many values
+void check_rows(const Source& source, const TextLayout& layout, std::int64_t rows);
+
+/// Names of the columns before their values are known; those without names are called x, y, z, "3", "4", ...
 /// @throws Error invalid_input for a number of columns that has no agreed meaning, or names without x, y, z
-void add_columns(const Source& source, const TextLayout& layout, ParsedColumns& parsed);
+std::vector<std::string> column_names(const Source& source, const TextLayout& layout);
 
-/// Once the values are known: names what had no name, and declares whole numbers in 0..255 under a colour's name uint8.
-/// @throws Error invalid_input if colours are expected and are none
-void name_columns(const Source& source, const TextLayout& layout, ParsedColumns& parsed);
-
-/// What the numbers of a column need, found out as they are read: by several threads at once, and the same whatever
+/// What the numbers of columns are, found out as they are read: by several threads at once, and the same whatever
 /// their order.
-class NeededTypes {
+class SeenValues {
  public:
-  /// Looks at the columns that may become attributes other than colours.
-  explicit NeededTypes(const TextLayout& layout);
+  explicit SeenValues(const TextLayout& layout);
 
   /// Takes a value of the column into account.
   void see(std::size_t column, double value) {
-    if (looked_at_[column]) look_at(column, value);
+    if (columns_[column].may_be_colour) look_for_bytes(columns_[column], value);
+    if (columns_[column].may_be_scalar) look_for_digits(columns_[column], value);
   }
 
-  /// int32 if the column's name sounds like a label's and all its values are whole and fit; else float64 if float32
+  /// Of columns that may hold colours: nothing but whole numbers in 0..255; such, and some are larger than 1.
+  [[nodiscard]] bool are_bytes(std::size_t column) const;
+  [[nodiscard]] bool are_bytes_over_one(std::size_t column) const;
+
+  /// True for columns that may become attributes other than colours.
+  [[nodiscard]] bool may_be_scalar(std::size_t column) const { return columns_[column].may_be_scalar; }
+  /// Of those: int32 if the column's name sounds like a label's and all its values are whole and fit; else float64 if float32
   /// would lose digits that are written: the shortest decimal of its float32 is another number; else float32.
-  [[nodiscard]] AttributeType type_of(std::size_t column) const;
-  /// True if float does not hold the values of the column.
-  [[nodiscard]] bool exceeds_float(std::size_t column) const;
-  [[nodiscard]] bool is_looked_at(std::size_t column) const { return looked_at_[column]; }
+  [[nodiscard]] AttributeType scalar_type(std::size_t column) const;
+  /// True if float does not hold them.
+  [[nodiscard]] bool exceed_float(std::size_t column) const;
 
  private:
-  void look_at(std::size_t column, double value);
-
   /// Flags are only ever set.
   struct Column {
-    std::atomic<bool> loses_digits = false, inexact = false, no_int32 = false;
-    bool may_be_label = false;
+    std::atomic<bool> loses_digits = false, inexact = false, no_int32 = false, no_bytes = false, over_one = false;
+    bool may_be_label = false, may_be_colour = false, may_be_scalar = false;
   };
 
-  std::vector<bool> looked_at_;
+  static void look_for_bytes(Column& column, double value);
+  static void look_for_digits(Column& column, double value);
+
   std::vector<Column> columns_;
 };
+
+struct TextColumn {
+  std::string name;
+  AttributeType type = AttributeType::float32;
+};
+
+/// Once the values are known: names for what had none, and types: whole numbers in 0..255 under a colour's name are uint8.
+/// @throws Error as column_names(), and if colours are expected and are none
+std::vector<TextColumn> describe_columns(const Source& source, const TextLayout& layout, const SeenValues& seen);
 
 }  // namespace pointskin::io

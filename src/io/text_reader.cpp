@@ -1,28 +1,16 @@
 // XYZ, PTS, ASC, TXT and CSV: one point a line.
 #include <pointskin/formats.hpp>
 
-#include <algorithm>
+#include <string>
 #include <vector>
 
-#include "core/format.hpp"
 #include "io/lines.hpp"
+#include "io/parsed_columns.hpp"
 #include "io/readers.hpp"
 #include "io/text_columns.hpp"
 
 namespace pointskin::io {
 namespace {
-
-void check_count(const Source& source, const TextLayout& layout, std::int64_t rows) {
-  if (layout.promised >= 0 && layout.promised != rows)
-    fail_at_line(source, fmt::format("the first line promises {} points, but {} follow", layout.promised, rows), 1,
-                 "copy the file again or correct its first line");
-  // Memory is taken for what the first point has, so the other lines must be able to hold as much. In small files the
-  // parser finds the line to blame.
-  constexpr std::size_t kSmall = std::size_t{1} << 20;
-  if (!fits(static_cast<std::uint64_t>(rows), 2 * layout.columns, std::max(kSmall, source.bytes.size() + 1)))
-    fail_at_line(source, fmt::format("most lines have fewer values than the {} of this one", layout.columns),
-                 layout.first_line, "export the file again");
-}
 
 /// Calls f(column, row, value) for every value, rows in parallel.
 template <class F>
@@ -35,18 +23,16 @@ void for_each_value(exec::Cpu& ex, const Source& source, const LineIndex& index,
   });
 }
 
-/// Declares the types of attributes that are no colours. Few files hold numbers that float does not: those are read
+/// Gives columns the names and types that their values ask for. Few files hold numbers that float does not: those are read
 /// again, so that the others do not take the memory of doubles.
 /// @returns which columns are to be read again; empty: none
-std::vector<bool> type_attributes(const NeededTypes& needed, ParsedColumns& parsed) {
+std::vector<bool> describe(const std::vector<TextColumn>& columns, const SeenValues& seen, ParsedColumns& parsed) {
   std::vector<bool> wide;
-  for (std::size_t c = 0; c < parsed.size(); ++c) {
-    if (!needed.is_looked_at(c) || parsed.declared(c) != AttributeType::float32) continue;
-    const AttributeType type = needed.type_of(c);
-    parsed.redeclare(c, parsed.name(c), type);
-    if (!needed.exceeds_float(c)) continue;
-    parsed.store_as(c, type);
-    wide.resize(parsed.size());
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    parsed.redeclare(c, columns[c].name, columns[c].type);
+    if (!seen.may_be_scalar(c) || columns[c].type == AttributeType::uint8 || !seen.exceed_float(c)) continue;
+    parsed.store_as(c, columns[c].type);
+    wide.resize(columns.size());
     wide[c] = true;
   }
   return wide;
@@ -59,17 +45,16 @@ Cloud parse_text(exec::Cpu& ex, const Source& source, const ReadOptions& options
   const TextLayout layout = find_layout(source);
   const LineIndex index = index_lines(ex, without_byte_order_mark(source.bytes));
   const std::int64_t rows = index.rows - layout.header_rows;
-  check_count(source, layout, rows);
+  check_rows(source, layout, rows);
   ParsedColumns parsed;
-  add_columns(source, layout, parsed);
+  for (const std::string& name : column_names(source, layout)) parsed.add(name, AttributeType::float32);
   parsed.allocate(rows);
-  NeededTypes needed(layout);
+  SeenValues seen(layout);
   for_each_value(ex, source, index, layout, [&](std::size_t column, std::int64_t row, double value) {
     parsed.set(column, row, value);
-    needed.see(column, value);
+    seen.see(column, value);
   });
-  name_columns(source, layout, parsed);
-  if (const std::vector<bool> wide = type_attributes(needed, parsed); !wide.empty())
+  if (const std::vector<bool> wide = describe(describe_columns(source, layout, seen), seen, parsed); !wide.empty())
     for_each_value(ex, source, index, layout, [&](std::size_t column, std::int64_t row, double value) {
       if (wide[column]) parsed.set(column, row, value);
     });

@@ -43,9 +43,9 @@ scale::KeptAttributes kept_attributes(const Options& options, const ScaleOptions
 /// The first label among the attributes that are to be kept; empty if there is none.
 std::string label_of(const std::string& input, const Options& options, const ScaleOptions& scale) {
   if (!options.attributes) return "";
-  const std::unique_ptr<io::CloudParts> points = io::CloudParts::open(input);
+  exec::Cpu ex(scale.threads);
+  const std::unique_ptr<io::CloudParts> points = io::CloudParts::open(ex, input);
   if (points == nullptr) return "";
-  exec::Cpu ex(1);
   for (const scale::PointAttribute& attribute : scale::attributes_of(ex, *points, kept_attributes(options, scale)))
     if (attribute.is_label()) return io::printable(attribute.name);
   return "";
@@ -68,12 +68,17 @@ struct Place {
 class FilesRun {
  public:
   FilesRun(const std::string& input, const Options& options, const ScaleOptions& scale)
-      : options_(options), scale_(scale), team_(scale.ranks), ex_(scale.threads), parts_(io::CloudParts::open(input)) {
+      : options_(options),
+        scale_(scale),
+        team_(scale.ranks),
+        ex_(scale.threads),
+        parts_(io::CloudParts::open(ex_, input)) {
     if (parts_ == nullptr)
-      throw Error(ErrorCode::invalid_input,
-                  fmt::format("{}: cannot be read in parts; blocks need a binary PLY or NPY file whose rows are of one "
-                              "length",
-                              io::printable(input)));
+      throw Error(
+          ErrorCode::invalid_input,
+          fmt::format("{}: cannot be read in parts; blocks need text, or a binary PLY or NPY file whose rows are "
+                      "of one length",
+                      io::printable(input)));
     if (scale_.device.kind != DeviceKind::cpu) gpu_.emplace(scale_.device);
     if (scale_.temp_folder.empty()) scale_.temp_folder = std::filesystem::temp_directory_path().string();
     bytes_ = team_.reduce(bytes(), [](std::int64_t a, std::int64_t b) { return std::min(a, b); });
@@ -320,7 +325,7 @@ class FilesRun {
 
 }  // namespace
 
-bool reads_in_parts(const std::string& path) { return io::CloudParts::open(path) != nullptr; }
+bool reads_in_parts(const std::string& path) { return io::CloudParts::can_open(path); }
 
 std::vector<std::string> missing_in_blocks(const std::vector<std::string>& inputs, const Options& options,
                                            const ScaleOptions& scale) {

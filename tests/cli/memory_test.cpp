@@ -1,6 +1,7 @@
 // Memory of the process: what is said of it, and what --max-memory makes of it.
 #include <cstdint>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -112,6 +113,41 @@ TEST_F(ProcessMemory, StaysBelowTheLimitWhateverIsAllowed) {
     const auto limit = static_cast<std::int64_t>(share * static_cast<double>(needed));
     EXPECT_LE(peak(cloud, "8", {"--max-memory", std::to_string(limit)}), limit + limit / 20) << share;
   }
+}
+
+TEST_F(ProcessMemory, OfTextAndPipesStaysBelowTheLimit) {
+  const Cloud points = sphere_cloud(200'000, 5);
+  write(points, "cloud.ply");
+  std::ostringstream text;
+  text.precision(9);
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    const Vec3f &p = points.positions[i], &n = points.normals[i];
+    text << p.x << ' ' << p.y << ' ' << p.z << ' ' << n.x << ' ' << n.y << ' ' << n.z << '\n';
+  }
+  write_file(folder_ / "cloud.xyz", text.str());
+  const std::int64_t limit = peak(folder_ / "cloud.ply", "8") * 4 / 5;
+  const std::string whole = read_file(output_);
+  const std::string work =
+      "-o mesh.ply --report report.json --depth 8 --device cpu --threads 2 --temp . --max-memory " +
+      std::to_string(limit);
+  for (const std::string from :
+       {R"("$P" reconstruct cloud.xyz )", R"("$P" reconstruct - < cloud.xyz )",
+        R"(cat cloud.ply | "$P" reconstruct - )", R"(mkfifo pipe; cat cloud.ply > pipe & "$P" reconstruct pipe )"}) {
+    SCOPED_TRACE(from);
+    std::filesystem::remove(output_);
+    std::filesystem::remove(folder_ / "pipe");
+    const std::size_t words = from.find('<');
+    const Result result = run_shell(
+        words == std::string::npos ? from + work : from.substr(0, words) + work + from.substr(words), folder_ / "");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find(" blocks"), std::string::npos) << result.err;
+    EXPECT_TRUE(read_file(output_) == whole);
+    EXPECT_LE(nlohmann::json::parse(read_file(report_))["memory"]["host_peak_bytes"].get<std::int64_t>(),
+              limit + limit / 20);
+  }
+  expect_error(run_shell(R"(cat cloud.ply | "$P" reconstruct - -o mesh.ply --depth 8 --max-memory 1G --temp /proc)",
+                         folder_ / ""),
+               8, "--temp");
 }
 
 TEST_F(ProcessMemory, OfBlocksIsSaidByTheDryRun) {

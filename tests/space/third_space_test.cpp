@@ -70,7 +70,7 @@ class BlocksInAThirdSpace : public testing::Test {
   void start(const Cloud& cloud) {
     const std::string path = folder_.file("cloud.ply");
     write_cloud(path, cloud);
-    parts_ = io::CloudParts::open(path);
+    parts_ = io::CloudParts::open(host_, path);
     ASSERT_NE(parts_, nullptr);
     parts_->choose_origin(host_, std::nullopt);
     frame_ = octree::frame_around(scale::find_extent(host_, *parts_, true).strays.core, 1.1);

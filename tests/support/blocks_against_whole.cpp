@@ -245,7 +245,7 @@ class OnDisk {
   OnDisk(const Cloud& cloud, const Options& options) : options_(options) {
     const std::string path = folder_.file("cloud.ply");
     write_cloud(path, cloud);
-    parts_ = io::CloudParts::open(path);
+    parts_ = io::CloudParts::open(ex_, path);
     parts_->choose_origin(ex_, std::nullopt);
     parts_->leave_out_zero_normals();
     const scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options.keep_strays);

@@ -32,6 +32,11 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), sizeof(T) * a.size()) == 0);
 }
 
+std::unique_ptr<CloudParts> open_parts(const std::string& path) {
+  exec::Cpu ex(2);
+  return CloudParts::open(ex, path);
+}
+
 Cloud read_in_parts(CloudParts& parts, std::int64_t rows, int threads, const std::optional<Vec3d>& shift) {
   exec::Cpu ex(threads);
   parts.choose_origin(ex, shift);
@@ -51,7 +56,7 @@ Cloud read_in_parts(CloudParts& parts, std::int64_t rows, int threads, const std
 /// Reads `path` as a whole and in parts of several sizes.
 void expect_the_same(const std::string& path, const std::optional<Vec3d>& shift = std::nullopt) {
   const Cloud whole = read_cloud(path, {.shift = shift});
-  const std::unique_ptr<CloudParts> parts = CloudParts::open(path);
+  const std::unique_ptr<CloudParts> parts = open_parts(path);
   ASSERT_NE(parts, nullptr);
   for (const std::int64_t rows : {std::int64_t{7}, std::int64_t{1000}, parts->rows()}) {
     SCOPED_TRACE("parts of " + std::to_string(rows) + " rows");
@@ -114,7 +119,7 @@ TEST(CloudParts, ComeOneAfterTheOther) {
   std::string values;
   for (std::int64_t i = 0; i < 3 * kCount; ++i) values += raw<float>(static_cast<float>(i));
   make_file(path, io::npy_header(AttributeType::float32, kCount, 3) + values);
-  const std::unique_ptr<CloudParts> parts = CloudParts::open(path);
+  const std::unique_ptr<CloudParts> parts = open_parts(path);
   ASSERT_NE(parts, nullptr);
   exec::Cpu ex(2);
   parts->choose_origin(ex, std::nullopt);
@@ -156,7 +161,7 @@ TEST(CloudParts, ChooseTheOriginFromAllPointsButFewStrays) {
 TEST(CloudParts, OfNoPointsAreNone) {
   const TemporaryFolder folder;
   make_file(folder.file("none.npy"), io::npy_header(AttributeType::float32, 0, 3));
-  const std::unique_ptr<CloudParts> parts = CloudParts::open(folder.file("none.npy"));
+  const std::unique_ptr<CloudParts> parts = open_parts(folder.file("none.npy"));
   ASSERT_NE(parts, nullptr);
   EXPECT_EQ(parts->rows(), 0);
   EXPECT_EQ(read_in_parts(*parts, 10, 1, std::nullopt).size(), 0);
@@ -167,12 +172,12 @@ TEST(CloudParts, RefuseWhatDoesNotLieInRows) {
   const std::string binary = ply_of_points(false, false);
   const auto is_refused = [&](const std::string& name, const std::string& bytes) {
     make_file(folder.file(name), bytes);
-    return CloudParts::open(folder.file(name)) == nullptr;
+    EXPECT_EQ(CloudParts::can_open(folder.file(name)), open_parts(folder.file(name)) != nullptr);
+    return !CloudParts::can_open(folder.file(name));
   };
-  EXPECT_TRUE(is_refused("text.ply",
-                         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                         "property float z\nend_header\n1 2 3\n"));
-  EXPECT_TRUE(is_refused("text.xyz", "1 2 3\n4 5 6\n"));
+  EXPECT_TRUE(is_refused("corners.obj", "v 0 0 0\n"));
+  EXPECT_TRUE(is_refused("points.json", "[[1, 2, 3]]"));
+  EXPECT_TRUE(is_refused("floats.xyz", std::string(24, '\0')));
   std::string lists =
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
       "property float z\nproperty list uchar uchar tags\nend_header\n";
@@ -183,17 +188,103 @@ TEST(CloudParts, RefuseWhatDoesNotLieInRows) {
     for (int column = 0; column < 6; ++column) values += raw<float>(column < 3 ? row : 20 * row);
   EXPECT_TRUE(is_refused("colours.npy", io::npy_header(AttributeType::float32, 10, 6) + values));
   ASSERT_EQ(::mkfifo(folder.file("pipe.ply").c_str(), 0600), 0);
-  EXPECT_EQ(CloudParts::open(folder.file("pipe.ply")), nullptr);
-  EXPECT_EQ(CloudParts::open("-"), nullptr);
+  EXPECT_EQ(open_parts(folder.file("pipe.ply")), nullptr);
+  EXPECT_EQ(open_parts("-"), nullptr);
+}
+
+/// Lines of values: places around (1000, 0, 0), normals along an axis, and what `more` says of a row.
+template <class More>
+std::string lines_of_text(int rows, const More& more) {
+  std::string text;
+  for (int row = 0; row < rows; ++row) {
+    text += std::to_string(1000 + 0.001 * (row % 977)) + " " + std::to_string(0.01 * (row % 31)) + " " +
+            (row % 1000 == 999 ? "nan" : std::to_string(row % 53)) + more(row) + "\n";
+    if (row % 700 == 5) text += "\n# a remark\n";
+  }
+  return text;
+}
+
+TEST(CloudParts, OfTextAreTheWhole) {
+  const TemporaryFolder folder;
+  const auto normal = [](int row) { return std::string(row % 2 == 0 ? " 0 0 1" : " 0 -0.5 0.25"); };
+  const auto colour = [](int row) { return " " + std::to_string(row % 256) + " 7 0"; };
+  const auto expect = [&](const std::string& name, const std::string& bytes) {
+    SCOPED_TRACE(name);
+    make_file(folder.file(name), bytes);
+    EXPECT_TRUE(CloudParts::can_open(folder.file(name)));
+    expect_the_same(folder.file(name));
+    expect_the_same(folder.file(name), Vec3d{1000, 0, 0});
+  };
+  expect("places.xyz", lines_of_text(2000, [](int) { return ""; }));
+  expect("scalar.xyz", lines_of_text(2000, [](int row) { return " " + std::to_string(row) + ".123456789012"; }));
+  expect("normals.xyz", lines_of_text(20000, normal));  // several blocks
+  expect("colours.xyz", lines_of_text(2000, colour));
+  expect("scalar_and_colours.txt", lines_of_text(2000, [&](int row) { return " 0.5" + colour(row); }));
+  expect("colours_first.asc", lines_of_text(2000, [&](int row) { return colour(row) + normal(row); }));
+  expect("colours_last.asc", lines_of_text(2000, [&](int row) { return normal(row) + colour(row); }));
+  expect("promised.pts", "2000\n" + lines_of_text(2000, normal));
+  expect("marked", "\xEF\xBB\xBF" + lines_of_text(2000, normal));
+  expect("named.csv", "X Y Z nx ny nz r g b class height weight\r\n" + lines_of_text(2000, [&](int row) {
+                        return normal(row) + colour(row) + " " + std::to_string(row % 9) + " 1234567.25 0.1\r";
+                      }));
+  expect("labels.csv",
+         "x y z label id\n" + lines_of_text(2000, [](int row) { return " 16777217 " + std::to_string(row) + ".5"; }));
+  expect("far.xyz", lines_of_text(2000, [](int) { return ""; }) + "1e9 1e9 1e9\n");
+}
+
+TEST(CloudParts, OfPlyInTextAreTheWhole) {
+  const TemporaryFolder folder;
+  std::string text =
+      "ply\nformat ascii 1.0\nelement camera 2\nproperty float at\nelement nothing 4\nelement vertex 3000\nproperty "
+      "float x\n"
+      "property double y\nproperty float z\nproperty list uchar int tags\nproperty uchar red\nproperty int label\n"
+      "property double weight\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1\n2\n";
+  text += lines_of_text(3000, [](int row) {
+    return std::string(row % 2 == 0 ? " 0" : " 2 5 6") + " " + std::to_string(row % 256) + " " + std::to_string(row) +
+           " 0.1";
+  });
+  make_file(folder.file("text.ply"), text + "3 0 1 2\n");
+  expect_the_same(folder.file("text.ply"));
+  make_file(folder.file("cut.ply"), text);
+  EXPECT_THROW(open_parts(folder.file("cut.ply")), Error);
+  make_file(folder.file("none.ply"), text.substr(0, text.find("element vertex")) + "end_header\n1\n2\n");
+  EXPECT_FALSE(CloudParts::can_open(folder.file("none.ply")));
+}
+
+TEST(CloudParts, OfGarbledTextNameTheLineAsTheWholeDoes) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("garbled.xyz");
+  const auto message_of = [](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string good = lines_of_text(20000, [](int) { return " 0 0 1"; });
+  for (const std::string& bytes :
+       {good + "1 2 3 4 5 x\n", good + "1 2 3\n", good + "1 2 3 4 5 6 7\n" + good, std::string("1 2 3 4 5\n"),
+        "7\n" + good, std::string("x,y\n1,2\n"), std::string("# none\n")}) {
+    make_file(path, bytes);
+    const std::string whole = message_of([&] { (void)read_cloud(path); });
+    EXPECT_NE(whole, "no error");
+    EXPECT_EQ(message_of([&] { open_parts(path); }), whole);
+  }
+  make_file(path, good);
+  const std::unique_ptr<CloudParts> parts = open_parts(path);
+  std::filesystem::resize_file(path, good.size() / 2);
+  exec::Cpu ex(2);
+  EXPECT_NE(message_of([&] { parts->choose_origin(ex, std::nullopt); }).find("cut short"), std::string::npos);
 }
 
 TEST(CloudParts, ThatAreGarbledOrCutSayWhy) {
   const TemporaryFolder folder;
   const std::string bytes = ply_of_points(false, false), path = folder.file("cut.ply");
   make_file(path, bytes.substr(0, bytes.size() - 5));
-  EXPECT_THROW(CloudParts::open(path), Error);
+  EXPECT_THROW(open_parts(path), Error);
   make_file(path, bytes);
-  const std::unique_ptr<CloudParts> parts = CloudParts::open(path);
+  const std::unique_ptr<CloudParts> parts = open_parts(path);
   ASSERT_NE(parts, nullptr);
   exec::Cpu ex(2);
   CloudParts::Bytes buffer;

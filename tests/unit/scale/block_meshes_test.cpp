@@ -83,7 +83,9 @@ void expect_same(const BlockMeshes& meshes, const Whole& whole) {
     std::vector<BlockMeshes::Indices> triangles(whole.triangles.size());
     for (std::int64_t first = 0; first < t; first += at_once)
       meshes.read_triangles(first, std::min(at_once, t - first), triangles.data() + first);
-    EXPECT_EQ(std::memcmp(triangles.data(), whole.triangles.data(), sizeof(Triangle) * whole.triangles.size()), 0);
+    EXPECT_TRUE(std::equal(
+        triangles.begin(), triangles.end(), whole.triangles.begin(), whole.triangles.end(),
+        [](const BlockMeshes::Indices& a, const Triangle& b) { return std::memcmp(&a, &b, sizeof b) == 0; }));
   }
 }
 

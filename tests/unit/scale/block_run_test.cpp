@@ -37,7 +37,7 @@ class BlockRun : public testing::Test {
   void start(const Cloud& cloud, const Options& options) {
     const std::string path = folder_.file("cloud.ply");
     write_cloud(path, cloud);
-    parts_ = io::CloudParts::open(path);
+    parts_ = io::CloudParts::open(ex_, path);
     ASSERT_NE(parts_, nullptr);
     parts_->choose_origin(ex_, std::nullopt);
     scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options.keep_strays);

@@ -27,7 +27,7 @@ using scale::CloudExtent;
 
 CloudExtent extent_of_file(const std::string& path, int threads, bool keep_strays = false) {
   exec::Cpu ex(threads);
-  const std::unique_ptr<CloudParts> parts = CloudParts::open(path);
+  const std::unique_ptr<CloudParts> parts = CloudParts::open(ex, path);
   EXPECT_NE(parts, nullptr);
   parts->choose_origin(ex, std::nullopt);
   return scale::find_extent(ex, *parts, keep_strays);

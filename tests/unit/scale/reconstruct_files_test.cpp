@@ -292,11 +292,11 @@ TEST_F(ReconstructFiles, NeedsAFileThatCanBeReadInParts) {
   start(sphere_cloud(2000, 9));
   write_old_output();
   EXPECT_TRUE(reads_in_parts(input_));
-  const std::string text = folder_.file("cloud.xyz");
-  std::ofstream(text) << "0 0 0 0 0 1\n";
-  EXPECT_FALSE(reads_in_parts(text));
+  const std::string other = folder_.file("cloud.json");
+  std::ofstream(other) << "[[0, 0, 0]]\n";
+  EXPECT_FALSE(reads_in_parts(other));
   expect_error(ErrorCode::invalid_input, "in parts",
-               [&] { (void)reconstruct_files({text}, output_, at_depth(7), scale(0)); });
+               [&] { (void)reconstruct_files({other}, output_, at_depth(7), scale(0)); });
 }
 
 TEST_F(ReconstructFiles, NeedsNormals) {

@@ -66,7 +66,7 @@ void expect_attributes(exec::Cpu& ex, const SortedCloud& sorted, const field::At
 void expect_as_in_memory(const std::string& path, std::int64_t memory, int threads) {
   const Cloud cloud = read_cloud(path);
   exec::Cpu ex(threads);
-  const auto parts = io::CloudParts::open(path);
+  const auto parts = io::CloudParts::open(ex, path);
   ASSERT_NE(parts, nullptr);
   parts->choose_origin(ex, std::nullopt);
   scale::CloudExtent extent = scale::find_extent(ex, *parts, false);
@@ -164,7 +164,7 @@ TEST(SortedCloud, RefusesLabels) {
   cloud.attributes = {{"class", std::vector<std::uint8_t>(1000, 3)}};
   write_cloud(folder.file("cloud.ply"), cloud);
   exec::Cpu ex(1);
-  const auto parts = io::CloudParts::open(folder.file("cloud.ply"));
+  const auto parts = io::CloudParts::open(ex, folder.file("cloud.ply"));
   parts->choose_origin(ex, std::nullopt);
   const std::vector<scale::PointAttribute> all = scale::attributes_of(ex, *parts, scale::KeptAttributes::all);
   ASSERT_EQ(all.size(), 1U);
@@ -181,7 +181,7 @@ TEST(SortedCloud, NeedsNormals) {
   cloud.normals.clear();
   write_cloud(folder.file("cloud.ply"), cloud);
   exec::Cpu ex(1);
-  const auto parts = io::CloudParts::open(folder.file("cloud.ply"));
+  const auto parts = io::CloudParts::open(ex, folder.file("cloud.ply"));
   parts->choose_origin(ex, std::nullopt);
   const std::string temporary = std::filesystem::path(folder.file("any")).parent_path().string();
   EXPECT_THROW(SortedCloud(ex, *parts, {temporary, 1 << 20, {}, {}}), Error);

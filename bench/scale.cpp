@@ -79,7 +79,7 @@ int run(const std::vector<std::string>& words) {
   options.memory_bytes = bytes;
   options.part_samples = std::max<std::int64_t>(1 << 14, bytes / 1000);  // of 60 bytes, and of bricks around each
   exec::Cpu ex(threads);
-  const auto parts = io::CloudParts::open(path);
+  const auto parts = io::CloudParts::open(ex, path);
   if (parts == nullptr) return std::fprintf(stderr, "%s cannot be read in parts\n", path.c_str()), 1;
   const auto begin = std::chrono::steady_clock::now();
   parts->choose_origin(ex, std::nullopt);

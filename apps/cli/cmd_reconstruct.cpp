@@ -45,8 +45,7 @@ void check_split(const ReconstructArgs& args) {
     throw_usage("--split needs --max-memory: blocks are what it holds");
   if (!args.report.empty()) throw_usage("--split and --report exclude each other: a report measures one mesh");
   if (!is_one_of_ranks() && !may_work_in_blocks(args))
-    throw_usage(
-        "--split needs one file of text, binary PLY or NPY as input, .ply as output, and a depth of at least 7");
+    throw_usage("--split needs text, binary PLY or NPY as input, .ply as output, and a depth of at least 7");
   for (const std::string& input : args.inputs)
     if (is_a_split_output(input, args.output))
       throw_usage(fmt::format("{}: --split with -o {} may write this file", input, args.output));

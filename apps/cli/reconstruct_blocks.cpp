@@ -102,14 +102,14 @@ void warn_about_left_out(const FilesReport& files) {
   warn_about_zero_normals(files.without_normal);
 }
 
-/// From one file that can be read in parts, or a pipe, to binary PLY.
+/// From files that can be read in parts, or one pipe, to binary PLY.
 bool suits_blocks(const ReconstructArgs& args) {
   if (args.each || args.repeat > 0 || args.problems) return false;
   if (args.options.depth != Options::kAutomaticDepth && args.options.depth < kShallowest) return false;
   const bool to_ply = !args.ascii && (std::filesystem::path(args.output).extension() == ".ply" ||
                                       (args.dry_run && args.output.empty()));
-  if (args.inputs.size() != 1 || !to_ply || args.given.has("--width")) return false;
-  return comes_through_pipe(args) || reads_in_parts(args.inputs.front());
+  if (!to_ply || args.given.has("--width")) return false;
+  return comes_through_pipe(args) || std::all_of(args.inputs.begin(), args.inputs.end(), reads_in_parts);
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ bool may_work_in_blocks(const ReconstructArgs& args) { return args.options.max_m
 void check_ranks(const ReconstructArgs& args) {
   if (!suits_blocks(args))
     throw_usage(fmt::format(
-        "several ranks reconstruct one file of text, binary PLY or NPY to a binary .ply file, with a --depth of at "
+        "several ranks reconstruct files of text, binary PLY or NPY to a binary .ply file, with a --depth of at "
         "least {}; not with "
         "--each, --repeat or --width",
         kShallowest));
@@ -140,10 +140,13 @@ Device device_of_rank(const ReconstructArgs& args) {
 bool must_work_in_blocks(const ReconstructArgs& args, const Options& options, const Device& device) {
   if (args.split) return true;
   if (!missing(args, options).empty()) return false;
-  std::error_code error;
-  const std::string& input = args.inputs.front();
-  const auto bytes = std::filesystem::file_size(input == "-" ? "/dev/stdin" : input, error);
-  return !error && static_cast<std::int64_t>(bytes) > bytes_for_work(args, device) / 2;
+  std::int64_t bytes = 0;
+  for (const std::string& input : args.inputs) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(input == "-" ? "/dev/stdin" : input, error);
+    if (!error) bytes += static_cast<std::int64_t>(size);
+  }
+  return bytes > bytes_for_work(args, device) / 2;
 }
 
 void print_plan(const ReconstructArgs& args, const Record& record) {

@@ -10,7 +10,7 @@ namespace pointskin::cli {
 /// True if there is one input, which is a pipe: for blocks it must be spooled first.
 bool comes_through_pipe(const ReconstructArgs& args);
 
-/// True if a run whose memory is limited may go on in blocks: from one file that can be read in parts, or a pipe, to binary PLY.
+/// True if a run whose memory is limited may go on in blocks: from files that can be read in parts, or one pipe, to binary PLY.
 bool may_work_in_blocks(const ReconstructArgs& args);
 
 /// @throws Error usage for what several ranks do not do, which work in blocks

@@ -49,7 +49,8 @@ struct FilesReport {
 bool reads_in_parts(const std::string& path);
 
 /// What of such a run cannot be worked on in blocks yet, in words: "weakness", "an envelope". Empty if all can. With attributes that
-/// depends on the files: labels (is_label) cannot, and of files that can be read in parts the header is looked at.
+/// depends on the files: labels (is_label) cannot, nor integers that some of several files lack; of files that can be read in parts the
+/// header is looked at, and all of text.
 /// @throws Error invalid_input if a file cannot be opened, or its header is garbled
 std::vector<std::string> missing_in_blocks(const std::vector<std::string>& inputs, const Options& options,
                                            const ScaleOptions& scale = {});
@@ -66,7 +67,8 @@ std::vector<std::string> missing_in_blocks(const std::vector<std::string>& input
 /// 60, and 4 a node of the octree, and the mesh; with attributes twice and then once their own, with Options::trim 4 more a point,
 /// and the mesh twice. Time: some two and a half
 /// times that of the whole in memory.
-/// @param inputs   one file of oriented points, for which reads_in_parts() is true; text is parsed anew in every pass
+/// @param inputs   1 to 200 files of oriented points, for which reads_in_parts() is true, merged in their order as merge_into() does;
+///                 text is parsed anew in every pass
 /// @param output   a PLY file, written whole or not at all; with ScaleOptions::split one for each block that has triangles, named by
 ///                 it and a number from 0 on before the extension, such as mesh_0003.ply: each has its own triangles, and the
 ///                 vertices that they have, those at borders with the same bytes in several; all appear when all are written

@@ -2,33 +2,22 @@
 #include <pointskin/merge.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
 #include "core/compact.hpp"
+#include "core/rebase.hpp"
 
 namespace pointskin {
 namespace {
 
-/// Moves the origin to `origin`; world positions stay, to float.
 void rebase(Cloud& cloud, const Vec3d& origin) {
   const Vec3d move = cloud.origin - origin;
-  for (Vec3f& p : cloud.positions)
-    p = {static_cast<float>(p.x + move[0]), static_cast<float>(p.y + move[1]), static_cast<float>(p.z + move[2])};
+  for (Vec3f& p : cloud.positions) p = rebased(p, move);
   cloud.origin = origin;
 }
 
-/// Distance of the middle of a cloud from a place, times its points: what float positions around that place would lose.
-double loss_around(const Cloud& cloud, const Vec3d& place) {
-  const Bounds box = bounds_of(cloud.positions);
-  const Vec3d lower = {box.lower.x, box.lower.y, box.lower.z};
-  const Vec3d upper = {box.upper.x, box.upper.y, box.upper.z};
-  double farthest = 0;
-  for (std::size_t a = 0; a < 3; ++a)
-    farthest = std::max(farthest, std::abs(cloud.origin[a] + (lower[a] + upper[a]) / 2 - place[a]));
-  return farthest * static_cast<double>(cloud.size());
-}
+PointsAround around(const Cloud& cloud) { return {cloud.origin, bounds_of(cloud.positions), cloud.size()}; }
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
@@ -64,8 +53,7 @@ void merge_into(Cloud& cloud, Cloud&& more) {
     return;
   }
   if (cloud.origin != more.origin) {
-    const auto loss = [&](const Vec3d& place) { return loss_around(cloud, place) + loss_around(more, place); };
-    if (loss(more.origin) < loss(cloud.origin))
+    if (around(cloud).takes_origin_of(around(more)))
       rebase(cloud, more.origin);
     else
       rebase(more, cloud.origin);

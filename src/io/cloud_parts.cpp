@@ -1,166 +1,153 @@
 #include "io/cloud_parts.hpp"
 
+#include <pointskin/error.hpp>
 #include <pointskin/merge.hpp>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
-#include <vector>
 
-#include "io/formats.hpp"
-#include "io/numpy_table.hpp"
-#include "io/ply_body.hpp"
-#include "io/ply_header.hpp"
-#include "io/readers.hpp"
-#include "io/shift.hpp"
-#include "io/table_parts.hpp"
-#include "io/text_parts.hpp"
+#include "core/format.hpp"
+#include "core/rebase.hpp"
 
 namespace pointskin::io {
 namespace {
 
-/// @throws Error invalid_input if there is none
-bool is_regular(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path == "-" ? "/dev/stdin" : path, error);
-  if (path != "-" && status.type() == std::filesystem::file_type::not_found) (void)Input(path);  // tells so
-  return std::filesystem::is_regular_file(status);
-}
-
-/// How the points of a file are read in parts.
-enum class Layout : std::uint8_t { none, ply_text, columns_of_text, in_place };
-
-/// The vertices of a binary PLY file; nothing where rows have lists: only walking over them shows that the file is
-/// whole.
-std::optional<PointTable> vertices_in_place(const Source& source) {
-  const PlyHeader header = parse_ply_header(source);
-  std::optional<PointTable> vertices;
-  std::size_t at = header.body;
-  for (const PlyElement& element : header.elements) {
-    const std::size_t row_bytes = element.smallest_row_bytes();
-    const bool has_lists = element.has_lists() && element.count > 0;
-    if (has_lists || !fits(static_cast<std::uint64_t>(element.count), row_bytes, source.bytes.size() - at))
-      return std::nullopt;
-    if (element.name == "vertex")
-      vertices = view_rows(element, header.encoding, source.bytes.data() + at, element.count);
-    at += static_cast<std::size_t>(element.count) * row_bytes;
-  }
-  return vertices;
-}
-
-std::optional<PointTable> points_in_place(const Source& source) {
-  return is_ply(source.bytes) ? vertices_in_place(source) : table_of(source, parse_npy(source)).table();
-}
-
-bool is_text(const Source& source) {
-  const bool has_columns = read_format(source, false).run.read_cloud == parse_text;
-  return has_columns && !(extension_of(source.name) == ".xyz" && is_binary_xyz(source));
-}
-
-Layout layout_of(const Input& input) {
-  const Source source = input.source();
-  if (is_ply(source.bytes)) {
-    const PlyHeader header = parse_ply_header(source);
-    if (header.encoding == PlyEncoding::ascii)
-      return header.find("vertex") != nullptr ? Layout::ply_text : Layout::none;
-  } else if (!is_npy(source.bytes)) {
-    return is_text(source) ? Layout::columns_of_text : Layout::none;
-  }
-  const std::optional<PointTable> table = points_in_place(source);
-  return table && TableParts::holds(input, *table) ? Layout::in_place : Layout::none;
-}
-
-/// Rows that are read at once; whole runs of OriginSearch.
-std::int64_t rows_at_once(const PointRows& points) {
-  const std::int64_t row_bytes = std::max<std::int64_t>(1, points.row_bytes());
-  return std::max(kRunRows, CloudParts::kBufferBytes / row_bytes / kRunRows * kRunRows);
-}
-
-PointTable coordinates_of(PointTable table) {
-  std::erase_if(table.columns, [](const Column& column) { return !is_coordinate(column.name); });
-  return table;
+/// Values of another type that holds them; missing ones where there are none.
+AttributeValues converted(const std::vector<Attribute>& from, const Attribute& to, std::size_t size) {
+  const auto found =
+      std::find_if(from.begin(), from.end(), [&](const Attribute& attribute) { return attribute.name == to.name; });
+  return found == from.end() ? AttributeValues::missing(to.type(), size) : found->values.converted(to.type());
 }
 
 }  // namespace
 
-bool CloudParts::can_open(const std::string& path) {
-  return is_regular(path) && layout_of(Input(path)) != Layout::none;
-}
-
-std::unique_ptr<CloudParts> CloudParts::open(exec::Cpu& ex, const std::string& path) {
-  if (!is_regular(path)) return nullptr;
-  std::unique_ptr<CloudParts> parts(new CloudParts(path));
-  const Input& input = parts->input_;
-  switch (layout_of(input)) {
-    case Layout::none:
-      return nullptr;
-    case Layout::ply_text:
-      parts->rows_ = TextParts::of_ply(ex, input, parse_ply_header(input.source()));
-      break;
-    case Layout::columns_of_text:
-      parts->rows_ = TextParts::of_columns(ex, input);
-      break;
-    case Layout::in_place: {
-      const PointTable table = *points_in_place(input.source());
-      parts->rows_ = std::make_unique<TableParts>(input, table);
-      parts->coordinates_ = std::make_unique<TableParts>(input, coordinates_of(table));
-    }
-  }
-  return parts;
-}
-
-void CloudParts::choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift) {
-  if (shift) {
-    Bytes none;
-    assemble(ex, input_.source(), rows_->read(ex, 0, 0, none), shift);  // refuses what cannot be
-    origin_ = *shift;
-    return;
-  }
-  Bytes buffer;
-  const std::int64_t step = rows_at_once(coordinates());
-  const auto for_parts = [&](const auto& use) {
-    for (std::int64_t first = 0; first < rows(); first += step)
-      use(coordinates().read(ex, first, std::min(step, rows() - first), buffer));
-  };
-  OriginSearch search;
-  for_parts([&](const PointTable& part) { search.add(ex, input_.source(), part); });
-  origin_ = search.origin([&](const Box& box) {
-    std::vector<Vec3d> all;
-    for_parts([&](const PointTable& part) {
-      const std::vector<Vec3d> some = points_beyond(ex, input_.source(), part, box);
-      all.insert(all.end(), some.begin(), some.end());
-    });
-    return all;
-  });
-}
-
-std::vector<Attribute> CloudParts::attributes(exec::Cpu& ex) const {
-  Bytes none;
-  return std::move(assemble(ex, input_.source(), rows_->read(ex, 0, 0, none), Vec3d{}).attributes);
-}
-
-Cloud CloudParts::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, Bytes& buffer) const {
-  Cloud cloud = assemble(ex, input_.source(), rows_->read(ex, first, count, buffer), origin_);
-  if (!keeps_zero_normals_ && std::find(cloud.normals.begin(), cloud.normals.end(), Vec3f{}) != cloud.normals.end()) {
-    std::vector<bool> keep(cloud.normals.size());
-    std::transform(cloud.normals.begin(), cloud.normals.end(), keep.begin(),
-                   [](const Vec3f& n) { return n != Vec3f{}; });
-    const std::int64_t not_finite = cloud.dropped;
-    keep_where(cloud, keep);
-    cloud.dropped = not_finite;
+std::unique_ptr<CloudParts> CloudParts::open(exec::Cpu& ex, const std::vector<std::string>& paths) {
+  if (paths.empty() || paths.size() > kMostFiles)
+    throw Error(ErrorCode::usage,
+                fmt::format("1 to {} files can be read in parts together, not {}", kMostFiles, paths.size()));
+  auto cloud = std::make_unique<CloudParts>();
+  std::int64_t rows = 0;
+  for (const std::string& path : paths) {
+    std::unique_ptr<FileParts> parts = FileParts::open(ex, path);
+    if (parts == nullptr) return nullptr;
+    cloud->files_.push_back({std::move(parts), rows});
+    rows += cloud->files_.back().parts->rows();
   }
   return cloud;
 }
 
+void CloudParts::choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift) {
+  for (File& file : files_) file.parts->choose_origin(ex, shift);
+  origin_ = files_.front().parts->origin();
+  if (files_.size() == 1) return;
+  settle_origins(ex);
+  settle_schema(ex);
+}
+
+/// What merge_into() does with origins.
+void CloudParts::settle_origins(exec::Cpu& ex) {
+  PointsAround all;
+  for (File& file : files_) {
+    file.moves.clear();
+    PointsAround more = file.parts->extent(ex);
+    file.is_used = more.points > 0;
+    if (!file.is_used) continue;
+    if (all.points == 0) {
+      all = more;
+      continue;
+    }
+    if (all.origin != more.origin && all.takes_origin_of(more)) {
+      for (File* before = files_.data(); before != &file; ++before) before->moves.push_back(all.origin - more.origin);
+      all.rebase(more.origin);
+    } else if (all.origin != more.origin) {
+      file.moves.push_back(more.origin - all.origin);
+      more.rebase(all.origin);
+    }
+    all.add(more.box, more.points);
+  }
+  origin_ = all.origin;
+}
+
+Cloud CloudParts::merged_sample(exec::Cpu& ex) const {
+  Cloud all;
+  for (const File& file : files_) {
+    if (!file.is_used) continue;
+    Cloud one;
+    one.positions.resize(1);
+    if (file.parts->has_normals(ex)) one.normals.resize(1);
+    for (const Attribute& attribute : file.parts->attributes(ex))
+      one.attributes.push_back({attribute.name, AttributeValues(attribute.type(), 1)});
+    merge_into(all, std::move(one));
+  }
+  return all;
+}
+
+void CloudParts::settle_schema(exec::Cpu& ex) {
+  const Cloud sample = merged_sample(ex);
+  has_normals_ = sample.has_normals();
+  schema_.clear();
+  for (const Attribute& attribute : sample.attributes)
+    schema_.push_back({attribute.name, AttributeValues(attribute.type())});
+}
+
+std::vector<Attribute> CloudParts::attributes(exec::Cpu& ex) const {
+  if (files_.size() == 1) return files_.front().parts->attributes(ex);
+  std::vector<Attribute> attributes = merged_sample(ex).attributes;
+  for (Attribute& attribute : attributes) attribute.values = AttributeValues(attribute.type());
+  return attributes;
+}
+
+std::vector<std::string> CloudParts::integers_with_gaps(exec::Cpu& ex) const {
+  std::vector<std::string> names;
+  for (const Attribute& attribute : merged_sample(ex).attributes)
+    if (attribute.values.has_mask()) names.push_back(attribute.name);
+  return names;
+}
+
+void CloudParts::leave_out_zero_normals() {
+  for (File& file : files_) file.parts->leave_out_zero_normals();
+}
+
+void CloudParts::merge(const File& file, Cloud& cloud) const {
+  if (files_.size() == 1) return;
+  for (const Vec3d& move : file.moves)
+    for (Vec3f& p : cloud.positions) p = rebased(p, move);
+  cloud.origin = origin_;
+  if (!has_normals_) cloud.normals.clear();
+  std::vector<Attribute> attributes;
+  for (const Attribute& attribute : schema_)
+    attributes.push_back({attribute.name, converted(cloud.attributes, attribute, cloud.positions.size())});
+  cloud.attributes = std::move(attributes);
+}
+
+template <class Use>
+void CloudParts::for_files(std::int64_t begin, std::int64_t end, const Use& use) const {
+  for (const File& file : files_) {
+    const std::int64_t first = std::max(begin - file.first_row, std::int64_t{0});
+    const std::int64_t last = std::min(end - file.first_row, file.parts->rows());
+    if (first < last) use(file, first, last - first);
+  }
+}
+
+Cloud CloudParts::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, Bytes& buffer) const {
+  if (files_.size() == 1) return files_.front().parts->read(ex, first, count, buffer);
+  Cloud all;
+  for_files(first, first + count, [&](const File& file, std::int64_t begin, std::int64_t some) {
+    Cloud cloud = file.parts->read(ex, begin, some, buffer);
+    merge(file, cloud);
+    merge_into(all, std::move(cloud));
+  });
+  return all;
+}
+
 void CloudParts::for_parts(exec::Cpu& ex, std::int64_t begin, std::int64_t end,
                            const std::function<void(Cloud&)>& use) const {
-  Bytes buffer;
-  const std::int64_t step = rows_at_once(*rows_);
-  for (std::int64_t first = begin; first < end; first += step) {
-    Cloud cloud = read(ex, first, std::min(step, end - first), buffer);
-    use(cloud);
-  }
+  for_files(begin, end, [&](const File& file, std::int64_t first, std::int64_t count) {
+    file.parts->for_parts(ex, first, first + count, [&](Cloud& cloud) {
+      merge(file, cloud);
+      use(cloud);
+    });
+  });
 }
 
 }  // namespace pointskin::io

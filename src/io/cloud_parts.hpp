@@ -1,4 +1,4 @@
-// A cloud in a file, read in parts: for clouds that memory does not hold.
+// A cloud in one file or several, read in parts: for clouds that memory does not hold.
 #pragma once
 
 #include <cstdint>
@@ -11,66 +11,72 @@
 #include <pointskin/cloud.hpp>
 
 #include "exec/cpu.hpp"
-#include "io/input.hpp"
-#include "io/point_rows.hpp"
+#include "io/file_parts.hpp"
 
 namespace pointskin::io {
 
-/// The points that read_cloud() reads, in its order and with its origin, part by part.
+/// The points that read_cloud() reads of each file, merged by merge_into(): in the order of the files, with the same origin,
+/// positions and attributes, part by part.
 class CloudParts {
  public:
-  using Bytes = PointRows::Bytes;
+  using Bytes = FileParts::Bytes;
 
-  /// True for text (PLY too), and for binary PLY and NPY files whose points lie at equal distances; false for pipes, compressed data,
-  /// binary PLY with lists of vertices or faces, as it cannot be known that the file is whole, and for other formats.
-  /// @throws Error invalid_input if it cannot be read, or its header is garbled
-  static bool can_open(const std::string& path);
+  static constexpr std::size_t kMostFiles = 200;  ///< that are open at once
 
-  /// Of text all lines are read.
-  /// @returns null where can_open() is false
-  /// @throws Error invalid_input if it cannot be read, or is garbled
-  static std::unique_ptr<CloudParts> open(exec::Cpu& ex, const std::string& path);
+  /// @returns null if FileParts::can_open() is false for a file
+  /// @throws Error invalid_input as FileParts::open(); usage for none, or more than kMostFiles
+  static std::unique_ptr<CloudParts> open(exec::Cpu& ex, const std::vector<std::string>& paths);
+  static std::unique_ptr<CloudParts> open(exec::Cpu& ex, const std::string& path) {
+    return open(ex, std::vector<std::string>{path});
+  }
 
-  /// Rows of the file; some may hold no point.
-  [[nodiscard]] std::int64_t rows() const { return rows_->rows(); }
-  /// About that of a row in the file.
-  [[nodiscard]] std::int64_t row_bytes() const { return rows_->row_bytes(); }
+  /// Rows of the files; some may hold no point.
+  [[nodiscard]] std::int64_t rows() const { return files_.back().first_row + files_.back().parts->rows(); }
 
-  /// Chooses the origin, as ReadOptions::shift says: where that is unset one pass over the coordinates, or two; 48
-  /// bytes for 64 rows, and kBufferBytes.
-  /// @throws Error invalid_input without x, y, z, or if the file has become shorter; usage if `shift` is not finite
+  /// Chooses the origins of the files as FileParts does, and that of the merged cloud; for several files with origins of
+  /// their own one pass more over their coordinates.
+  /// @throws Error as FileParts::choose_origin
   void choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift);
 
   /// Names and types of the points' attributes, without values; before an origin is chosen, too.
   [[nodiscard]] std::vector<Attribute> attributes(exec::Cpu& ex) const;
+  /// Names of those of integers that some files lack.
+  [[nodiscard]] std::vector<std::string> integers_with_gaps(exec::Cpu& ex) const;
 
   /// What positions are relative to, once it has been chosen.
   [[nodiscard]] const Vec3d& origin() const { return origin_; }
 
-  /// Points whose normal is zero are left out from now on, like those that are not finite, but not counted in Cloud::dropped.
-  void leave_out_zero_normals() { keeps_zero_normals_ = false; }
+  /// As FileParts.
+  void leave_out_zero_normals();
 
-  /// The points of rows first .. first + count - 1, in parallel. The origin must have been chosen. Where rows have no
-  /// finite coordinates there are fewer, and Cloud::dropped says how many.
-  /// @throws Error invalid_input if the file has become shorter, or cannot be read
+  /// As FileParts::read.
   Cloud read(exec::Cpu& ex, std::int64_t first, std::int64_t count, Bytes& buffer) const;
 
-  /// Reads all rows, kBufferBytes at a time, and hands their points on, in order, to be changed at will.
-  /// @throws Error as read, or whatever `use` throws
+  /// As FileParts::for_parts.
   void for_parts(exec::Cpu& ex, const std::function<void(Cloud&)>& use) const { for_parts(ex, 0, rows(), use); }
-  /// The same of rows begin..end - 1.
   void for_parts(exec::Cpu& ex, std::int64_t begin, std::int64_t end, const std::function<void(Cloud&)>& use) const;
 
-  static constexpr std::int64_t kBufferBytes = std::int64_t{4} << 20;
-
  private:
-  explicit CloudParts(const std::string& path) : input_(path) {}
-  [[nodiscard]] const PointRows& coordinates() const { return coordinates_ ? *coordinates_ : *rows_; }
+  struct File {
+    std::unique_ptr<FileParts> parts;
+    std::int64_t first_row = 0;  ///< among those of all
+    bool is_used = true;         ///< false without points: then it adds no attributes, and has a say in nothing
+    std::vector<Vec3d> moves{};  ///< of its positions, one after the other
+  };
 
-  Input input_;                                    // the header is read from the mapping, the rest is not
-  std::unique_ptr<PointRows> rows_, coordinates_;  ///< where coordinates cannot be read alone, these are null
+  void settle_origins(exec::Cpu& ex);
+  void settle_schema(exec::Cpu& ex);
+  /// A cloud of one point that has the merged attributes.
+  [[nodiscard]] Cloud merged_sample(exec::Cpu& ex) const;
+  void merge(const File& file, Cloud& cloud) const;
+  /// Calls use(file, first, count) for the files that rows begin..end - 1 lie in.
+  template <class Use>
+  void for_files(std::int64_t begin, std::int64_t end, const Use& use) const;
+
+  std::vector<File> files_;
   Vec3d origin_{0, 0, 0};
-  bool keeps_zero_normals_ = true;
+  bool has_normals_ = true;        ///< all files that have points
+  std::vector<Attribute> schema_;  ///< of several files: what each point gets, without values
 };
 
 }  // namespace pointskin::io

@@ -35,11 +35,15 @@ std::optional<std::array<std::size_t, 3>> find_three(const PointTable& table, st
   return found;
 }
 
+std::optional<std::array<std::size_t, 3>> find_normal(const PointTable& table) {
+  const auto normal = find_three(table, {"nx", "ny", "nz"});
+  return normal ? normal : find_three(table, {"normal_x", "normal_y", "normal_z"});
+}
+
 Roles find_roles(const Source& source, const PointTable& table) {
   const auto position = find_three(table, {"x", "y", "z"});
   if (!position) fail(source, "the points have no x, y and z", "export it with coordinates");
-  Roles roles{*position, find_three(table, {"nx", "ny", "nz"}), {}};
-  if (!roles.normal) roles.normal = find_three(table, {"normal_x", "normal_y", "normal_z"});
+  Roles roles{*position, find_normal(table), {}};
   const auto contains = [](const std::array<std::size_t, 3>& three, std::size_t c) {
     return std::find(three.begin(), three.end(), c) != three.end();
   };
@@ -207,6 +211,8 @@ void check_shift(const Vec3d& shift) {
 }
 
 }  // namespace
+
+bool has_normals(const PointTable& table) { return find_normal(table).has_value(); }
 
 bool is_coordinate(const std::string& name) { return name == "x" || name == "y" || name == "z"; }
 

@@ -35,6 +35,9 @@ struct PointTable {
   double resolution = 0;  ///< world units between coordinates that the file tells apart; 0: unknown
 };
 
+/// True if it has nx, ny, nz or normal_x, normal_y, normal_z.
+bool has_normals(const PointTable& table);
+
 /// True for "x", "y" and "z".
 bool is_coordinate(const std::string& name);
 

@@ -40,15 +40,31 @@ scale::KeptAttributes kept_attributes(const Options& options, const ScaleOptions
   return scale.only_colours ? scale::KeptAttributes::colours : scale::KeptAttributes::all;
 }
 
-/// The first label among the attributes that are to be kept; empty if there is none.
-std::string label_of(const std::string& input, const Options& options, const ScaleOptions& scale) {
+/// What of the attributes that are to be kept cannot be, in words; empty if all can.
+std::string missing_attributes(const std::vector<std::string>& inputs, const Options& options,
+                               const ScaleOptions& scale) {
   if (!options.attributes) return "";
   exec::Cpu ex(scale.threads);
-  const std::unique_ptr<io::CloudParts> points = io::CloudParts::open(ex, input);
+  const std::unique_ptr<io::CloudParts> points = io::CloudParts::open(ex, inputs);
   if (points == nullptr) return "";
-  for (const scale::PointAttribute& attribute : scale::attributes_of(ex, *points, kept_attributes(options, scale)))
-    if (attribute.is_label()) return io::printable(attribute.name);
+  const std::vector<std::string> with_gaps = points->integers_with_gaps(ex);
+  for (const scale::PointAttribute& attribute : scale::attributes_of(ex, *points, kept_attributes(options, scale))) {
+    if (attribute.is_label()) return "labels of points such as " + io::printable(attribute.name);
+    if (std::find(with_gaps.begin(), with_gaps.end(), attribute.name) != with_gaps.end())
+      return "integers that not all files have, such as " + io::printable(attribute.name);
+  }
   return "";
+}
+
+std::unique_ptr<io::CloudParts> open_parts(exec::Cpu& ex, const std::vector<std::string>& inputs) {
+  std::unique_ptr<io::CloudParts> parts = io::CloudParts::open(ex, inputs);
+  if (parts != nullptr) return parts;
+  const auto not_in_parts =
+      std::find_if_not(inputs.begin(), inputs.end(), [](const std::string& input) { return reads_in_parts(input); });
+  throw Error(ErrorCode::invalid_input,
+              fmt::format("{}: cannot be read in parts; blocks need text, or binary PLY or NPY files whose rows are of "
+                          "one length",
+                          io::printable(not_in_parts == inputs.end() ? inputs.front() : *not_in_parts)));
 }
 
 /// What a fit of the cloud found, and the mesh.
@@ -67,18 +83,8 @@ struct Place {
 
 class FilesRun {
  public:
-  FilesRun(const std::string& input, const Options& options, const ScaleOptions& scale)
-      : options_(options),
-        scale_(scale),
-        team_(scale.ranks),
-        ex_(scale.threads),
-        parts_(io::CloudParts::open(ex_, input)) {
-    if (parts_ == nullptr)
-      throw Error(
-          ErrorCode::invalid_input,
-          fmt::format("{}: cannot be read in parts; blocks need text, or a binary PLY or NPY file whose rows are "
-                      "of one length",
-                      io::printable(input)));
+  FilesRun(const std::vector<std::string>& inputs, const Options& options, const ScaleOptions& scale)
+      : options_(options), scale_(scale), team_(scale.ranks), ex_(scale.threads), parts_(open_parts(ex_, inputs)) {
     if (scale_.device.kind != DeviceKind::cpu) gpu_.emplace(scale_.device);
     if (scale_.temp_folder.empty()) scale_.temp_folder = std::filesystem::temp_directory_path().string();
     bytes_ = team_.reduce(bytes(), [](std::int64_t a, std::int64_t b) { return std::min(a, b); });
@@ -325,7 +331,7 @@ class FilesRun {
 
 }  // namespace
 
-bool reads_in_parts(const std::string& path) { return io::CloudParts::can_open(path); }
+bool reads_in_parts(const std::string& path) { return io::FileParts::can_open(path); }
 
 std::vector<std::string> missing_in_blocks(const std::vector<std::string>& inputs, const Options& options,
                                            const ScaleOptions& scale) {
@@ -340,11 +346,9 @@ std::vector<std::string> missing_in_blocks(const std::vector<std::string>& input
   name(options.envelope != nullptr, "an envelope");
   name(options.offset != 0, "an offset");
   name(options.weakness, "weakness");
-  for (const std::string& input : inputs)
-    if (const std::string label = label_of(input, options, scale); !label.empty()) {
-      missing.push_back("labels of points such as " + label);
-      break;
-    }
+  if (!inputs.empty())
+    if (std::string attributes = missing_attributes(inputs, options, scale); !attributes.empty())
+      missing.push_back(std::move(attributes));
   return missing;
 }
 
@@ -355,21 +359,19 @@ void check_request(const std::vector<std::string>& inputs, const Options& option
   const std::vector<std::string> missing = missing_in_blocks(inputs, options, scale);
   if (!missing.empty())
     throw Error(ErrorCode::usage, fmt::format("in blocks there is not yet: {}", fmt::join(missing, ", ")));
-  if (inputs.size() != 1)
-    throw Error(ErrorCode::usage, fmt::format("blocks are made of one file, not of {}", inputs.size()));
 }
 
 }  // namespace
 
 FilesPlan plan_files(const std::vector<std::string>& inputs, const Options& options, const ScaleOptions& scale) {
   check_request(inputs, options, scale);
-  return FilesRun(inputs.front(), options, scale).plan();
+  return FilesRun(inputs, options, scale).plan();
 }
 
 FilesReport reconstruct_files(const std::vector<std::string>& inputs, const std::string& output, const Options& options,
                               const ScaleOptions& scale) {
   check_request(inputs, options, scale);
-  return FilesRun(inputs.front(), options, scale).run(output);
+  return FilesRun(inputs, options, scale).run(output);
 }
 
 }  // namespace pointskin

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "exec/cpu.hpp"
@@ -26,10 +27,19 @@ namespace pointskin::test {
 namespace {
 
 using io::CloudParts;
+using io::FileParts;
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), sizeof(T) * a.size()) == 0);
+}
+
+/// NaN where the other has it, too.
+bool same_values(const AttributeValues& a, const AttributeValues& b) {
+  return a.type() == b.type() && a.mask() == b.mask() && a.visit([&](const auto& values) {
+    using T = typename std::decay_t<decltype(values)>::value_type;
+    return same_bytes(values, b.as<T>());
+  });
 }
 
 std::unique_ptr<CloudParts> open_parts(const std::string& path) {
@@ -53,10 +63,12 @@ Cloud read_in_parts(CloudParts& parts, std::int64_t rows, int threads, const std
   return all;
 }
 
-/// Reads `path` as a whole and in parts of several sizes.
-void expect_the_same(const std::string& path, const std::optional<Vec3d>& shift = std::nullopt) {
-  const Cloud whole = read_cloud(path, {.shift = shift});
-  const std::unique_ptr<CloudParts> parts = open_parts(path);
+/// Reads the files as a whole and in parts of several sizes.
+void expect_the_same(const std::vector<std::string>& paths, const std::optional<Vec3d>& shift = std::nullopt) {
+  Cloud whole;
+  for (const std::string& path : paths) merge_into(whole, read_cloud(path, {.shift = shift}));
+  exec::Cpu ex(2);
+  const std::unique_ptr<CloudParts> parts = CloudParts::open(ex, paths);
   ASSERT_NE(parts, nullptr);
   for (const std::int64_t rows : {std::int64_t{7}, std::int64_t{1000}, parts->rows()}) {
     SCOPED_TRACE("parts of " + std::to_string(rows) + " rows");
@@ -68,7 +80,7 @@ void expect_the_same(const std::string& path, const std::optional<Vec3d>& shift 
     ASSERT_EQ(cloud.attributes.size(), whole.attributes.size());
     for (std::size_t a = 0; a < cloud.attributes.size(); ++a) {
       EXPECT_EQ(cloud.attributes[a].name, whole.attributes[a].name);
-      EXPECT_EQ(cloud.attributes[a].values, whole.attributes[a].values);
+      EXPECT_TRUE(same_values(cloud.attributes[a].values, whole.attributes[a].values)) << cloud.attributes[a].name;
     }
   }
 }
@@ -106,8 +118,8 @@ TEST(CloudParts, AreTheWholeForEveryEncodingOfPly) {
       SCOPED_TRACE(std::string(big_endian ? "big" : "little") + (wide ? " double" : " float"));
       const std::string path = folder.file("points.ply");
       make_file(path, ply_of_points(big_endian, wide));
-      expect_the_same(path);
-      expect_the_same(path, Vec3d{1e6, 2e6, -3});
+      expect_the_same({path});
+      expect_the_same({path}, Vec3d{1e6, 2e6, -3});
       EXPECT_GT(read_cloud(path).dropped, 0);
     }
 }
@@ -143,9 +155,9 @@ TEST(CloudParts, ReadColumnsThatLieApart) {
   ASSERT_NE(order, std::string::npos);
   header.replace(order, 5, "True ");  // Fortran's order
   make_file(folder.file("columns.npy"), header + values);
-  expect_the_same(folder.file("columns.npy"));
+  expect_the_same({folder.file("columns.npy")});
   make_file(folder.file("rows.npy"), io::npy_header(AttributeType::float64, kRows, 6) + values);
-  expect_the_same(folder.file("rows.npy"));
+  expect_the_same({folder.file("rows.npy")});
 }
 
 TEST(CloudParts, ChooseTheOriginFromAllPointsButFewStrays) {
@@ -154,7 +166,7 @@ TEST(CloudParts, ChooseTheOriginFromAllPointsButFewStrays) {
   for (int row = 0; row < kRows; ++row)
     for (int axis = 0; axis < 3; ++axis) values += raw<double>(row == 4321 ? -4e9 : 5e6 + 0.01 * row + axis);
   make_file(folder.file("strays.npy"), io::npy_header(AttributeType::float64, kRows, 3) + values);
-  expect_the_same(folder.file("strays.npy"));
+  expect_the_same({folder.file("strays.npy")});
   EXPECT_GT(read_cloud(folder.file("strays.npy")).origin.x, 4e6);
 }
 
@@ -172,8 +184,8 @@ TEST(CloudParts, RefuseWhatDoesNotLieInRows) {
   const std::string binary = ply_of_points(false, false);
   const auto is_refused = [&](const std::string& name, const std::string& bytes) {
     make_file(folder.file(name), bytes);
-    EXPECT_EQ(CloudParts::can_open(folder.file(name)), open_parts(folder.file(name)) != nullptr);
-    return !CloudParts::can_open(folder.file(name));
+    EXPECT_EQ(FileParts::can_open(folder.file(name)), open_parts(folder.file(name)) != nullptr);
+    return !FileParts::can_open(folder.file(name));
   };
   EXPECT_TRUE(is_refused("corners.obj", "v 0 0 0\n"));
   EXPECT_TRUE(is_refused("points.json", "[[1, 2, 3]]"));
@@ -211,9 +223,9 @@ TEST(CloudParts, OfTextAreTheWhole) {
   const auto expect = [&](const std::string& name, const std::string& bytes) {
     SCOPED_TRACE(name);
     make_file(folder.file(name), bytes);
-    EXPECT_TRUE(CloudParts::can_open(folder.file(name)));
-    expect_the_same(folder.file(name));
-    expect_the_same(folder.file(name), Vec3d{1000, 0, 0});
+    EXPECT_TRUE(FileParts::can_open(folder.file(name)));
+    expect_the_same({folder.file(name)});
+    expect_the_same({folder.file(name)}, Vec3d{1000, 0, 0});
   };
   expect("places.xyz", lines_of_text(2000, [](int) { return ""; }));
   expect("scalar.xyz", lines_of_text(2000, [](int row) { return " " + std::to_string(row) + ".123456789012"; }));
@@ -238,17 +250,57 @@ TEST(CloudParts, OfPlyInTextAreTheWhole) {
       "ply\nformat ascii 1.0\nelement camera 2\nproperty float at\nelement nothing 4\nelement vertex 3000\nproperty "
       "float x\n"
       "property double y\nproperty float z\nproperty list uchar int tags\nproperty uchar red\nproperty int label\n"
-      "property double weight\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1\n2\n";
+      "property double weight\nelement edge 1\nproperty list uchar int corners\nend_header\n1\n2\n";
   text += lines_of_text(3000, [](int row) {
     return std::string(row % 2 == 0 ? " 0" : " 2 5 6") + " " + std::to_string(row % 256) + " " + std::to_string(row) +
            " 0.1";
   });
   make_file(folder.file("text.ply"), text + "3 0 1 2\n");
-  expect_the_same(folder.file("text.ply"));
+  expect_the_same({folder.file("text.ply")});
   make_file(folder.file("cut.ply"), text);
   EXPECT_THROW(open_parts(folder.file("cut.ply")), Error);
   make_file(folder.file("none.ply"), text.substr(0, text.find("element vertex")) + "end_header\n1\n2\n");
-  EXPECT_FALSE(CloudParts::can_open(folder.file("none.ply")));
+  EXPECT_FALSE(FileParts::can_open(folder.file("none.ply")));
+  // Vertices without normals take those of their faces.
+  const std::string mesh = "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 0\n";
+  const std::string start =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  make_file(folder.file("mesh.ply"), start + mesh);
+  EXPECT_FALSE(FileParts::can_open(folder.file("mesh.ply")));
+  make_file(folder.file("mesh.ply"), start + "property float nx\n" + mesh);
+  EXPECT_TRUE(FileParts::can_open(folder.file("mesh.ply")));
+}
+
+TEST(CloudParts, OfSeveralFilesAreTheMergedWhole) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, int points, const Vec3d& at, bool has_normals) {
+    Cloud cloud = sphere_cloud(points, static_cast<std::uint64_t>(points));
+    cloud.origin = at;
+    if (!has_normals) cloud.normals.clear();
+    std::vector<float> heights(cloud.positions.size());
+    for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = 0.1F * static_cast<float>(i);
+    cloud.attributes = {{"height", heights}, {name, std::vector<float>(heights.size(), 7)}};
+    write_cloud(folder.file(name), cloud);
+    return folder.file(name);
+  };
+  const std::string near = write("near.ply", 3000, {0, 0, 0}, true), far = write("far.ply", 5000, {4e6, -7e5, 3}, true),
+                    farther = write("farther.ply", 20000, {4e6, -7.01e5, 300}, true),
+                    bare = write("bare.ply", 100, {1, 2, 3}, false), none = folder.file("none.npy"),
+                    text = folder.file("text.csv");
+  make_file(none, io::npy_header(AttributeType::float32, 0, 3));
+  make_file(text, "x y z nx ny nz height\n" + lines_of_text(5000, [](int) { return " 0 0 1 0.123456789"; }));
+  expect_the_same({near, far});
+  expect_the_same({far, near});
+  expect_the_same({near, none, far, farther});
+  expect_the_same({none, text, farther, far, near});
+  expect_the_same({near, bare});
+  expect_the_same({near, far, text}, Vec3d{1e6, 0, 0});
+  exec::Cpu ex(1);
+  EXPECT_TRUE(CloudParts::open(ex, {near, far})->integers_with_gaps(ex).empty());
+  make_file(folder.file("marked.csv"), "x y z nx ny nz red\n0 0 0 0 0 1 200\n");
+  EXPECT_EQ(CloudParts::open(ex, {near, folder.file("marked.csv")})->integers_with_gaps(ex),
+            std::vector<std::string>{"red"});
+  EXPECT_THROW(CloudParts::open(ex, std::vector<std::string>{}), Error);
 }
 
 TEST(CloudParts, OfGarbledTextNameTheLineAsTheWholeDoes) {

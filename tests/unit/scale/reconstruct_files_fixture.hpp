@@ -32,14 +32,15 @@ class ReconstructFiles : public testing::Test {
 
   /// Reconstructs both ways, and compares files and reports.
   void expect_as_whole(const Options& options, std::int64_t memory_bytes) {
-    Cloud cloud = read_cloud(input_);
+    Cloud cloud;
+    for (const std::string& input : inputs_) merge_into(cloud, read_cloud(input));
     std::vector<bool> keep;
     for (const Vec3f& n : cloud.normals) keep.push_back(n != Vec3f{});
     const std::int64_t unreadable = cloud.dropped;
     keep_where(cloud, keep);
     Reconstructor reconstructor(Device::cpu(2));
     write_mesh(whole_, reconstructor.reconstruct(cloud, options));
-    files_ = reconstruct_files({input_}, output_, options, scale(memory_bytes));
+    files_ = reconstruct_files(inputs_, output_, options, scale(memory_bytes));
     EXPECT_TRUE(bytes_of_file(output_) == bytes_of_file(whole_));
     EXPECT_EQ(files_.dropped, unreadable);
     EXPECT_EQ(files_.dropped + files_.without_normal, cloud.dropped);
@@ -57,7 +58,7 @@ class ReconstructFiles : public testing::Test {
       ScaleOptions own = scale(memory_bytes);
       own.threads = 1;
       own.ranks = &ranks;
-      reports[static_cast<std::size_t>(ranks.rank())] = reconstruct_files({input_}, output, options, own);
+      reports[static_cast<std::size_t>(ranks.rank())] = reconstruct_files(inputs_, output, options, own);
     });
     EXPECT_TRUE(bytes_of_file(output) == bytes_of_file(whole_));
     EXPECT_EQ(temporary_.file_count(), 0U);
@@ -136,7 +137,7 @@ class ReconstructFiles : public testing::Test {
     return scale;
   }
   void reconstruct(const Options& options, std::int64_t memory_bytes = 100 * kMegabyte) const {
-    (void)reconstruct_files({input_}, output_, options, scale(memory_bytes));
+    (void)reconstruct_files(inputs_, output_, options, scale(memory_bytes));
   }
   /// A writer refuses what is not finite.
   void make_first_coordinate_nan() const {
@@ -151,6 +152,7 @@ class ReconstructFiles : public testing::Test {
   TemporaryFolder folder_, temporary_;
   std::string input_ = folder_.file("cloud.ply"), output_ = folder_.file("blocks.ply"),
               whole_ = folder_.file("whole.ply");
+  std::vector<std::string> inputs_{input_};
   FilesReport files_;
   int ranks_ = 1;  ///< that then do the same
 };

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iomanip>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,6 +34,45 @@ TEST_F(ReconstructFiles, WritesTheFileOfTheWhole) {
   EXPECT_EQ(files_.dropped, 1);
   expect_as_whole(at_depth(7), 0);
   EXPECT_EQ(files_.blocks, 1);
+}
+
+/// Scans in files of their own, far away, one of them text.
+TEST_F(ReconstructFiles, MergesSeveralFiles) {
+  ranks_ = 3;
+  const Cloud cloud = with_attributes(torus_cloud(60000, 1));
+  const auto part = [&](int number, float at) {
+    std::vector<bool> keep;
+    for (const Vec3f& p : cloud.positions) keep.push_back(number == (p.x < -0.3F ? 0 : p.x < 0.4F ? 1 : 2));
+    Cloud some = cloud;
+    keep_where(some, keep);
+    some.dropped = 0;
+    some.origin = {3e5, -2e6 + at, 0};
+    for (Vec3f& p : some.positions) p.y -= at;
+    return some;
+  };
+  start(part(0, 0));
+  inputs_ = {input_, folder_.file("middle.ply"), folder_.file("last.csv")};
+  write_cloud(inputs_[1], part(1, 1000));
+  std::ofstream text(inputs_[2]);
+  text << "x,y,z,nx,ny,nz,red,green,blue,height\n" << std::setprecision(17);
+  const Cloud last = part(2, 0);
+  for (std::size_t i = 0; i < last.positions.size(); ++i) {
+    const Vec3f &p = last.positions[i], &n = last.normals[i];
+    text << 3e5 + p.x << ',' << -2e6 + p.y << ',' << p.z << ',' << n.x << ',' << n.y << ',' << n.z << ',' << i % 256
+         << ",7,0," << p.z << '\n';
+  }
+  text.close();
+  Options options = at_depth(8);
+  expect_as_whole(options, 50 * kMegabyte);
+  EXPECT_GT(files_.blocks, 1);
+  options.attributes = true;
+  EXPECT_EQ(missing_in_blocks(inputs_, options),
+            std::vector<std::string>{"integers that not all files have, such as intensity"});
+  ScaleOptions colours = scale(50 * kMegabyte);
+  colours.only_colours = true;
+  EXPECT_TRUE(missing_in_blocks(inputs_, options, colours).empty());
+  inputs_.resize(2);
+  expect_as_whole(options, 50 * kMegabyte);
 }
 
 /// Few points at a great depth: their octree needs more than what blocks are planned for.
@@ -282,9 +323,8 @@ TEST_F(ReconstructFiles, SaysWhatBlocksCannotDo) {
   EXPECT_EQ(missing_in_blocks({input_}, options), (std::vector<std::string>{"making normals", "weakness"}));
   expect_error(ErrorCode::usage, "making normals, weakness", [&] { reconstruct(options); });
   expect_error(ErrorCode::usage, "depth", [&] { reconstruct(at_depth(6)); });
-  expect_error(ErrorCode::usage, "one file", [&] {
-    (void)reconstruct_files({input_, input_}, output_, at_depth(7), scale(0));
-  });
+  expect_error(ErrorCode::usage, "files", [&] { (void)reconstruct_files({}, output_, at_depth(7), scale(0)); });
+  EXPECT_TRUE(missing_in_blocks({}, at_depth(7)).empty());
   EXPECT_TRUE(missing_in_blocks({input_}, at_depth(7)).empty());
 }
 

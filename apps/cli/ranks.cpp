@@ -39,8 +39,8 @@ bool tells_for_all() noexcept {
 bool tells_of(ErrorCode error) noexcept {
   if (tells_for_all()) return true;
   if (error == ErrorCode::usage) return false;
-  constexpr int kLooks = 20;
-  for (int look = 0; look < kLooks && !interrupted(); ++look) usleep(1'000'000 / kLooks);
+  constexpr int kLooks = 60, kMicroseconds = 50'000;
+  for (int look = 0; look < kLooks && !interrupted(); ++look) usleep(kMicroseconds);
   return !interrupted();
 }
 

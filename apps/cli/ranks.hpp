@@ -17,7 +17,7 @@ Ranks* launched_ranks();
 bool tells_for_all() noexcept;
 
 /// Whether this process tells of its error: of errors that all ranks meet, and of what one error leads to in the others, one tells.
-/// Where that is not known, the first rank has a second for telling and ending all.
+/// Where that is not known, the first rank has three seconds for telling and ending all.
 bool tells_of(ErrorCode error) noexcept;
 
 /// The end of main(): of ranks all end where one has met an error, which may be before the others know.

@@ -3,6 +3,7 @@
 #include <pointskin/error.hpp>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -103,11 +104,18 @@ void Spool::reserve() const {
   }
 }
 
+/// Writing behind the end of a file that another program has cut would fill it with zeros, and hide that it was.
+bool Spool::is_cut() const {
+  struct stat status {};
+  return ::fstat(file_.get(), &status) == 0 && status.st_size < bytes_;
+}
+
 template <class Move>
 void Spool::move_all(std::int64_t count, const char* what, const Move& move) const {
   std::int64_t moved = 0;
   while (moved < count) {
     exec::throw_if_cancelled();
+    if (is_cut()) fail(what, EIO);
     const ssize_t now = move(moved, static_cast<std::size_t>(std::min(count - moved, kAtOnce)));
     if (now < 0 && errno == EINTR) continue;
     if (now <= 0) fail(what, now < 0 ? errno : EIO);

@@ -53,6 +53,7 @@ class Spool {
   Spool(std::string folder, std::int64_t bytes, int file) : folder_(std::move(folder)), bytes_(bytes), file_(file) {}
   [[noreturn]] void fail(const char* what, int error) const;
   void reserve() const;
+  [[nodiscard]] bool is_cut() const;
   /// Calls move(bytes done, bytes to do at most), which returns as pread() does, until `count` bytes are done.
   template <class Move>
   void move_all(std::int64_t count, const char* what, const Move& move) const;

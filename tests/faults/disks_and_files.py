@@ -239,6 +239,53 @@ def cut_inputs(found, bench, root, everything):
                         f"{name} with {file} cut before call {rule[1]} of {rule[0]}: exit code {result.code}, {wrong}")
 
 
+def spools_of(process):
+    """Paths by which files without a name that a process has open are reached."""
+    folder = pathlib.Path(f"/proc/{process.pid}/fd")
+    spools = []
+    try:
+        for entry in folder.iterdir():
+            if os.readlink(entry).endswith(" (deleted)") and entry.stat().st_size > 0:
+                spools.append(entry)
+    except OSError:
+        pass  # it has just been closed, or the process has ended
+    return spools
+
+
+def cut_spools(found, bench, root, everything):
+    """Another program cuts a file of temporary data to half its length while blocks are worked on."""
+    one = runs.COMMANDS["reconstruct-blocks"]
+    began = time.monotonic()
+    good = bench.run(one)
+    seconds = time.monotonic() - began
+    rounds = 40 if everything else 5
+    cuts = 0
+    for number in range(rounds):
+        folder = pathlib.Path(tempfile.mkdtemp(dir=root))
+        with_old_files(one, folder)
+        process = started(bench, bench.words(one)[1:], folder)
+        time.sleep(seconds * (number + 0.5) / rounds)
+        spools = spools_of(process)
+        if spools:
+            spool = spools[number % len(spools)]
+            try:
+                os.truncate(spool, spool.stat().st_size // 2)
+                cuts += 1
+            except OSError:
+                pass
+        at = time.monotonic()
+        result = ended(process)
+        story = f"a spool of blocks cut, round {number} of {rounds}"
+        if result.code == 0:  # it was not needed any more
+            found.check({name: held(folder)[name] for name in one.outputs} == {name: good.files[name] for name in one.outputs},
+                        f"{story}: another mesh")
+            continue
+        fails_well(found, result, NOT_WRITTEN, story)
+        found.check(time.monotonic() - at < 10, f"{story}: it took {time.monotonic() - at:.1f} s to end")
+        found.check(held(folder) == {name: runs.OLD for name in (*one.outputs, *one.reports)}, f"{story}: left {list(held(folder))}")
+    found.check(cuts > 0, "no spool of blocks was met")
+
+
 def removed_working_folders(found, bench, root, _):
     """Names that are relative lead nowhere."""
     for name, one in WRITERS.items():
@@ -265,7 +312,8 @@ def main():
         if shutil.which("unshare") and subprocess.run(trial, capture_output=True).returncode == 0:
             os.execvp("unshare", [*alone, sys.executable, *sys.argv, "--inside"])
         print("left out: full disks and read-only folders, for nothing may be mounted here")
-    tests = [full_devices, full_stdout, closed_pipes, aliased, concurrent_writers, cut_inputs, removed_working_folders]
+    tests = [full_devices, full_stdout, closed_pipes, aliased, concurrent_writers, cut_inputs, cut_spools,
+             removed_working_folders]
     found = Findings()
     for test in tests + ([full_disks, read_only_folders] if args.inside else []):
         tried, wrong, began = found.tried, found.count, time.monotonic()

@@ -92,9 +92,13 @@ TEST(Spool, ThatHasBecomeShorterIsAnError) {
   const Spool spool(path_of(folder), 10'000);
   std::filesystem::resize_file(open_file_in(path_of(folder)), 4'000);
   std::vector<char> bytes(10'000);
-  spool.read(0, bytes.data(), 4'000);
-  const std::string story = story_of(ErrorCode::output_not_written, [&] { spool.read(0, bytes.data(), 10'000); });
-  EXPECT_NE(story.find("cannot be read"), std::string::npos) << story;
+  for (const std::int64_t count : {1'000, 10'000}) {
+    const std::string story = story_of(ErrorCode::output_not_written, [&] { spool.read(0, bytes.data(), count); });
+    EXPECT_NE(story.find("cannot be read"), std::string::npos) << story;
+  }
+  // Else what lies between would be zeros from now on, and nobody would know.
+  const std::string story = story_of(ErrorCode::output_not_written, [&] { spool.write(9'000, bytes.data(), 1'000); });
+  EXPECT_NE(story.find("cannot be written"), std::string::npos) << story;
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 # CPack runs this script between installing the components into its folder and making packages of them: manual pages are
 # packed, and every package gets its copyright and changelog, as Debian's policy asks (12.5, 12.7, 12.1).
 find_program(POINTSKIN_GZIP gzip REQUIRED)
-set(names ${CPACK_DEBIAN_PROGRAM_PACKAGE_NAME} ${CPACK_DEBIAN_LIB_PACKAGE_NAME} ${CPACK_DEBIAN_DEV_PACKAGE_NAME}
-  ${CPACK_DEBIAN_PYTHON_PACKAGE_NAME})
-foreach(component name IN ZIP_LISTS CPACK_COMPONENTS_ALL names)
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  string(TOUPPER ${component} upper)
+  set(name ${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
   set(share ${CPACK_TEMPORARY_DIRECTORY}/${component}/usr/share)
   file(GLOB pages ${share}/man/man1/*.1)
   if(pages)

@@ -1,5 +1,5 @@
-# Debian packages by CPack, one a component: pointskin, libpointskin0, libpointskin-dev and python3-pointskin; with CUDA the
-# first two end in -cuda and take the place of the others.
+# Debian packages by CPack, one a component: pointskin, libpointskin0, libpointskin-dev, python3-pointskin, and for each MPI
+# that was found pointskin-openmpi and pointskin-mpich; with CUDA the first two end in -cuda and take the place of the others.
 set(suffix)
 if(POINTSKIN_HAS_CUDA)
   set(suffix -cuda)
@@ -11,7 +11,7 @@ set(CPACK_PACKAGE_CONTACT "The Pointskin authors <pointskin@localhost>")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL program lib dev python)
+set(CPACK_COMPONENTS_ALL program lib dev python ${POINTSKIN_MPIS})
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
@@ -69,6 +69,21 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "pointskin")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "surface reconstruction, for Python
  Arrays of numpy, torch, cupy and others in and out, on the CPU or on a GPU.")
+
+foreach(name IN LISTS POINTSKIN_MPIS)
+  string(TOUPPER ${name} component)
+  set(launcher_openmpi openmpi-bin)
+  set(launcher_mpich mpich)
+  set(title_openmpi "Open MPI")
+  set(title_mpich MPICH)
+  set(CPACK_DEBIAN_${component}_PACKAGE_NAME pointskin-${name})
+  set(CPACK_DEBIAN_${component}_PACKAGE_SECTION graphics)
+  set(CPACK_DEBIAN_${component}_PACKAGE_DEPENDS "pointskin (= ${PROJECT_VERSION})")
+  set(CPACK_DEBIAN_${component}_PACKAGE_RECOMMENDS ${launcher_${name}})
+  set(CPACK_COMPONENT_${component}_DESCRIPTION "surface reconstruction by several hosts, with ${title_${name}}
+ The module with which the program pointskin shares a reconstruction among the
+ processes that a launcher of ${title_${name}} starts.")
+endforeach()
 
 # Compiled modules come and go with the package.
 file(WRITE ${PROJECT_BINARY_DIR}/packaging/postinst

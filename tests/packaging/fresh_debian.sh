@@ -30,7 +30,8 @@ else
   mkdir -p "$root" && tar -xf "$bare" -C "$root"
 fi
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
-mkdir "$root/packages" && cp "$dist"/*.deb "$dist"/*.whl "$root/packages"
+mkdir "$root/packages" "$root/packages/mpi" && cp "$dist"/*.deb "$dist"/*.whl "$root/packages"
+mv "$root"/packages/pointskin-{openmpi,mpich}_*.deb "$root/packages/mpi"  # each brings an MPI along
 mount -t proc proc "$root/proc"
 mapfile -t way < <(env | grep -iE '^[a-z_]*proxy=' || true)
 inside() { chroot "$root" env -i "${way[@]}" PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
@@ -70,5 +71,12 @@ inside cmp /by_wheel.ply /by_deb.ply
 inside cmp /by_deb.ply /by_program.ply
 inside sh -c 'ldd /usr/bin/pointskin /usr/lib/*/libpointskin.so.0' | { ! grep -E 'libGL|libcuda|not found'; }
 inside test -s /usr/share/man/man1/pointskin-reconstruct.1 -o -s /usr/share/man/man1/pointskin-reconstruct.1.gz
+
+echo "== the module for Open MPI"
+! inside sh -c 'command -v mpirun'
+inside sh -c 'apt-get install -q -y --no-install-recommends /packages/mpi/pointskin-openmpi_*.deb openmpi-bin' >"$folder/apt.log" 2>&1 ||
+  { tail -20 "$folder/apt.log"; exit 1; }
+inside mpirun --allow-run-as-root --oversubscribe -n 2 pointskin reconstruct /ball.ply -o /by_ranks.ply --depth 7 -q
+inside cmp /by_deb.ply /by_ranks.ply
 inside apt-get remove -q -y pointskin libpointskin0 >/dev/null
 echo "== all of it is the same mesh"

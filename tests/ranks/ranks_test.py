@@ -47,6 +47,7 @@ class Ranks:
 
     def __init__(self, launcher, program, folder):
         self.launcher, self.program, self.folder = launcher, program, folder
+        self.has_thread_sanitizer = b"__tsan_init" in pathlib.Path(program).read_bytes()
         self.temp = folder / "temp"
         self.temp.mkdir(exist_ok=True)
 
@@ -63,7 +64,10 @@ class Ranks:
         leaks = self.folder / "leaks.txt"
         leaks.write_text("".join(f"leak:{library}\n" for library in MPI_LIBRARIES))
         ours = {"LSAN_OPTIONS": f"suppressions={leaks}:print_suppressions=0", "TSAN_OPTIONS": "ignore_noninstrumented_modules=1"}
-        return os.environ | {name: f"{os.environ.get(name, '')}:{value}".strip(":") for name, value in ours.items()}
+        theirs = {name: f"{os.environ.get(name, '')}:{value}".strip(":") for name, value in ours.items()}
+        if self.has_thread_sanitizer:
+            theirs["UCX_MEM_EVENTS"] = "n"  # MPICH's UCX takes memory calls over, as the sanitizer has
+        return os.environ | theirs
 
     def run(self, count, arguments):
         ranks = self.start(count, arguments)

@@ -53,11 +53,6 @@ std::optional<PointTable> points_in_place(const Source& source) {
   return is_ply(source.bytes) ? vertices_in_place(source) : table_of(source, parse_npy(source)).table();
 }
 
-bool is_text(const Source& source) {
-  const bool has_columns = read_format(source, false).run.read_cloud == parse_text;
-  return has_columns && !(extension_of(source.name) == ".xyz" && is_binary_xyz(source));
-}
-
 /// False for a mesh whose vertices take the normals of its faces, too.
 bool has_points_alone(const PlyHeader& header) {
   const PlyElement* const vertex = header.find("vertex");
@@ -70,11 +65,16 @@ bool has_points_alone(const PlyHeader& header) {
 
 Layout layout_of(const Input& input) {
   const Source source = input.source();
-  if (is_ply(source.bytes)) {
+  const auto reader = read_format(source, false).run.read_cloud;
+  if (reader == parse_text) {
+    const bool is_binary = extension_of(source.name) == ".xyz" && is_binary_xyz(source);
+    return is_binary ? Layout::none : Layout::columns_of_text;
+  }
+  if (reader == parse_ply_cloud) {
     const PlyHeader header = parse_ply_header(source);
     if (header.encoding == PlyEncoding::ascii) return has_points_alone(header) ? Layout::ply_text : Layout::none;
-  } else if (!is_npy(source.bytes)) {
-    return is_text(source) ? Layout::columns_of_text : Layout::none;
+  } else if (reader != parse_npy_cloud) {
+    return Layout::none;
   }
   const std::optional<PointTable> table = points_in_place(source);
   return table && TableParts::holds(input, *table) ? Layout::in_place : Layout::none;
@@ -126,9 +126,9 @@ void FileParts::for_coordinates(exec::Cpu& ex, const Use& use) const {
 }
 
 void FileParts::choose_origin(exec::Cpu& ex, const std::optional<Vec3d>& shift) {
+  Bytes none;
+  assemble(ex, input_.source(), rows_->read(ex, 0, 0, none), shift);  // refuses what cannot be
   if (shift) {
-    Bytes none;
-    assemble(ex, input_.source(), rows_->read(ex, 0, 0, none), shift);  // refuses what cannot be
     origin_ = *shift;
     return;
   }

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "io/scalar.hpp"
+
 namespace pointskin::io {
 namespace {
 
@@ -70,7 +72,7 @@ PointTable TableParts::read(exec::Cpu& /*ex*/, std::int64_t first, std::int64_t 
     input_.read_at(band.at + static_cast<std::size_t>(first * band.stride), bytes, to);
     for (const std::size_t c : band.columns)
       part.columns[c].data =
-          to + static_cast<std::size_t>(table_.columns[c].data - start - static_cast<std::ptrdiff_t>(band.at));
+          behind(to, static_cast<std::size_t>(table_.columns[c].data - start - static_cast<std::ptrdiff_t>(band.at)));
     to += bytes;
   }
   return part;

@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "io/ply_row.hpp"
+#include "io/scalar.hpp"
 #include "io/text_columns.hpp"
 
 namespace pointskin::io {
 namespace {
 
-constexpr std::size_t kIndexedAtOnce = std::size_t{32} << 20;
+constexpr std::size_t kIndexedAtOnce = std::size_t{8} << 20;  // bytes, which are in memory meanwhile
 
 Column stored_as_double(std::string name, AttributeType declared) {
   Column column;
@@ -134,7 +135,7 @@ PointTable TextParts::read(exec::Cpu& ex, std::int64_t first, std::int64_t count
   PointTable table = table_;
   table.rows = count;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    table.columns[c].data = buffer.data() + sizeof(double) * c;
+    table.columns[c].data = behind(buffer.data(), sizeof(double) * c);
     table.columns[c].stride_bytes = static_cast<std::int64_t>(row_bytes);
   }
   return table;

@@ -1,5 +1,5 @@
 """Makes the seeds of fuzz_read_cloud and fuzz_read_mesh: a small file of every format, behind the byte that picks it. Those of
-fuzz_mesh_parts are the PLY files alone.
+fuzz_mesh_parts are the PLY files alone, those of fuzz_cloud_parts PLY, text and NPY.
 
     POINTSKIN_PROGRAM=build/bin/pointskin python3 tests/fuzz/make_seeds.py tests/fuzz/corpus
 
@@ -152,9 +152,11 @@ def main():
                 seed = bytes([picks[file.suffix]]) + file.read_bytes()
                 if len(seed) <= 8192:
                     (out / program / file.name.replace(".", "_")).write_bytes(seed)
-        (out / "fuzz_mesh_parts").mkdir(parents=True, exist_ok=True)
-        for file in sorted(folder.glob("*.ply")):
-            (out / "fuzz_mesh_parts" / file.name.replace(".", "_")).write_bytes(file.read_bytes())
+        for program, suffixes in (("fuzz_mesh_parts", (".ply",)), ("fuzz_cloud_parts", (".ply", ".xyz", ".csv", ".npy"))):
+            (out / program).mkdir(parents=True, exist_ok=True)
+            for file in sorted(folder.iterdir()):
+                if file.suffix in suffixes:
+                    (out / program / file.name.replace(".", "_")).write_bytes(file.read_bytes())
 
 
 if __name__ == "__main__":

@@ -179,6 +179,16 @@ TEST(CloudParts, OfNoPointsAreNone) {
   EXPECT_EQ(read_in_parts(*parts, 10, 1, std::nullopt).size(), 0);
 }
 
+TEST(CloudParts, OfNoPointsNeedCoordinatesAllTheSame) {
+  const TemporaryFolder folder;
+  make_file(folder.file("none.ply"),
+            "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nend_header\n");
+  exec::Cpu ex(1);
+  const std::unique_ptr<CloudParts> parts = CloudParts::open(ex, folder.file("none.ply"));
+  ASSERT_NE(parts, nullptr);
+  EXPECT_THROW(parts->choose_origin(ex, std::nullopt), Error);
+}
+
 TEST(CloudParts, RefuseWhatDoesNotLieInRows) {
   const TemporaryFolder folder;
   const std::string binary = ply_of_points(false, false);

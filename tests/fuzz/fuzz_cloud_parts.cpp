@@ -1,13 +1,8 @@
 // Fuzzes the reader of clouds in parts: the input is a file of text, PLY or NPY. What it reads must be what read_cloud() reads, in
 // any parts.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -19,19 +14,13 @@
 
 #include "exec/cpu.hpp"
 #include "io/cloud_parts.hpp"
+#include "whole_and_parts.hpp"
 
 using namespace pointskin;
+using fuzz::require;
+using fuzz::same_bytes;
 
 namespace {
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), sizeof(T) * a.size()) == 0);
-}
 
 bool same_attribute(const Attribute& a, const Attribute& b) {
   return a.name == b.name && a.type() == b.type() && a.values.visit([&](const auto& values) {
@@ -57,21 +46,13 @@ Cloud read_in_parts(io::CloudParts& file, std::int64_t rows) {
   return all;
 }
 
-std::optional<Cloud> read_as_a_whole(const std::string& path) {
-  try {
-    return read_cloud(path, {.shift = std::nullopt, .threads = 1});
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const int file = memfd_create("fuzz", 0);
-  require(file >= 0 && write(file, data, size) == static_cast<ssize_t>(size));
-  const std::string path = "/proc/self/fd/" + std::to_string(file);
-  const std::optional<Cloud> whole = read_as_a_whole(path);
+  const fuzz::InputFile file("fuzz", data, size);
+  const std::string path = file.path();
+  const std::optional<Cloud> whole =
+      fuzz::read_or_nothing([&] { return read_cloud(path, {.shift = std::nullopt, .threads = 1}); });
   try {
     exec::Cpu ex(1);
     if (const auto parts = io::CloudParts::open(ex, path)) {
@@ -82,6 +63,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const Error&) {
     require(!whole);
   }
-  close(file);
   return 0;
 }

@@ -1,12 +1,7 @@
 // Fuzzes the reader of meshes in parts: the input is a PLY file. What it reads must be what read_mesh() reads, in any parts.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,19 +11,13 @@
 
 #include "exec/cpu.hpp"
 #include "io/ply_mesh_parts.hpp"
+#include "whole_and_parts.hpp"
 
 using namespace pointskin;
+using fuzz::require;
+using fuzz::same_bytes;
 
 namespace {
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), sizeof(T) * a.size()) == 0);
-}
 
 /// f(first, count) for parts of `count` rows of n.
 template <class F>
@@ -58,21 +47,13 @@ Arrays read_in_parts(io::PlyMeshParts& file, std::int64_t rows) {
   return arrays;
 }
 
-std::optional<Mesh> read_as_a_whole(const std::string& path) {
-  try {
-    return read_mesh(path, {.shift = std::nullopt, .threads = 1});
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const int file = memfd_create("fuzz.ply", 0);
-  require(file >= 0 && write(file, data, size) == static_cast<ssize_t>(size));
-  const std::string path = "/proc/self/fd/" + std::to_string(file);
-  const std::optional<Mesh> whole = read_as_a_whole(path);
+  const fuzz::InputFile file("fuzz.ply", data, size);
+  const std::string path = file.path();
+  const std::optional<Mesh> whole =
+      fuzz::read_or_nothing([&] { return read_mesh(path, {.shift = std::nullopt, .threads = 1}); });
   try {
     if (const auto parts = io::PlyMeshParts::open(path)) {
       const Arrays all = read_in_parts(*parts, 1 << 20), few = read_in_parts(*parts, 3);
@@ -82,6 +63,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const Error& error) {
     require(!whole || error.code() == ErrorCode::over_limit);  // which a face that is no triangle is
   }
-  close(file);
   return 0;
 }

@@ -20,8 +20,10 @@ class BlockWriter {
  public:
   enum class Target { file, stream };
 
-  /// @param fd  stands at the start of a file that can be written at any offset, or is a stream
-  BlockWriter(const Blocks& blocks, int fd, Target target) : blocks_(blocks), fd_(fd), target_(target) {}
+  /// @param fd     of a file that can be written at any offset, or a stream
+  /// @param place  of the first block in the file
+  BlockWriter(const Blocks& blocks, int fd, Target target, std::int64_t place = 0)
+      : blocks_(blocks), fd_(fd), target_(target), place_(place) {}
 
   /// Makes and writes all blocks; at most one per thread is in memory.
   /// @throws std::system_error if the system refuses to write, or whatever Blocks::make throws
@@ -44,8 +46,8 @@ class BlockWriter {
   std::mutex mutex_;  ///< guards what follows
   std::condition_variable turn_changed_;
   std::int64_t taken_ = 0;
-  std::int64_t turn_ = 0;   ///< the block that is to get its place next
-  std::int64_t place_ = 0;  ///< bytes before that block
+  std::int64_t turn_ = 0;  ///< the block that is to get its place next
+  std::int64_t place_;     ///< bytes before that block
   bool stopped_ = false;
 };
 

@@ -144,6 +144,21 @@ void write_stream(exec::Cpu& ex, const std::string& path, const Blocks& blocks) 
   if (file.close() != 0 && errno != EINTR) fail_to_write(path, errno);
 }
 
+/// What a regular file at `path` replaces.
+struct Replaced {
+  std::string target;                 ///< where the links of the path lead to
+  std::optional<struct stat> status;  ///< of what is there
+};
+Replaced replaced_by(const std::string& path) {
+  if (path.empty()) fail_to_write(path, ENOENT);
+  const std::string target = follow_links(path);
+  const auto old = status_of(target);
+  if ((old && S_ISDIR(old->st_mode)) || target.ends_with('/')) fail_to_write(path, EISDIR);
+  // A rename would replace a write-protected file without asking.
+  if (old && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail_to_write(path, errno);
+  return {target, old};
+}
+
 }  // namespace
 
 bool is_stream(const std::string& path) {
@@ -152,21 +167,27 @@ bool is_stream(const std::string& path) {
   return status && !S_ISREG(status->st_mode) && !S_ISDIR(status->st_mode);
 }
 
-/// A new file next to `target`, which `path` names; it vanishes unless it is renamed.
-class FilesTogether::TemporaryFile {
+/// A new file next to what it replaces, which `path` names; it vanishes unless it is renamed.
+class TemporaryFile {
  public:
-  TemporaryFile(const std::string& path, std::string target) : path_(path), target_(std::move(target)), fd_(create()) {}
+  explicit TemporaryFile(const std::string& path) : path_(path), replaced_(replaced_by(path)), fd_(create()) {}
+  /// That another process has made.
+  TemporaryFile(const std::string& path, std::string name) : path_(path), name_(std::move(name)), fd_(open()) {}
   ~TemporaryFile() {
     if (!name_.empty()) ::unlink(name_.c_str());
-    if (place_ != nullptr) place_->store(nullptr);
+    forget();
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   [[nodiscard]] int fd() const { return fd_.get(); }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// Takes over owner and permissions. Changing the owner may be forbidden and is then left out.
-  void inherit(const struct stat& old) const {
+  /// Takes over owner and permissions of what is replaced. Changing the owner may be forbidden and is then left out.
+  void inherit() const {
+    if (!replaced_.status) return;
+    const struct stat& old = *replaced_.status;
     const bool same_owner = old.st_uid == ::geteuid() && old.st_gid == ::getegid();
     if (!same_owner && ::fchown(fd(), old.st_uid, old.st_gid) != 0) errno = 0;
     if (::fchmod(fd(), old.st_mode & 0777) != 0) fail_to_write(path_, errno);
@@ -181,7 +202,12 @@ class FilesTogether::TemporaryFile {
   }
 
   void replace() {
-    if (::rename(name_.c_str(), target_.c_str()) != 0) fail_to_write(path_, errno);
+    if (::rename(name_.c_str(), replaced_.target.c_str()) != 0) fail_to_write(path_, errno);
+    forget();
+  }
+
+  /// The file is no longer under its temporary name.
+  void forget() {
     if (place_ != nullptr) place_->store(nullptr);
     place_ = nullptr;
     name_.clear();
@@ -191,8 +217,8 @@ class FilesTogether::TemporaryFile {
   int create() {
     constexpr int kTries = 100;
     constexpr std::size_t kLongestBase = 180;  // leaves room for the rest within the 255 bytes of a file name
-    const std::string folder = folder_of(target_);
-    const std::string base = target_.substr(folder.size(), kLongestBase);
+    const std::string folder = folder_of(replaced_.target);
+    const std::string base = replaced_.target.substr(folder.size(), kLongestBase);
     const MakingFile making;
     if (process_ends) fail_to_write(path_, ECANCELED);
     for (int i = 0; i < kTries; ++i) {
@@ -208,8 +234,15 @@ class FilesTogether::TemporaryFile {
     fail_to_write(path_, EEXIST);
   }
 
+  int open() {
+    const int fd = ::open(name_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (fd < 0) fail_to_write(path_, errno);
+    place_ = remember_unfinished(name_.c_str());
+    return fd;
+  }
+
   const std::string path_;
-  const std::string target_;
+  const Replaced replaced_{};
   std::string name_;
   std::atomic<const char*>* place_ = nullptr;
   FileDescriptor fd_;
@@ -220,15 +253,9 @@ FilesTogether::~FilesTogether() = default;
 
 void FilesTogether::write(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
   if (is_stream(path)) return write_stream(ex, path, blocks);
-  if (path.empty()) fail_to_write(path, ENOENT);
-  const std::string target = follow_links(path);
-  const auto old = status_of(target);
-  if ((old && S_ISDIR(old->st_mode)) || target.ends_with('/')) fail_to_write(path, EISDIR);
-  // A rename would replace a write-protected file without asking.
-  if (old && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail_to_write(path, errno);
-  auto file = std::make_unique<TemporaryFile>(path, target);
+  auto file = std::make_unique<TemporaryFile>(path);
   write_to(ex, path, {blocks, file->fd(), BlockWriter::Target::file});
-  if (old) file->inherit(*old);
+  file->inherit();
   file->finish();
   files_.push_back(std::move(file));
 }
@@ -237,6 +264,31 @@ void FilesTogether::replace() {
   for (const auto& file : files_) file->replace();
   files_.clear();
 }
+
+FileOfMany::FileOfMany(std::unique_ptr<TemporaryFile> file) : file_(std::move(file)) {}
+FileOfMany::FileOfMany(FileOfMany&&) noexcept = default;
+FileOfMany::~FileOfMany() = default;
+
+FileOfMany FileOfMany::make(const std::string& path) {
+  FileOfMany file(std::make_unique<TemporaryFile>(path));
+  file.file_->inherit();
+  return file;
+}
+FileOfMany FileOfMany::open(const std::string& path, const std::string& temporary_name) {
+  return FileOfMany(std::make_unique<TemporaryFile>(path, temporary_name));
+}
+
+const std::string& FileOfMany::temporary_name() const { return file_->name(); }
+
+void FileOfMany::write(exec::Cpu& ex, const Blocks& blocks, std::int64_t first, std::int64_t last) {
+  const auto make = [&](std::int64_t b, std::string& bytes) { blocks.make(first + b, bytes); };
+  const Blocks part{last - first, make, {}};
+  write_to(ex, file_->path(), {part, file_->fd(), BlockWriter::Target::file, blocks.place(first)});
+}
+
+void FileOfMany::finish() { file_->finish(); }
+void FileOfMany::replace() { file_->replace(); }
+void FileOfMany::forget() { file_->forget(); }
 
 void write_blocks(exec::Cpu& ex, const std::string& path, const Blocks& blocks) {
   FilesTogether file;

@@ -213,15 +213,16 @@ Blocks format_ply_mesh(const Mesh& mesh, const WriteOptions& options) {
 Blocks format_ply(const VertexArrays& vertices, const std::vector<Triangle>* triangles) {
   std::string header = ply_header(vertices, triangles, "binary_little_endian");
   const std::vector<AttributeType> types = stored_types(vertices);
-  const auto append_vertices = [vertices, types, row_bytes = row_of(vertices).bytes()](
-                                   std::size_t first, std::size_t last, std::string& bytes) {
+  const std::size_t row_bytes = row_of(vertices).bytes();
+  const auto append_vertices = [vertices, types, row_bytes](std::size_t first, std::size_t last, std::string& bytes) {
     store_rows(vertices, types, {first, last, row_bytes}, append_rows(bytes, last - first, row_bytes));
   };
   const auto append_faces = [triangles](std::size_t first, std::size_t last, std::string& bytes) {
     store_faces(*triangles, first, last, append_rows(bytes, last - first, kFaceBytes));
   };
   const std::size_t faces = triangles != nullptr ? triangles->size() : 0;
-  return cut_into_blocks(std::move(header), {{vertices.positions.size(), append_vertices}, {faces, append_faces}});
+  return cut_into_blocks(std::move(header),
+                         {{vertices.positions.size(), append_vertices, row_bytes}, {faces, append_faces, kFaceBytes}});
 }
 
 Blocks format_ply_parts(const MeshParts& mesh, bool double_coordinates) {
@@ -252,7 +253,7 @@ Blocks format_ply_parts(const MeshParts& mesh, bool double_coordinates) {
   };
   const auto faces = static_cast<std::size_t>(mesh.triangles);
   return cut_into_blocks(whole_header(row, faces, "binary_little_endian"),
-                         {{row.count, append_vertices}, {faces, append_faces}});
+                         {{row.count, append_vertices, row.bytes()}, {faces, append_faces, kFaceBytes}});
 }
 
 Blocks format_device_ply(const Workspace& workspace, const DeviceMesh& mesh, bool double_coordinates) {
@@ -280,7 +281,7 @@ Blocks format_device_ply(const Workspace& workspace, const DeviceMesh& mesh, boo
   };
   const auto faces = static_cast<std::size_t>(mesh.triangles.size);
   return cut_into_blocks(whole_header(row, faces, "binary_little_endian"),
-                         {{row.count, append_vertices}, {faces, append_faces}});
+                         {{row.count, append_vertices, row.bytes()}, {faces, append_faces, kFaceBytes}});
 }
 
 }  // namespace pointskin::io

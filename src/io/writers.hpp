@@ -118,9 +118,11 @@ Blocks format_npz_cloud(const Cloud& cloud, const WriteOptions& options);
 struct Section {
   std::size_t rows;
   std::function<void(std::size_t first, std::size_t last, std::string& bytes)> append;
+  std::size_t row_bytes = 0;  ///< of each row, if all have as many
 };
 
-/// The header, then the sections one after the other, 2^14 rows a block.
+/// The header, then the sections one after the other, 2^14 rows a block. If all sections have rows of known bytes, the places of the
+/// blocks are known.
 Blocks cut_into_blocks(std::string header, std::vector<Section> sections);
 
 /// `origin` + `p`.

@@ -98,6 +98,9 @@ class BlockMeshes {
   void mark_shared(RankedBits& vertices) const;
 
   [[nodiscard]] std::int64_t blocks() const { return std::ssize(blocks_); }
+  [[nodiscard]] std::int64_t triangles_of(std::int64_t block) const {
+    return blocks_[static_cast<std::size_t>(block)].triangles;
+  }
 
   /// The triangles of one block, and the vertices that they have.
   struct MeshOfBlock {

@@ -123,9 +123,7 @@ class FilesRun {
     announce(options_.progress, "write", 0.99);
     const scale::VertexColumns columns = vertex_columns(fit);
     for (const auto& attribute : columns.attributes) result_.attributes.push_back(attribute.name);
-    if (team_.is_first()) write(fit, columns, output);
-    team_.wait();
-    if (!scale_.split) result_.outputs = {output};
+    write(fit, columns, output);
     report(fit);
     return std::move(result_);
   }
@@ -138,10 +136,12 @@ class FilesRun {
   }
 
   void write(const Fit& fit, const scale::VertexColumns& columns, const std::string& output) {
+    result_.outputs = {output};
     if (scale_.split)
-      result_.outputs = scale::write_split_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
+      result_.outputs =
+          scale::write_split_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output, team_);
     else
-      scale::write_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output);
+      scale::write_ply(ex_, *fit.meshes, columns, place_.frame, parts_->origin(), output, team_);
   }
 
   void place_cloud() {

@@ -84,6 +84,11 @@ class Team {
     return own;
   }
 
+  [[nodiscard]] std::string of_first(const std::string& own) const {
+    const std::vector<char> all = gather_all(std::vector<char>(own.begin(), is_first() ? own.end() : own.begin()));
+    return {all.begin(), all.end()};
+  }
+
   /// Until all ranks call it.
   void wait() const { (void)gather(std::vector<char>{}); }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -64,10 +65,25 @@ ReadColumn of_vertices(const BlockMeshes& meshes, const std::vector<std::int64_t
   };
 }
 
+/// Each rank a part.
+void write_together(exec::Cpu& ex, const std::string& path, const io::Blocks& blocks, const Team& team) {
+  std::optional<io::FileOfMany> file;
+  if (team.is_first()) file.emplace(io::FileOfMany::make(path));
+  const std::string name = team.of_first(file ? file->temporary_name() : std::string());
+  if (!file) file.emplace(io::FileOfMany::open(path, name));
+  const Team::Share own = team.share_of(blocks.count);
+  file->write(ex, blocks, own.begin, own.end);
+  file->finish();
+  team.wait();
+  if (team.is_first()) file->replace();
+  team.wait();
+  if (!team.is_first()) file->forget();
+}
+
 }  // namespace
 
 void write_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& columns, const octree::Frame& frame,
-               const Vec3d& origin, const std::string& path) {
+               const Vec3d& origin, const std::string& path, const Team& team) {
   const ReadColumn read = [&](std::size_t column, std::int64_t first, std::int64_t count, std::byte* out) {
     meshes.read_column(column, first, count, out);
   };
@@ -79,7 +95,11 @@ void write_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& co
     meshes.read_triangles(static_cast<std::int64_t>(first), std::ssize(part),
                           reinterpret_cast<BlockMeshes::Indices*>(part.data()));
   };
-  io::write_blocks(ex, path, io::format_ply_parts(parts, false));
+  const io::Blocks blocks = io::format_ply_parts(parts, false);
+  if (team.is_alone()) return io::write_blocks(ex, path, blocks);
+  if (!team.of_first(io::is_stream(path))) return write_together(ex, path, blocks, team);
+  if (team.is_first()) io::write_blocks(ex, path, blocks);
+  team.wait();
 }
 
 std::string split_name(const std::string& path, std::int64_t number) {
@@ -89,12 +109,16 @@ std::string split_name(const std::string& path, std::int64_t number) {
 }
 
 std::vector<std::string> write_split_ply(exec::Cpu& ex, const BlockMeshes& meshes, const VertexColumns& columns,
-                                         const octree::Frame& frame, const Vec3d& origin, const std::string& path) {
-  std::vector<std::string> written;
+                                         const octree::Frame& frame, const Vec3d& origin, const std::string& path,
+                                         const Team& team) {
+  std::vector<std::string> names;
+  const Team::Share own = team.share_of(meshes.blocks());
   io::FilesTogether files;
   for (std::int64_t block = 0; block < meshes.blocks(); ++block) {
+    if (meshes.triangles_of(block) == 0) continue;
+    names.push_back(split_name(path, std::ssize(names)));
+    if (!own.has(block)) continue;
     const BlockMeshes::MeshOfBlock mesh = meshes.read_block(block);
-    if (mesh.triangles.empty()) continue;
     io::MeshParts parts = vertex_parts(of_vertices(meshes, mesh.vertices), columns, frame, origin);
     parts.vertices = std::ssize(mesh.vertices);
     parts.triangles = std::ssize(mesh.triangles);
@@ -102,11 +126,12 @@ std::vector<std::string> write_split_ply(exec::Cpu& ex, const BlockMeshes& meshe
       part.assign(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first),
                   mesh.triangles.begin() + static_cast<std::ptrdiff_t>(last));
     };
-    written.push_back(split_name(path, std::ssize(written)));
-    files.write(ex, written.back(), io::format_ply_parts(parts, false));
+    files.write(ex, names.back(), io::format_ply_parts(parts, false));
   }
+  team.wait();
   files.replace();
-  return written;
+  team.wait();
+  return names;
 }
 
 }  // namespace pointskin::scale

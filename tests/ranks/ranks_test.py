@@ -64,9 +64,10 @@ class Ranks:
         leaks = self.folder / "leaks.txt"
         leaks.write_text("".join(f"leak:{library}\n" for library in MPI_LIBRARIES))
         ours = {"LSAN_OPTIONS": f"suppressions={leaks}:print_suppressions=0", "TSAN_OPTIONS": "ignore_noninstrumented_modules=1"}
-        if self.is_open_mpi:
-            ours["ASAN_OPTIONS"] = "detect_leaks=0"  # what its closed modules leak has no name left; MPICH's ranks are looked at
+        if self.is_open_mpi:  # what its closed modules leak has no name left; MPICH's ranks are looked at
+            ours["ASAN_OPTIONS"] = "detect_leaks=0"
         theirs = {name: f"{os.environ.get(name, '')}:{value}".strip(":") for name, value in ours.items()}
+        theirs["HWLOC_PLUGINS_PATH"] = str(self.folder / "none")  # they leak, and are closed, too
         if self.has_thread_sanitizer:
             theirs["UCX_MEM_EVENTS"] = "n"  # MPICH's UCX takes memory calls over, as the sanitizer has
         return os.environ | theirs

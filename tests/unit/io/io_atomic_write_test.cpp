@@ -68,6 +68,51 @@ TEST(AtomicWrite, KeepsAllFilesWhereOneOfSeveralCannotBeWritten) {
   EXPECT_EQ(folder.file_count(), 1u);
 }
 
+/// Of ten bytes each.
+io::Blocks three_blocks() {
+  io::Blocks blocks{3, [](std::int64_t b, std::string& to) { to += std::string(10, static_cast<char>('a' + b)); }};
+  blocks.place = [](std::int64_t b) { return 10 * b; };
+  return blocks;
+}
+
+TEST(AtomicWrite, WritesAFileOfManyPartByPart) {
+  const TemporaryFolder folder;
+  make_file(folder.file("a"), "old and with permissions");
+  ASSERT_EQ(::chmod(folder.file("a").c_str(), 0640), 0);
+  exec::Cpu ex(2);
+  {
+    io::FileOfMany first = io::FileOfMany::make(folder.file("a"));
+    io::FileOfMany second = io::FileOfMany::open(folder.file("a"), first.temporary_name());
+    second.write(ex, three_blocks(), 1, 3);
+    second.finish();
+    EXPECT_EQ(bytes_of_file(folder.file("a")), "old and with permissions");
+    first.write(ex, three_blocks(), 0, 1);
+    first.finish();
+    first.replace();
+    second.forget();
+  }
+  EXPECT_EQ(bytes_of_file(folder.file("a")), "aaaaaaaaaabbbbbbbbbbcccccccccc");
+  EXPECT_EQ(mode_of(folder.file("a")), 0640U);
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicWrite, RemovesAFileOfManyWhereOneOfThemGivesUp) {
+  const TemporaryFolder folder;
+  make_file(folder.file("a"), "old");
+  exec::Cpu ex(1);
+  io::FileOfMany first = io::FileOfMany::make(folder.file("a"));
+  {
+    io::FileOfMany second = io::FileOfMany::open(folder.file("a"), first.temporary_name());
+    second.write(ex, three_blocks(), 0, 3);
+  }
+  EXPECT_EQ(folder.file_count(), 1U);
+  EXPECT_NE(story_of(ErrorCode::output_not_written, [&] { first.replace(); }), "");
+  EXPECT_NE(story_of(ErrorCode::output_not_written,
+                     [&] { (void)io::FileOfMany::open(folder.file("a"), first.temporary_name()); }),
+            "");
+  EXPECT_EQ(bytes_of_file(folder.file("a")), "old");
+}
+
 TEST(AtomicWrite, WritesAllOfALargeFile) {
   const TemporaryFolder folder;
   std::string bytes(20'000'000, 'x');

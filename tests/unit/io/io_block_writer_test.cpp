@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "io/output.hpp"
+#include "io/writers.hpp"
 #include "support/io_files.hpp"
+#include "support/shapes.hpp"
 
 namespace pointskin {
 namespace {
@@ -189,6 +191,23 @@ TEST(MeshWriter, RefusesAWrongTriangleInAnyBlockBeforeTheFileIsTouched) {
     EXPECT_NE(story.find("vertex 50000 of 50000"), std::string::npos) << story;
     EXPECT_EQ(folder.file_count(), 0u);
   }
+}
+
+TEST(BlockWriter, OfPlyKnowsThePlacesOfBlocksBeforeTheyAreMade) {
+  Cloud cloud = test::sphere_cloud(40'000, 1);
+  cloud.attributes.push_back({"class", std::vector<std::uint8_t>(cloud.positions.size(), 7)});
+  for (const Vec3d& origin : {Vec3d{0, 0, 0}, Vec3d{1e5, 0, 0}}) {
+    cloud.origin = origin;
+    const io::Blocks blocks = io::format_ply_cloud(cloud, {});
+    ASSERT_EQ(blocks.count, 4);  // the header, and 2^14 points each
+    std::string bytes;
+    for (std::int64_t b = 0; b < blocks.count; ++b) {
+      EXPECT_EQ(blocks.place(b), std::ssize(bytes)) << b;
+      blocks.make(b, bytes);
+    }
+    EXPECT_EQ(blocks.place(blocks.count), std::ssize(bytes));
+  }
+  EXPECT_FALSE(io::format_ply_cloud(cloud, {.ascii = true}).place);
 }
 
 }  // namespace

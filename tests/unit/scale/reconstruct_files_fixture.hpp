@@ -53,13 +53,7 @@ class ReconstructFiles : public testing::Test {
   void expect_the_same_of_ranks(const Options& options, std::int64_t memory_bytes) const {
     SCOPED_TRACE(std::to_string(ranks_) + " ranks");
     const std::string output = folder_.file("ranks.ply");
-    std::vector<FilesReport> reports(static_cast<std::size_t>(ranks_));
-    run_as_ranks(ranks_, [&](Ranks& ranks) {
-      ScaleOptions own = scale(memory_bytes);
-      own.threads = 1;
-      own.ranks = &ranks;
-      reports[static_cast<std::size_t>(ranks.rank())] = reconstruct_files(inputs_, output, options, own);
-    });
+    const std::vector<FilesReport> reports = reconstruct_as_ranks(output, options, scale(memory_bytes));
     EXPECT_TRUE(bytes_of_file(output) == bytes_of_file(whole_));
     EXPECT_EQ(temporary_.file_count(), 0U);
     for (const FilesReport& report : reports) {
@@ -77,6 +71,19 @@ class ReconstructFiles : public testing::Test {
       for (std::size_t i = 0; i < report.run.warnings.size(); ++i)
         EXPECT_EQ(report.run.warnings[i].text, files_.run.warnings[i].text);
     }
+  }
+
+  /// @returns what each of the ranks reports
+  [[nodiscard]] std::vector<FilesReport> reconstruct_as_ranks(const std::string& output, const Options& options,
+                                                              const ScaleOptions& scale) const {
+    std::vector<FilesReport> reports(static_cast<std::size_t>(ranks_));
+    run_as_ranks(ranks_, [&](Ranks& ranks) {
+      ScaleOptions own = scale;
+      own.threads = 1;
+      own.ranks = &ranks;
+      reports[static_cast<std::size_t>(ranks.rank())] = reconstruct_files(inputs_, output, options, own);
+    });
+    return reports;
   }
 
   void expect_report(const RunReport& whole) const {

@@ -111,17 +111,15 @@ TEST_F(ReconstructFiles, IsPlannedAsItIsDone) {
 
 /// What several files have is what one has: put together, and vertices that are the same made one again.
 TEST_F(ReconstructFiles, WritesAFileForEachBlock) {
+  ranks_ = 3;
   start(with_attributes(torus_cloud(60000, 1)));
   ScaleOptions in_files = scale(70 * kMegabyte);
   in_files.split = true;
   Options options = at_depth(8);
   options.density = options.attributes = true;
-  files_ = reconstruct_files({input_}, output_, options, in_files);
-  EXPECT_FALSE(std::filesystem::exists(output_));
-  EXPECT_GT(files_.outputs.size(), 1U);
-  EXPECT_LE(std::ssize(files_.outputs), files_.blocks);
   using Corner = std::array<double, 9>;  // position, normal, red, time, density
-  const auto corners_of = [](const Mesh& mesh, std::multiset<std::array<Corner, 3>>& all) {
+  using Corners = std::multiset<std::array<Corner, 3>>;
+  const auto corners_of = [](const Mesh& mesh, Corners& all) {
     const std::vector<std::uint8_t>& red = mesh.attributes.at(0).values.as<std::uint8_t>();
     const std::vector<double>& time = mesh.attributes.at(3).values.as<double>();
     const std::vector<float>& density = mesh.attributes.back().values.as<float>();
@@ -133,19 +131,29 @@ TEST_F(ReconstructFiles, WritesAFileForEachBlock) {
     for (const Triangle& t : mesh.triangles)
       all.insert(std::array<Corner, 3>{corner(t[0]), corner(t[1]), corner(t[2])});
   };
-  std::multiset<std::array<Corner, 3>> parts, whole;
-  for (std::size_t i = 0; i < files_.outputs.size(); ++i) {
-    EXPECT_EQ(files_.outputs[i], folder_.file("blocks_000" + std::to_string(i) + ".ply"));
-    const Mesh mesh = read_mesh(files_.outputs[i]);
-    std::vector<bool> is_used(mesh.vertices.size(), false);
-    for (const Triangle& t : mesh.triangles)
-      for (const std::int32_t v : t) is_used[static_cast<std::size_t>(v)] = true;
-    EXPECT_TRUE(std::all_of(is_used.begin(), is_used.end(), [](bool used) { return used; })) << i;
-    corners_of(mesh, parts);
-  }
+  Corners whole;
   corners_of(Reconstructor(Device::cpu(2)).reconstruct(read_cloud(input_), options), whole);
-  EXPECT_TRUE(parts == whole);
-  EXPECT_EQ(std::ssize(parts), files_.triangles);
+  const auto expect_parts = [&](const FilesReport& report, const std::string& name) {
+    EXPECT_FALSE(std::filesystem::exists(folder_.file(name + ".ply")));
+    EXPECT_GT(report.outputs.size(), 1U);
+    EXPECT_LE(std::ssize(report.outputs), report.blocks);
+    Corners parts;
+    for (std::size_t i = 0; i < report.outputs.size(); ++i) {
+      EXPECT_EQ(report.outputs[i], folder_.file(name + "_000" + std::to_string(i) + ".ply"));
+      const Mesh mesh = read_mesh(report.outputs[i]);
+      std::vector<bool> is_used(mesh.vertices.size(), false);
+      for (const Triangle& t : mesh.triangles)
+        for (const std::int32_t v : t) is_used[static_cast<std::size_t>(v)] = true;
+      EXPECT_TRUE(std::all_of(is_used.begin(), is_used.end(), [](bool used) { return used; })) << i;
+      corners_of(mesh, parts);
+    }
+    EXPECT_TRUE(parts == whole);
+    EXPECT_EQ(std::ssize(parts), report.triangles);
+  };
+  expect_parts(reconstruct_files({input_}, output_, options, in_files), "blocks");
+  for (const FilesReport& report : reconstruct_as_ranks(folder_.file("ranks.ply"), options, in_files))
+    expect_parts(report, "ranks");
+  EXPECT_EQ(temporary_.file_count(), 0U);
 }
 
 /// A folder in the way of the second file.

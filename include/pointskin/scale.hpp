@@ -49,8 +49,8 @@ struct FilesReport {
 bool reads_in_parts(const std::string& path);
 
 /// What of such a run cannot be worked on in blocks yet, in words: "weakness", "an envelope". Empty if all can. With attributes that
-/// depends on the files: labels (is_label) cannot, nor integers that some of several files lack; of files that can be read in parts the
-/// header is looked at, and all of text.
+/// depends on the files: integers that some of several files lack cannot; of files that can be read in parts the header is looked at,
+/// and all of text.
 /// @throws Error invalid_input if a file cannot be opened, or its header is garbled
 std::vector<std::string> missing_in_blocks(const std::vector<std::string>& inputs, const Options& options,
                                            const ScaleOptions& scale = {});

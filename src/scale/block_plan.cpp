@@ -325,6 +325,11 @@ CellSet BlockPlan::around_nodes(const BlockRange& own, const octree::LevelView& 
   return CellSet(level_, cells).grown(kSumRing);
 }
 
+bool BlockPlan::has_all_around(const BlockRange& own, std::uint64_t cell) const {
+  return cell >= own.begin >> 3 * finer() && cell < own.end >> 3 * finer() &&
+         std::ranges::binary_search(near_finer_, cell);
+}
+
 CellSet BlockPlan::around_finer_nodes(const BlockRange& own) const {
   const auto at = [&](std::uint64_t finest) {
     return std::lower_bound(near_finer_.begin(), near_finer_.end(), finest >> 3 * finer());

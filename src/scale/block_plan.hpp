@@ -99,6 +99,9 @@ class BlockPlan {
   /// the nodes on its upper faces, too.
   [[nodiscard]] CellSet around_finer_nodes(const BlockRange& own) const;
 
+  /// Whether the samples in all cells of level K that are at most ring() cells away from a cell of the block are among these.
+  [[nodiscard]] bool has_all_around(const BlockRange& own, std::uint64_t cell) const;
+
   /// What the blocks have with their rings, as far as it follows from the octree's bricks.
   struct Sizes {
     std::int64_t nodes = 0;          ///< of levels below K in all blocks

@@ -56,11 +56,12 @@ class LimitOfPool {
   exec::MemoryPool& pool_;
 };
 
-/// Channels of the cloud's attributes that share each pass: neighbouring ones of which all samples have a value.
+/// Channels of the cloud's attributes that share each pass: neighbouring ones of which all samples have a value. Labels are none.
 std::vector<std::size_t> passes_of(const SortedCloud& cloud) {
   std::vector<std::size_t> passes;
   bool joins = false;
   for (const PointAttribute& attribute : cloud.attributes()) {
+    if (attribute.is_label()) continue;
     const bool has_all = attribute.range.counted == cloud.size();
     if (has_all && joins && passes.back() < field::kAttributesAtOnce)
       ++passes.back();
@@ -79,6 +80,26 @@ std::int64_t attribute_bytes(const SortedCloud& cloud) {
   return bytes;
 }
 
+bool has_labels(const SortedCloud& cloud) {
+  return std::ranges::any_of(cloud.attributes(), [](const PointAttribute& attribute) { return attribute.is_label(); });
+}
+
+/// That a block has of a sample for its attributes.
+std::int64_t floats_of_sample(const SortedCloud& cloud, bool confidence) {
+  constexpr std::int64_t kFloat = sizeof(float);
+  std::int64_t floats = 0;
+  bool has_channels = false;
+  for (const PointAttribute& attribute : cloud.attributes()) {
+    const auto bytes = static_cast<std::int64_t>(size_of(attribute.type));
+    floats += attribute.is_label() ? (bytes + kFloat - 1) / kFloat : 1;
+    has_channels = has_channels || !attribute.is_label();
+  }
+  return floats + (confidence && has_channels ? 1 : 0);
+}
+
+/// The place of the nearest sample of a vertex, and its distance.
+constexpr std::int64_t kOfNearest = sizeof(std::int32_t) + sizeof(float);
+
 BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& options) {
   BlockPlan::Setup setup;
   setup.depth = options.depth;
@@ -89,8 +110,8 @@ BlockPlan::Setup plan_setup(const SortedCloud& cloud, const BlockOptions& option
   setup.iterations = options.iterations;
   setup.ring = options.ring;
   setup.lowest_splat_depth = poisson::coarsest_splat_depth(cloud.size(), options.depth);
-  setup.sample_floats = std::ssize(cloud.attributes()) + (options.confidence && !cloud.attributes().empty() ? 1 : 0);
-  setup.vertex_bytes = attribute_bytes(cloud);
+  setup.sample_floats = floats_of_sample(cloud, options.confidence);
+  setup.vertex_bytes = attribute_bytes(cloud) + (has_labels(cloud) ? kOfNearest : 0);
   setup.team = options.team;
   for (const std::size_t channels : passes_of(cloud)) {
     const auto floats = static_cast<std::int64_t>(1 + channels);

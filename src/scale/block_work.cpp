@@ -21,6 +21,8 @@
 #include "poisson/mean_length.hpp"
 #include "poisson/spacing.hpp"
 #include "poisson/trust.hpp"
+#include "scale/attributes_of_samples.hpp"
+#include "scale/block_labels.hpp"
 #include "scale/staging.hpp"
 #include "surface/extract.hpp"
 
@@ -37,6 +39,7 @@ struct BlockSamples {
   Samples samples;
   exec::Buffer<std::uint64_t> keys;
   std::vector<field::Channel> channels;  ///< of the cloud's attributes, if they were asked for
+  std::vector<field::Label> labels;      ///< the same
   exec::Buffer<float> weights;           ///< of the samples there
   std::int64_t first_own = 0, own = 0;   ///< where its own are
 };
@@ -208,7 +211,8 @@ class WorkIn final : public BlockWork {
     }
     density.counts.reset();
     add_mesh(own, surface, places,
-             {std::move(per_cube), std::move(per_world), std::move(spacing), attributes_at(tree, block, vertices)},
+             {std::move(per_cube), std::move(per_world), std::move(spacing),
+              attributes_at(own, tree, block, vertices, places.keys.cview())},
              meshes);
   }
 
@@ -226,7 +230,7 @@ class WorkIn final : public BlockWork {
         all.densities.emplace_back(found.data(), found.data() + found.view().size);
       }
     }
-    for (const exec::TypedBuffer& values : attributes_at(tree, block, there.cview())) {
+    for (const exec::TypedBuffer& values : attributes_at(own, tree, block, there.cview(), {})) {
       const Fetched<std::uint8_t> found = fetched(values.bytes.cview());
       const auto* const bytes = reinterpret_cast<const std::byte*>(found.data());
       all.attributes.emplace_back(bytes, bytes + found.view().size);
@@ -296,18 +300,18 @@ class WorkIn final : public BlockWork {
     const std::vector<SampleRun> runs = plan_.samples_in(cells);
     std::int64_t n = 0;
     for (const SampleRun& run : runs) n += run.end - run.begin;
-    BlockSamples block{{}, {}, {}, {}, 0, own.samples.end - own.samples.begin};
+    BlockSamples block;
+    block.own = own.samples.end - own.samples.begin;
     Sent<std::uint64_t> keys(shared_.host, n);
     Sent<Vec3f> positions(shared_.host, n), normals(shared_.host, n);
     const std::vector<PointAttribute>& attributes = shared_.cloud.attributes();
-    std::vector<Sent<float>> shares;
-    if (with == With::attributes)
-      for (std::size_t c = 0; c < attributes.size(); ++c) shares.emplace_back(shared_.host, n);
-    Sent<float> weights(shared_.host, !shares.empty() && options_.confidence ? n : 0);
+    AttributesOfSamples sent(shared_.host, attributes, with == With::attributes ? n : 0);
+    Sent<float> weights(shared_.host,
+                        with == With::attributes && options_.confidence && !shared_.passes.empty() ? n : 0);
     read_runs(runs, [&](std::int64_t first, std::int64_t count, std::int64_t at) {
-      std::vector<float*> to;
-      for (Sent<float>& values : shares) to.push_back(values.data() + at);
-      shared_.cloud.read(first, count, {positions.data() + at, normals.data() + at, keys.data() + at, to});
+      const AttributesOfSamples::Places to = sent.from(at);
+      shared_.cloud.read(first, count,
+                         {positions.data() + at, normals.data() + at, keys.data() + at, to.shares, to.raw});
       if (!weights.view().empty())  // as poisson::confidence_weights() has them
         std::transform(normals.data() + at, normals.data() + at + count, weights.data() + at, [&](const Vec3f& normal) {
           return static_cast<float>(poisson::length_of(normal) / shared_.mean_length);
@@ -319,8 +323,7 @@ class WorkIn final : public BlockWork {
         block.first_own = at + own.samples.begin - run.begin;
       at += run.end - run.begin;
     }
-    for (std::size_t c = 0; c < shares.size(); ++c)
-      block.channels.push_back({c, attributes[c].type, shares[c].to(ex_), attributes[c].range});
+    if (with == With::attributes) sent.to(ex_, block.channels, block.labels);
     block.weights = weights.to(ex_);
     block.keys = keys.to(ex_);
     block.samples.positions = positions.to(ex_);
@@ -376,7 +379,8 @@ class WorkIn final : public BlockWork {
   static void leave_attributes(BlockSamples& block) {
     BlockSamples rest;
     rest.channels = std::move(block.channels);
-    if (!rest.channels.empty()) rest.samples.positions = std::move(block.samples.positions);
+    rest.labels = std::move(block.labels);
+    if (!rest.channels.empty() || !rest.labels.empty()) rest.samples.positions = std::move(block.samples.positions);
     rest.weights = std::move(block.weights);
     block = std::move(rest);
   }
@@ -403,18 +407,23 @@ class WorkIn final : public BlockWork {
                             fetched(means.cview().part(level.first_node * width, level.nodes() * width)).view());
     });
     block.channels.clear();
+    block.labels.clear();
     block.weights.reset();
   }
 
   /// The cloud's attributes at points in the block's own cells.
-  std::vector<exec::TypedBuffer> attributes_at(const OctreeData& tree, const BlockSamples& block,
-                                               ArrayView<const Vec3f> points) {
-    std::vector<exec::TypedBuffer> values(block.channels.size());
+  /// @param keys  of the vertices that these are, as find_labels_of_block() has them
+  std::vector<exec::TypedBuffer> attributes_at(const BlockRange& own, const OctreeData& tree, const BlockSamples& block,
+                                               ArrayView<const Vec3f> points, ArrayView<const std::uint64_t> keys) {
+    std::vector<exec::TypedBuffer> values(block.channels.size() + block.labels.size());
+    const auto take = [&](std::size_t place, exec::TypedBuffer found) { values[place] = std::move(found); };
     for_passes(block, [&](std::size_t pass, const field::ChannelSamples& samples) {
       const Lent<float> given(ex_, coarse().channels(pass));
-      field::interpolate_below(ex_, tree, samples, plan_.level(), given.view(), points,
-                               [&](std::size_t place, exec::TypedBuffer found) { values[place] = std::move(found); });
+      field::interpolate_below(ex_, tree, samples, plan_.level(), given.view(), points, take);
     });
+    if (!block.labels.empty())
+      find_labels_of_block(ex_, shared_, own, {tree, block.samples.positions.cview(), block.labels}, points, keys,
+                           take);
     return values;
   }
 

@@ -48,11 +48,9 @@ std::string missing_attributes(const std::vector<std::string>& inputs, const Opt
   const std::unique_ptr<io::CloudParts> points = io::CloudParts::open(ex, inputs);
   if (points == nullptr) return "";
   const std::vector<std::string> with_gaps = points->integers_with_gaps(ex);
-  for (const scale::PointAttribute& attribute : scale::attributes_of(ex, *points, kept_attributes(options, scale))) {
-    if (attribute.is_label()) return "labels of points such as " + io::printable(attribute.name);
+  for (const scale::PointAttribute& attribute : scale::attributes_of(ex, *points, kept_attributes(options, scale)))
     if (std::find(with_gaps.begin(), with_gaps.end(), attribute.name) != with_gaps.end())
       return "integers that not all files have, such as " + io::printable(attribute.name);
-  }
   return "";
 }
 

@@ -11,10 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/format.hpp"
 #include "core/typed_view.hpp"
 #include "exec/cpu_primitives.hpp"
-#include "io/source.hpp"
 #include "octree/keys.hpp"
 #include "reconstruct/point_hash.hpp"
 
@@ -124,12 +122,8 @@ std::vector<PointAttribute> attributes_of(exec::Cpu& ex, const io::CloudParts& p
 SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup)
     : record_bytes_(sizeof(Record)) {
   std::vector<PointAttribute> attributes = attributes_of(ex, points, setup.attributes);
-  for (const PointAttribute& attribute : attributes) {
-    if (attribute.is_label())
-      throw Error(ErrorCode::usage,
-                  fmt::format("{} ({}) is a label", io::printable(attribute.name), name_of(attribute.type)));
+  for (const PointAttribute& attribute : attributes)
     record_bytes_ += static_cast<std::int64_t>(size_of(attribute.type));
-  }
   const Team::Share rows = setup.team.share_of(points.rows());
   DiskSort sort(ex, {setup.folder, points.rows(), record_bytes_, setup.memory_bytes, setup.team, rows.begin});
   const std::int64_t before = setup.left_out.empty() ? 0 : points_before(ex, points, rows, setup.team);
@@ -190,7 +184,8 @@ void SortedCloud::settle_attributes(std::vector<PointAttribute> all) {
       without_values_.push_back(attribute.name);
       continue;
     }
-    places_.push_back({here, attribute.type, field::ToShare(attribute.range)});
+    places_.push_back(
+        {here, attribute.type, attribute.is_label() ? field::ToShare{} : field::ToShare(attribute.range)});
     attributes_.push_back(std::move(attribute));
   }
 }
@@ -202,6 +197,7 @@ void SortedCloud::read(std::int64_t first, std::int64_t count, const Arrays& out
     const std::int64_t some = std::min(kAtOnce, count - done);
     spool_->read((first + done) * record_bytes_, records.data(), some * record_bytes_);
     read_shares(records.data(), some, done, out.shares);
+    read_raw(records.data(), some, done, out.raw);
     for (std::int64_t i = 0; i < some; ++i, ++done) {
       Record record;
       std::memcpy(&record, records.data() + i * record_bytes_, sizeof record);
@@ -216,6 +212,7 @@ void SortedCloud::read(std::int64_t first, std::int64_t count, const Arrays& out
 void SortedCloud::read_shares(const std::byte* records, std::int64_t count, std::int64_t at,
                               std::span<float* const> shares) const {
   for (std::size_t c = 0; c < shares.size(); ++c) {
+    if (shares[c] == nullptr) continue;
     const Place& place = places_[c];
     visit_type(place.type, [&](auto tag) {
       decltype(tag) value;
@@ -227,15 +224,29 @@ void SortedCloud::read_shares(const std::byte* records, std::int64_t count, std:
   }
 }
 
+void SortedCloud::read_raw(const std::byte* records, std::int64_t count, std::int64_t at,
+                           std::span<std::uint8_t* const> raw) const {
+  for (std::size_t c = 0; c < raw.size(); ++c) {
+    if (raw[c] == nullptr) continue;
+    const std::size_t bytes = size_of(places_[c].type);
+    std::uint8_t* to = raw[c] + static_cast<std::size_t>(at) * bytes;
+    for (std::int64_t i = 0; i < count; ++i, to += bytes)
+      std::memcpy(to, records + i * record_bytes_ + places_[c].at, bytes);
+  }
+}
+
 void SortedCloud::read(exec::Cpu& ex, std::int64_t first, std::int64_t count, const Arrays& out) const {
   constexpr std::int64_t kPart = 64 << 10;
   const auto from = [](auto* array, std::int64_t i) { return array != nullptr ? array + i : nullptr; };
   ex.run_blocks((count + kPart - 1) / kPart, [&](std::int64_t part) {
     const std::int64_t done = part * kPart;
-    std::vector<float*> shares(out.shares.begin(), out.shares.end());
-    for (float*& values : shares) values += done;
+    std::vector<float*> shares;
+    for (float* const values : out.shares) shares.push_back(from(values, done));
+    std::vector<std::uint8_t*> raw;
+    for (std::size_t c = 0; c < out.raw.size(); ++c)
+      raw.push_back(from(out.raw[c], done * static_cast<std::int64_t>(size_of(places_[c].type))));
     read(first + done, std::min(kPart, count - done),
-         {from(out.positions, done), from(out.normals, done), from(out.keys, done), shares});
+         {from(out.positions, done), from(out.normals, done), from(out.keys, done), shares, raw});
   });
 }
 

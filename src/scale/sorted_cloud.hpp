@@ -56,12 +56,12 @@ class SortedCloud {
     Vec3f* positions = nullptr;  ///< in the unit cube
     Vec3f* normals = nullptr;    ///< as they came
     std::uint64_t* keys = nullptr;
-    std::span<float* const> shares{};  ///< of each of attributes() as field::Channel has them; or none
+    std::span<float* const> shares{};      ///< of each of attributes() as field::Channel has them, or null; or none
+    std::span<std::uint8_t* const> raw{};  ///< values of each of attributes() in its type, or null; or none
   };
 
   /// @param points  whose origin has been chosen
-  /// @throws Error no_normals if they have none; usage if a label (is_label) is to be kept; output_not_written, interrupted; as
-  ///         CloudParts::read
+  /// @throws Error no_normals if they have none; output_not_written, interrupted; as CloudParts::read
   /// One pass over the file; by several ranks, two where points are left out. O(n log n). Collective.
   SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup);
 
@@ -84,7 +84,7 @@ class SortedCloud {
   struct Place {
     std::int64_t at = 0;
     AttributeType type = AttributeType::float32;
-    field::ToShare to_share{};
+    field::ToShare to_share{};  ///< unless it is a label
   };
   /// Adds what is found of some rows of the file to `attributes` and to the size.
   /// @param before  points in the rows before, if any are left out
@@ -92,6 +92,8 @@ class SortedCloud {
                 DiskSort& sort, std::vector<PointAttribute>& attributes);
   void settle_attributes(std::vector<PointAttribute> all);
   void read_shares(const std::byte* records, std::int64_t count, std::int64_t at, std::span<float* const> shares) const;
+  void read_raw(const std::byte* records, std::int64_t count, std::int64_t at,
+                std::span<std::uint8_t* const> raw) const;
 
   std::unique_ptr<Spool> spool_;
   std::int64_t record_bytes_ = 0;

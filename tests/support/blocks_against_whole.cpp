@@ -180,13 +180,15 @@ Options choose_options(Random& random, std::string& words) {
   return options;
 }
 
-/// Colours, and two that some points have no value of.
+/// Colours, two that some points have no value of, and labels.
 void add_attributes(Random& random, Cloud& cloud) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   std::vector<std::uint8_t> red, green, blue;
   std::vector<float> heat;
   std::vector<std::uint16_t> intensity;
   std::vector<double> time;
+  std::vector<std::uint8_t> label;
+  std::vector<std::int32_t> segment;
   for (const Vec3f& p : cloud.positions) {
     red.push_back(static_cast<std::uint8_t>(random.below(256)));
     green.push_back(p.y > 0 ? 255 : 0);
@@ -194,9 +196,11 @@ void add_attributes(Random& random, Cloud& cloud) {
     heat.push_back(p.x > 0 || random.below(3) == 0 ? p.z + static_cast<float>(random.unit()) : kNone);
     intensity.push_back(static_cast<std::uint16_t>(random.below(1 << 16)));
     time.push_back(random.below(50) == 0 ? double{kNone} : 1e9 + random.unit());
+    label.push_back(static_cast<std::uint8_t>(random.below(256)));
+    segment.push_back(static_cast<std::int32_t>(random.below(1 << 30)) - (1 << 29));
   }
-  cloud.attributes = {{"red", red},   {"green", green},         {"blue", blue},
-                      {"heat", heat}, {"intensity", intensity}, {"time", time}};
+  cloud.attributes = {{"red", red},   {"green", green},         {"label", label}, {"blue", blue},
+                      {"heat", heat}, {"intensity", intensity}, {"time", time},   {"segment", segment}};
 }
 
 /// A surface, whole or of blocks.

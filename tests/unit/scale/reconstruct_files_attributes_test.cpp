@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,19 @@ TEST_F(ReconstructFiles, ArePlannedWithManyAttributes) {
   EXPECT_GE(plan.memory_bytes, files_.run.device_peak_bytes);
 }
 
+TEST_F(ReconstructFiles, ArePlannedWithManyLabels) {
+  Cloud cloud = torus_cloud(60000, 1);
+  for (int i = 0; i < 10; ++i)
+    cloud.attributes.push_back({"label_" + std::to_string(i), std::vector<std::int32_t>(cloud.positions.size(), i)});
+  start(cloud);
+  Options options = at_depth(8);
+  options.attributes = true;
+  expect_as_whole(options, 80 * kMegabyte);
+  const FilesPlan plan = plan_files({input_}, options, scale(80 * kMegabyte));
+  EXPECT_EQ(plan.blocks, files_.blocks);
+  EXPECT_GE(plan.memory_bytes, files_.run.device_peak_bytes);
+}
+
 TEST_F(ReconstructFiles, KeepsColoursAlone) {
   start(with_attributes(torus_cloud(60000, 1)));
   Options options = at_depth(8);
@@ -114,20 +128,54 @@ TEST_F(ReconstructFiles, KeepsColoursAlone) {
   EXPECT_TRUE(bytes_of_file(output_) == bytes_of_file(whole_));
 }
 
-TEST_F(ReconstructFiles, RefusesLabels) {
-  Cloud cloud = sphere_cloud(2000, 8);
-  cloud.attributes = {{"heat", std::vector<float>(2000, 1)}, {"class", std::vector<std::int32_t>(2000, 3)}};
+TEST_F(ReconstructFiles, KeepsLabels) {
+  ranks_ = 3;
+  start(with_labels(torus_cloud(60000, 1)));
+  Options options = at_depth(8);
+  options.attributes = options.density = options.confidence = true;
+  expect_as_whole(options, 70 * kMegabyte);
+  EXPECT_GT(files_.blocks, 1);
+  EXPECT_EQ(files_.attributes, (std::vector<std::string>{"segment", "red", "label", "heat", "object"}));
+}
+
+/// Labels alone, whose nearest samples are on the other side of a hole, or of the cube.
+TEST_F(ReconstructFiles, KeepsLabelsFarFromAllSamples) {
+  ranks_ = 3;
+  Cloud cloud = open_cloud();
+  Random random(20);
+  std::vector<std::int32_t> label;
+  for (std::int64_t i = 0; i < cloud.size(); ++i) label.push_back(static_cast<std::int32_t>(random.below(1 << 30)));
+  cloud.attributes = {{"label", label}};
   start(cloud);
-  write_old_output();
-  Options options = at_depth(7);
+  Options options = at_depth(8);
   options.attributes = true;
-  EXPECT_EQ(missing_in_blocks({input_}, options), (std::vector<std::string>{"labels of points such as class"}));
-  expect_error(ErrorCode::usage, "labels of points such as class", [&] { reconstruct(options); });
-  ScaleOptions colours = scale(0);
-  colours.only_colours = true;
-  EXPECT_TRUE(missing_in_blocks({input_}, options, colours).empty());
-  options.attributes = false;
-  EXPECT_TRUE(missing_in_blocks({input_}, options).empty());
+  options.iterations = 1;  // the narrowest ring
+  expect_as_whole(options, 40 * kMegabyte);
+  EXPECT_GT(files_.blocks, 1);
+  options.trim = 0.02;
+  expect_as_whole(options, 40 * kMegabyte);
+  EXPECT_GT(files_.blocks, 1);
+  EXPECT_GT(files_.run.trim.triangles_split, 0);
+}
+
+/// Samples as near as each other, of which the first in the order of the octree counts.
+TEST_F(ReconstructFiles, KeepsLabelsOfPointsOnAGrid) {
+  ranks_ = 3;
+  Cloud cloud;
+  for (int x = 0; x < 64; ++x)
+    for (int y = 0; y < 64; ++y)
+      if (x < 20 || x > 40 || y < 20 || y > 40)
+        for (int twice = 0; twice < 2; ++twice) {
+          cloud.positions.push_back({static_cast<float>(x) / 64, static_cast<float>(y) / 64, 0});
+          cloud.normals.push_back({0, 0, 1});
+        }
+  std::vector<std::int32_t> label(cloud.positions.size());
+  std::iota(label.begin(), label.end(), 0);
+  cloud.attributes = {{"label", label}};
+  start(cloud);
+  Options options = at_depth(8);
+  options.attributes = true;
+  expect_as_whole(options, 0);
 }
 
 }  // namespace

@@ -191,6 +191,24 @@ inline Cloud with_attributes(Cloud cloud) {
   return cloud;
 }
 
+/// Labels of several types, in front of what is averaged, between it, and after it.
+inline Cloud with_labels(Cloud cloud) {
+  Random random(19);
+  std::vector<std::int32_t> segment;
+  std::vector<std::uint8_t> red, label;
+  std::vector<float> heat;
+  std::vector<std::uint16_t> object;
+  for (const Vec3f& p : cloud.positions) {
+    segment.push_back(static_cast<std::int32_t>(random.below(1 << 30)) - (1 << 29));
+    red.push_back(static_cast<std::uint8_t>(random.below(256)));
+    label.push_back(static_cast<std::uint8_t>(random.below(256)));
+    heat.push_back(p.y);
+    object.push_back(static_cast<std::uint16_t>(random.below(1 << 16)));
+  }
+  cloud.attributes = {{"segment", segment}, {"red", red}, {"label", label}, {"heat", heat}, {"object", object}};
+  return cloud;
+}
+
 /// A sphere with a hole, and one in the middle of nowhere.
 inline Cloud open_cloud() {
   Cloud cloud = sphere_cloud(40000, 14);

@@ -1,7 +1,6 @@
 #include "scale/block_labels.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -9,11 +8,10 @@
 
 #include "exec/this_space.hpp"
 #include "exec/typed_buffer.hpp"
-#include "octree/keys.hpp"
 #include "octree/search.hpp"
 #include "octree/walk.hpp"
 #include "scale/attributes_of_samples.hpp"
-#include "scale/near_cells.hpp"
+#include "scale/far_points.hpp"
 #include "scale/staging.hpp"
 
 namespace pointskin::scale {
@@ -27,7 +25,8 @@ struct MeasureFound {
   ArrayView<const std::int32_t> places;
   ArrayView<float> squared;
   PSK_HD void operator()(std::int64_t i) const {
-    squared[i] = places[i] < 0 ? HUGE_VALF : octree::squared_distance(points[i], positions[places[i]]);
+    squared[i] = places[i] < 0 ? std::numeric_limits<float>::infinity()
+                               : octree::squared_distance(points[i], positions[places[i]]);
   }
 };
 
@@ -72,7 +71,8 @@ class LabelsOfBlock {
       const exec::Buffer<float> squared = find_nearest(samples.tree, samples.positions, points, places.view());
       for (const field::Label& label : samples.labels)
         values.push_back(exec::gather_typed(ex_, label.values.view(), places.cview()));
-      far = far_ones(points, keys, squared);
+      far = find_far_points(shared_.host, shared_.plan, own_, fetched(points).view(), fetched(keys).view(),
+                            fetched(squared.cview()).view());
     }
     for (std::size_t first = 0; first < far.size(); first += kAtOnce)
       find_far(points, std::span(far).subspan(first, std::min(kAtOnce, far.size() - first)), values);
@@ -82,39 +82,17 @@ class LabelsOfBlock {
  private:
   static constexpr std::size_t kAtOnce = 4096;
 
+  template <class T>
+  Fetched<T> fetched(ArrayView<const T> values) {
+    return Fetched<T>(ex_, shared_.host, values);
+  }
+
   exec::Buffer<float> find_nearest(const octree::OctreeData& tree, ArrayView<const Vec3f> positions,
                                    ArrayView<const Vec3f> points, ArrayView<std::int32_t> places) {
     octree::find_nearest_place(ex_, {tree.view(), positions, {}}, points, places);
     auto squared = exec::make_buffer<float>(ex_, points.size);
     for_each(ex_, kLabel, points.size, MeasureFound{positions, points, places, squared.view()});
     return squared;
-  }
-
-  /// Own points whose nearest sample may lie beyond those of the block.
-  std::vector<std::int32_t> far_ones(ArrayView<const Vec3f> points, ArrayView<const std::uint64_t> keys,
-                                     const exec::Buffer<float>& squared) {
-    const Fetched<Vec3f> there(ex_, shared_.host, points);
-    const Fetched<std::uint64_t> vertices(ex_, shared_.host, keys);
-    const Fetched<float> distances(ex_, shared_.host, squared.cview());
-    const BlockPlan& plan = shared_.plan;
-    constexpr double kSure = 1 - 1e-4;  // distances are rounded
-    const double reach = kSure * std::ldexp(plan.ring(), -plan.level());
-    const std::uint64_t beyond = std::uint64_t{1} << 3 * plan.depth();  // vertices on upper faces
-    std::vector<std::uint8_t> is_far(static_cast<std::size_t>(points.size));
-    for_each(shared_.host, kLabel, points.size, [&](std::int64_t i) {
-      if (!keys.empty()) {
-        const std::uint64_t key = vertices.data()[i];
-        if (key < beyond && (key < own_.begin || key >= own_.end)) return;
-      }
-      const Vec3f& p = there.data()[i];
-      const std::uint64_t cell = octree::cell_key(octree::point_key(p.x, p.y, p.z), plan.level());
-      const bool is_near = static_cast<double>(distances.data()[i]) < reach * reach && plan.has_all_around(own_, cell);
-      is_far[static_cast<std::size_t>(i)] = is_near ? 0 : 1;
-    });
-    std::vector<std::int32_t> far;
-    for (std::size_t i = 0; i < is_far.size(); ++i)
-      if (is_far[i] != 0) far.push_back(static_cast<std::int32_t>(i));
-    return far;
   }
 
   /// Of some points, by their places, from all samples.
@@ -126,8 +104,8 @@ class LabelsOfBlock {
     exec::gather<Vec3f>(ex_, points, targets.cview(), there.view());
     auto best = exec::make_buffer<float>(ex_, std::ssize(far));
     exec::fill(ex_, best.view(), std::numeric_limits<float>::infinity());
-    for (const std::vector<SampleRun>& part :
-         parts_of(samples_near(Fetched<Vec3f>(ex_, shared_.host, there.cview()).view()))) {
+    const std::vector<SampleRun> runs = samples_around(shared_.host, shared_.plan, fetched(there.cview()).view());
+    for (const std::vector<SampleRun>& part : cut_into_parts(runs, shared_.options.part_samples)) {
       const Part samples = read(part);
       auto places = exec::make_buffer<std::int32_t>(ex_, std::ssize(far));
       const exec::Buffer<float> squared =
@@ -137,45 +115,6 @@ class LabelsOfBlock {
         for_each(ex_, kLabel, places.size(),
                  CopyFound{places.cview(), targets.cview(), samples.labels[i].values.view(), values[i].output()});
     }
-  }
-
-  /// Among which the nearest of each of these points is. Ascending.
-  [[nodiscard]] std::vector<SampleRun> samples_near(ArrayView<const Vec3f> points) const {
-    const NearCells cells(shared_.plan.level(), shared_.plan.cells());
-    std::vector<std::vector<std::int64_t>> of_points(static_cast<std::size_t>(points.size));
-    for_each_long(shared_.host, kLabel, points.size,
-                  [&](std::int64_t i) { of_points[static_cast<std::size_t>(i)] = cells.around(points[i]); });
-    std::vector<bool> is_near(shared_.plan.cells().size());
-    for (const std::vector<std::int64_t>& of_one : of_points)
-      for (const std::int64_t cell : of_one) is_near[static_cast<std::size_t>(cell)] = true;
-    const std::vector<std::int64_t>& first = shared_.plan.first();
-    std::vector<SampleRun> runs;
-    for (std::size_t cell = 0; cell < is_near.size(); ++cell) {
-      if (!is_near[cell]) continue;
-      if (!runs.empty() && runs.back().end == first[cell])
-        runs.back().end = first[cell + 1];
-      else
-        runs.push_back({first[cell], first[cell + 1]});
-    }
-    return runs;
-  }
-
-  /// Of at most BlockOptions::part_samples each, in their order.
-  [[nodiscard]] std::vector<std::vector<SampleRun>> parts_of(const std::vector<SampleRun>& runs) const {
-    std::vector<std::vector<SampleRun>> parts;
-    std::int64_t room = 0;
-    for (SampleRun run : runs)
-      for (; run.begin < run.end;) {
-        if (room == 0) {
-          parts.emplace_back();
-          room = shared_.options.part_samples;
-        }
-        const std::int64_t end = std::min(run.end, run.begin + room);
-        parts.back().push_back({run.begin, end});
-        room -= end - run.begin;
-        run.begin = end;
-      }
-    return parts;
   }
 
   struct Part {

@@ -11,6 +11,7 @@
 
 #include "octree/keys.hpp"
 #include "octree/walk.hpp"
+#include "scale/far_points.hpp"
 #include "support/shapes.hpp"
 
 namespace pointskin::scale {
@@ -73,6 +74,22 @@ TEST(NearCells, AreFew) {
 }
 
 TEST(NearCells, AreNoneWhereThereIsNone) { EXPECT_TRUE(NearCells(5, {}).around({0.5F, 0.5F, 0.5F}).empty()); }
+
+TEST(FarPoints, AreSearchedAmongPartsOfAllSamples) {
+  const auto cut = [](std::vector<SampleRun> runs, std::int64_t most) {
+    std::vector<std::vector<std::int64_t>> parts;
+    for (const std::vector<SampleRun>& part : cut_into_parts(runs, most)) {
+      parts.emplace_back();
+      for (const SampleRun& run : part)
+        for (std::int64_t sample = run.begin; sample < run.end; ++sample) parts.back().push_back(sample);
+    }
+    return parts;
+  };
+  using Parts = std::vector<std::vector<std::int64_t>>;
+  EXPECT_EQ(cut({{3, 5}, {7, 8}, {10, 14}}, 3), (Parts{{3, 4, 7}, {10, 11, 12}, {13}}));
+  EXPECT_EQ(cut({{3, 5}}, 9), (Parts{{3, 4}}));
+  EXPECT_EQ(cut({}, 9), Parts{});
+}
 
 }  // namespace
 }  // namespace pointskin::scale

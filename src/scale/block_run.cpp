@@ -153,8 +153,7 @@ class BlockRun {
     over_blocks({"weights", "splat", 0.1, 0.15}, [&](const BlockRange& own) { work_.weigh(own); });
     coarse().drop_facing();
     sweep({"examine", "splat", 0.15}, [&] {
-      const ExaminedSamples found =
-          team_.of_first(team_.is_first() ? examine_samples(ex_, cloud_, options_, values_) : ExaminedSamples{});
+      const ExaminedSamples found = examine_samples(ex_, cloud_, options_, values_);
       shared_.mean_length = found.mean_length;
       counts_.sums[diagnose::kLonely] += found.lonely;
       report_.inliers = found.inliers;

@@ -3,7 +3,10 @@
 #include <pointskin/error.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "core/stray_limit.hpp"
@@ -18,7 +21,7 @@ namespace {
 using octree::JoinBoxes;
 
 /// The box of every `lanes`-th point, as in memory. Neighbours in a file are often neighbours in space: their boxes
-/// would say little of the whole.
+/// would say little of the whole. Points are those of this rank, from 0 on.
 class LaneBoxes {
  public:
   explicit LaneBoxes(std::int64_t rows) {
@@ -41,12 +44,28 @@ class LaneBoxes {
   }
 
   [[nodiscard]] std::int64_t points() const { return points_; }
-  /// Of the lanes that have points; there must be some.
-  [[nodiscard]] std::vector<Bounds> boxes() const {
-    return {boxes_.begin(), boxes_.begin() + std::min<std::ptrdiff_t>(std::ssize(boxes_), points_)};
+  /// Of the lanes that have points of any rank; there must be some. Collective.
+  [[nodiscard]] std::vector<Bounds> boxes(const Team& team) const {
+    const std::vector<std::vector<Bounds>> of_ranks = team.gather(own_boxes());
+    const std::vector<std::int64_t> points = team.gather_all(std::vector<std::int64_t>{points_});
+    std::vector<Bounds> all;
+    std::int64_t before = 0;
+    for (std::size_t rank = 0; rank < of_ranks.size(); before += points[rank++])
+      for (std::size_t i = 0; i < of_ranks[rank].size(); ++i) {
+        const std::size_t lane = (static_cast<std::size_t>(before) + i) % boxes_.size();
+        if (lane < all.size())
+          all[lane] = JoinBoxes{}(all[lane], of_ranks[rank][i]);
+        else
+          all.push_back(of_ranks[rank][i]);
+      }
+    return all;
   }
 
  private:
+  [[nodiscard]] std::vector<Bounds> own_boxes() const {
+    return {boxes_.begin(), boxes_.begin() + std::min<std::ptrdiff_t>(std::ssize(boxes_), points_)};
+  }
+
   std::vector<Bounds> boxes_;
   std::int64_t points_ = 0;
 };
@@ -74,10 +93,13 @@ struct CandidatesWithNormals {
   std::vector<std::int32_t> with_normal;  ///< indices, ascending
 };
 
-CandidatesWithNormals find_candidates(exec::Cpu& ex, const io::CloudParts& parts, const Bounds& ends) {
+/// @param before  points in the rows before this rank's
+CandidatesWithNormals find_candidates(exec::Cpu& ex, const io::CloudParts& parts, const Bounds& ends, const Team& team,
+                                      std::int64_t before) {
   CandidatesWithNormals found;
-  std::int32_t first = 0;
-  parts.for_parts(ex, [&](const Cloud& cloud) {
+  auto first = static_cast<std::int32_t>(before);
+  const Team::Share rows = team.share_of(parts.rows());
+  parts.for_parts(ex, rows.begin, rows.end, [&](const Cloud& cloud) {
     const auto positions = ArrayView<const Vec3f>{cloud.positions.data(), cloud.size()};
     const exec::Buffer<std::int32_t> beyond =
         select(ex, "scale.strays", positions.size, [&](std::int64_t i) { return is_beyond(positions[i], ends); });
@@ -90,22 +112,30 @@ CandidatesWithNormals find_candidates(exec::Cpu& ex, const io::CloudParts& parts
     }
     first += static_cast<std::int32_t>(cloud.size());
   });
+  found.candidates.indices = team.gather_all(std::move(found.candidates.indices));
+  found.candidates.positions = team.gather_all(std::move(found.candidates.positions));
+  found.with_normal = team.gather_all(std::move(found.with_normal));
   return found;
 }
 
 }  // namespace
 
-CloudExtent find_extent(exec::Cpu& ex, const io::CloudParts& parts, bool keep_strays) {
+CloudExtent find_extent(exec::Cpu& ex, const io::CloudParts& parts, bool keep_strays, const Team& team) {
   LaneBoxes lanes(parts.rows());
   CloudExtent found;
-  parts.for_parts(ex, [&](const Cloud& cloud) {
+  const Team::Share rows = team.share_of(parts.rows());
+  parts.for_parts(ex, rows.begin, rows.end, [&](const Cloud& cloud) {
     lanes.add(ex, cloud.positions);
     found.with_normal += count_normals(cloud.normals);
     found.dropped += cloud.dropped;
   });
-  found.points = lanes.points();
+  found.with_normal = team.reduce(found.with_normal, std::plus<>{});
+  found.dropped = team.reduce(found.dropped, std::plus<>{});
+  const std::vector<std::int64_t> points = team.gather_all(std::vector<std::int64_t>{lanes.points()});
+  found.points = std::accumulate(points.begin(), points.end(), std::int64_t{0});
+  found.before = std::accumulate(points.begin(), points.begin() + team.rank(), std::int64_t{0});
   if (found.points == 0) throw Error(ErrorCode::empty_result, "the cloud has no points; nothing to reconstruct");
-  const std::vector<Bounds> boxes = lanes.boxes();
+  const std::vector<Bounds> boxes = lanes.boxes(team);
   const octree::Extent extent = joined(boxes);
   found.strays.core = extent.all;
   const std::int64_t limit = stray_limit(found.points);
@@ -113,7 +143,7 @@ CloudExtent find_extent(exec::Cpu& ex, const io::CloudParts& parts, bool keep_st
   if (keep_strays || limit == 0 || !countable || !octree::strays::may_have_strays(extent.all, extent.inner))
     return found;
   const Bounds ends = octree::strays::ends_of(boxes, limit);
-  const CandidatesWithNormals beyond = find_candidates(ex, parts, ends);
+  const CandidatesWithNormals beyond = find_candidates(ex, parts, ends, team, found.before);
   found.strays = octree::strays::choose_strays(beyond.candidates, ends, extent.all, limit);
   found.points -= found.strays.size();
   for (const std::int32_t i : found.strays.indices)
@@ -122,9 +152,9 @@ CloudExtent find_extent(exec::Cpu& ex, const io::CloudParts& parts, bool keep_st
 }
 
 octree::StrayPoints find_outside(exec::Cpu& ex, const io::CloudParts& parts, const octree::Frame& cube,
-                                 const Bounds& core) {
+                                 const Bounds& core, const Team& team, std::int64_t before) {
   const Bounds ends{cube.to_world({0, 0, 0}), cube.to_world({1, 1, 1})};
-  return octree::strays::as_strays(find_candidates(ex, parts, ends).candidates, core);
+  return octree::strays::as_strays(find_candidates(ex, parts, ends, team, before).candidates, core);
 }
 
 }  // namespace pointskin::scale

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -23,7 +24,7 @@ using poisson::Samples;
 class Examination {
  public:
   Examination(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options, SampleValues& values)
-      : ex_(ex), cloud_(cloud), options_(options), values_(values) {}
+      : ex_(ex), cloud_(cloud), options_(options), team_(options.team), values_(values) {}
 
   ExaminedSamples run() {
     ExaminedSamples found;
@@ -32,6 +33,7 @@ class Examination {
     for_parts([&](const poisson::PartOfCloud& part, const Samples& samples, const exec::Buffer<float>& own_side) {
       look.add(poisson::look_at_part(ex_, options_.depth, part, own_side.cview(), samples));
     });
+    look = joined(look);
     for_parts([&](const poisson::PartOfCloud& part, Samples& samples, exec::Buffer<float> own_side) {
       auto bends = exec::make_buffer<float>(ex_, samples.areas.size());
       values_.read(SampleValues::trust, part.first - part.before, bends.view());
@@ -46,15 +48,31 @@ class Examination {
       values_.write(SampleValues::examined_depth, part.first, own(samples.splat_depths));
       values_.write(SampleValues::trust, part.first, own(samples.trust));
     });
+    found.lonely = team_.reduce(found.lonely, std::plus<>{});
+    found.inliers = team_.reduce(found.inliers, [](BoxOfPoints a, const BoxOfPoints& b) {
+      if (b.is_empty) return a;
+      a.add(b.box.lower);
+      a.add(b.box.upper);
+      return a;
+    });
     return found;
   }
 
  private:
-  /// Calls step(part, samples, own_side) for parts of the samples in their order, with those before and after.
+  [[nodiscard]] poisson::LookAtCloud joined(const poisson::LookAtCloud& own) const {
+    poisson::LookAtCloud all;
+    for (const std::vector<std::uint64_t>& words : team_.gather(own.words)) all.add({words});
+    return all;
+  }
+
+  /// Calls step(part, samples, own_side) for this rank's parts of the samples in their order, with those before and after, of which
+  /// only what no rank changes is read.
   template <class Step>
   void for_parts(const Step& step) {
     const std::int64_t n = cloud_.size();
-    for (std::int64_t first = 0; first < n; first += options_.part_samples) {
+    const Team::Share parts = team_.share_of((n + options_.part_samples - 1) / options_.part_samples);
+    for (std::int64_t number = parts.begin; number < parts.end; ++number) {
+      const std::int64_t first = number * options_.part_samples;
       const std::int64_t begin = std::max<std::int64_t>(0, first - poisson::kExamineReach);
       const std::int64_t end = std::min(n, first + options_.part_samples + poisson::kExamineReach);
       const poisson::PartOfCloud part{first, std::min(options_.part_samples, n - first), first - begin, n};
@@ -90,12 +108,14 @@ class Examination {
     double largest = 0;
     const auto sum_in = [&](int fraction) {
       exec::ExactSum sum;
-      for_normals(0, cloud_.size(), [&](const Vec3f& normal) {
+      const Team::Share own = team_.share_of(cloud_.size());
+      for_normals(own.begin, own.end - own.begin, [&](const Vec3f& normal) {
         const double length = poisson::length_of(normal);
         largest = exec::Largest{}(largest, length);
         sum = exec::AddExactly{}(sum, exec::exact_term(length, fraction));
       });
-      return sum;
+      largest = team_.reduce(largest, exec::Largest{});
+      return team_.reduce(sum, exec::AddExactly{});
     };
     const auto n = static_cast<double>(cloud_.size());
     const exec::ExactSum sum = sum_in(poisson::kLengthFraction);
@@ -116,6 +136,7 @@ class Examination {
   exec::Cpu& ex_;
   const SortedCloud& cloud_;
   const BlockOptions& options_;
+  const Team& team_;
   SampleValues& values_;
 };
 

@@ -19,7 +19,8 @@ struct ExaminedSamples {
 /// What poisson::examine_samples() does for a cloud in memory: areas, depths and trust of all samples, from what weighing has found of them.
 /// @param values  areas, depths, bends (as trust) and own sides; areas, examined depths and trust afterwards
 /// @throws Error as SortedCloud::read, Spool
-/// O(n): two passes over the samples, three with confidence, BlockOptions::part_samples at once.
+/// O(n): two passes over the samples, three with confidence, BlockOptions::part_samples at once. Each rank examines some parts; all find
+/// the same. Collective.
 ExaminedSamples examine_samples(exec::Cpu& ex, const SortedCloud& cloud, const BlockOptions& options,
                                 SampleValues& values);
 

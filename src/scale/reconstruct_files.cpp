@@ -146,7 +146,8 @@ class FilesRun {
     announce(options_.progress, "octree", 0);
     parts_->choose_origin(ex_, scale_.shift);
     parts_->leave_out_zero_normals();
-    scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options_.keep_strays);
+    scale::CloudExtent extent = scale::find_extent(ex_, *parts_, options_.keep_strays, team_);
+    before_ = extent.before;
     result_.dropped = extent.dropped;
     result_.without_normal = parts_->rows() - extent.dropped - extent.points - extent.strays.size();
     set_place(std::move(extent.strays), octree::frame_around(extent.strays.core, options_.scale));
@@ -183,7 +184,7 @@ class FilesRun {
     has_core_ = true;
     fit = {};
     const octree::Frame cube = octree::frame_around(*core, options_.scale);
-    set_place(scale::find_outside(ex_, *parts_, cube, *core), cube);
+    set_place(scale::find_outside(ex_, *parts_, cube, *core, team_, before_), cube);
     fit = fit_in_cube();
     ++fits_;
     return fit;
@@ -198,7 +199,7 @@ class FilesRun {
     return {ex_,
             *parts_,
             {scale_.temp_folder, bytes_ / kSortShare, place_.frame, place_.left_out.indices, turned_,
-             kept_attributes(options_, scale_), team_}};
+             kept_attributes(options_, scale_), team_, before_}};
   }
 
   [[nodiscard]] scale::VertexColumns vertex_columns(const Fit& fit) const {
@@ -323,6 +324,7 @@ class FilesRun {
   FilesReport result_;
   std::int64_t bytes_ = 0;  ///< that every rank has
   std::int64_t points_ = 0;
+  std::int64_t before_ = 0;  ///< points in the rows before this rank's
   int fits_ = 0;
   bool turned_ = false, has_core_ = false;
 };

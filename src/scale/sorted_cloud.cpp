@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstring>
 #include <functional>
-#include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -73,15 +72,6 @@ class UsedOf {
   std::vector<std::int32_t> used_;
 };
 
-/// Points in the rows before those of this rank.
-std::int64_t points_before(exec::Cpu& ex, const io::CloudParts& points, Team::Share rows, const Team& team) {
-  if (team.is_alone()) return 0;
-  std::int64_t own = 0;
-  points.for_parts(ex, rows.begin, rows.end, [&](const Cloud& cloud) { own += cloud.size(); });
-  const std::vector<std::int64_t> all = team.gather_all(std::vector<std::int64_t>{own});
-  return std::accumulate(all.begin(), all.begin() + team.rank(), std::int64_t{0});
-}
-
 /// Makes the records of a part.
 struct MakeRecord {
   const Cloud& cloud;
@@ -126,8 +116,7 @@ SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setu
     record_bytes_ += static_cast<std::int64_t>(size_of(attribute.type));
   const Team::Share rows = setup.team.share_of(points.rows());
   DiskSort sort(ex, {setup.folder, points.rows(), record_bytes_, setup.memory_bytes, setup.team, rows.begin});
-  const std::int64_t before = setup.left_out.empty() ? 0 : points_before(ex, points, rows, setup.team);
-  setup.team.together([&] { add_rows(ex, points, setup, rows, before, sort, attributes); });
+  setup.team.together([&] { add_rows(ex, points, setup, rows, sort, attributes); });
   spool_ = sort.finish();
   size_ = setup.team.reduce(size_, std::plus<>{});
   for (PointAttribute& attribute : attributes)
@@ -137,8 +126,8 @@ SortedCloud::SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setu
 }
 
 void SortedCloud::add_rows(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup, Team::Share rows,
-                           std::int64_t before, DiskSort& sort, std::vector<PointAttribute>& attributes) {
-  UsedOf used_of(setup.left_out, before);
+                           DiskSort& sort, std::vector<PointAttribute>& attributes) {
+  UsedOf used_of(setup.left_out, setup.before);
   std::vector<std::uint64_t> hashes;
   std::vector<std::byte> records;
   points.for_parts(ex, rows.begin, rows.end, [&](Cloud& cloud) {

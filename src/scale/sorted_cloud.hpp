@@ -48,7 +48,8 @@ class SortedCloud {
     std::span<const std::int32_t> left_out{};  ///< points of the file to leave out, ascending
     bool turned = false;                       ///< all normals the other way round
     KeptAttributes attributes = KeptAttributes::none;
-    Team team{};  ///< of ranks that read the file, each a part
+    Team team{};              ///< of ranks that read the file, each its share of the rows
+    std::int64_t before = 0;  ///< points in the rows before this rank's (CloudExtent)
   };
 
   /// Points as arrays, for whoever needs them: shape (count), or null.
@@ -62,7 +63,7 @@ class SortedCloud {
 
   /// @param points  whose origin has been chosen
   /// @throws Error no_normals if they have none; output_not_written, interrupted; as CloudParts::read
-  /// One pass over the file; by several ranks, two where points are left out. O(n log n). Collective.
+  /// One pass over the file. O(n log n). Collective.
   SortedCloud(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup);
 
   [[nodiscard]] std::int64_t size() const { return size_; }
@@ -87,9 +88,8 @@ class SortedCloud {
     field::ToShare to_share{};  ///< unless it is a label
   };
   /// Adds what is found of some rows of the file to `attributes` and to the size.
-  /// @param before  points in the rows before, if any are left out
-  void add_rows(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup, Team::Share rows, std::int64_t before,
-                DiskSort& sort, std::vector<PointAttribute>& attributes);
+  void add_rows(exec::Cpu& ex, const io::CloudParts& points, const Setup& setup, Team::Share rows, DiskSort& sort,
+                std::vector<PointAttribute>& attributes);
   void settle_attributes(std::vector<PointAttribute> all);
   void read_shares(const std::byte* records, std::int64_t count, std::int64_t at, std::span<float* const> shares) const;
   void read_raw(const std::byte* records, std::int64_t count, std::int64_t at,

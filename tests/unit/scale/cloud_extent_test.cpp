@@ -18,12 +18,25 @@
 #include "scale/cloud_extent.hpp"
 #include "support/io_files.hpp"
 #include "support/shapes.hpp"
+#include "support/thread_ranks.hpp"
 
 namespace pointskin::test {
 namespace {
 
 using io::CloudParts;
 using scale::CloudExtent;
+
+/// As each of several ranks finds it.
+std::vector<CloudExtent> extents_of_ranks(const std::string& path, int ranks) {
+  std::vector<CloudExtent> found(static_cast<std::size_t>(ranks));
+  run_as_ranks(ranks, [&](Ranks& all) {
+    exec::Cpu ex(1);
+    const std::unique_ptr<CloudParts> parts = CloudParts::open(ex, path);
+    parts->choose_origin(ex, std::nullopt);
+    found[static_cast<std::size_t>(all.rank())] = scale::find_extent(ex, *parts, false, scale::Team(&all));
+  });
+  return found;
+}
 
 CloudExtent extent_of_file(const std::string& path, int threads, bool keep_strays = false) {
   exec::Cpu ex(threads);
@@ -47,8 +60,16 @@ void expect_as_in_memory(const Cloud& cloud, bool has_strays) {
   ASSERT_EQ(strays.size() > 0, has_strays);
   std::int64_t with_normal = std::count_if(whole.normals.begin(), whole.normals.end(), has_normal);
   for (const std::int32_t i : strays.indices) with_normal -= has_normal(whole.normals[static_cast<std::size_t>(i)]);
-  for (const int threads : {1, 3}) {
-    const CloudExtent found = extent_of_file(path, threads);
+  std::vector<CloudExtent> all{extent_of_file(path, 1), extent_of_file(path, 3)};
+  for (const int ranks : {2, 3, 7}) {
+    std::int64_t before = 0;
+    for (CloudExtent& found : extents_of_ranks(path, ranks)) {
+      EXPECT_GE(found.before, before);
+      before = found.before;
+      all.push_back(std::move(found));
+    }
+  }
+  for (const CloudExtent& found : all) {
     EXPECT_EQ(found.points, whole.size() - strays.size());
     EXPECT_EQ(found.with_normal, with_normal);
     EXPECT_EQ(found.strays.indices, strays.indices);

@@ -158,19 +158,35 @@ TEST(SortedCloud, HasTheAttributesOfTheSortInMemory) {
   }
 }
 
-TEST(SortedCloud, RefusesLabels) {
-  const TemporaryFolder folder;
-  Cloud cloud = sphere_cloud(1000, 3);
-  cloud.attributes = {{"class", std::vector<std::uint8_t>(1000, 3)}};
+TEST(SortedCloud, ReadsLabelsInTheirType) {
+  constexpr std::int64_t kPoints = 20'000;
+  const TemporaryFolder folder, temporary_folder;
+  Cloud cloud = sphere_cloud(kPoints, 3);
+  std::vector<std::uint16_t> label;  // of a point: what its coordinates say
+  const auto label_of = [](const Vec3f& p) { return static_cast<std::uint16_t>(1000 * (p.x + 1.5F)); };
+  for (const Vec3f& p : cloud.positions) label.push_back(label_of(p));
+  cloud.attributes = {{"heat", std::vector<float>(kPoints, 1)}, {"class", label}};
   write_cloud(folder.file("cloud.ply"), cloud);
   exec::Cpu ex(1);
   const auto parts = io::CloudParts::open(ex, folder.file("cloud.ply"));
   parts->choose_origin(ex, std::nullopt);
   const std::vector<scale::PointAttribute> all = scale::attributes_of(ex, *parts, scale::KeptAttributes::all);
-  ASSERT_EQ(all.size(), 1U);
-  EXPECT_TRUE(all.front().is_label());
-  const std::string temporary = std::filesystem::path(folder.file("any")).parent_path().string();
-  EXPECT_THROW(SortedCloud(ex, *parts, {temporary, 1 << 20, {}, {}, false, scale::KeptAttributes::all}), Error);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_FALSE(all.front().is_label());
+  EXPECT_TRUE(all.back().is_label());
+  const octree::Frame frame{{-2, -2, -2}, 4};
+  const SortedCloud sorted(ex, *parts,
+                           {temporary_folder.file(""), 1 << 20, frame, {}, false, scale::KeptAttributes::all});
+  const std::int64_t first = 10, count = kPoints - 20;
+  std::vector<Vec3f> positions(static_cast<std::size_t>(count));
+  std::vector<std::uint16_t> labels(positions.size());
+  std::vector<float> heat(positions.size());
+  const std::vector<float*> shares{heat.data(), nullptr};
+  const std::vector<std::uint8_t*> raw{nullptr, reinterpret_cast<std::uint8_t*>(labels.data())};
+  exec::Cpu several(3);
+  sorted.read(several, first, count, {positions.data(), nullptr, nullptr, shares, raw});
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    EXPECT_NEAR(labels[i], label_of(frame.to_world(positions[i])), 1) << i;
   EXPECT_TRUE(scale::attributes_of(ex, *parts, scale::KeptAttributes::colours).empty());
   EXPECT_TRUE(scale::attributes_of(ex, *parts, scale::KeptAttributes::none).empty());
 }

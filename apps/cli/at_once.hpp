@@ -9,13 +9,15 @@
 #include <thread>
 #include <vector>
 
+#include <pointskin/processors.hpp>
+
 #include "signals.hpp"
 
 namespace pointskin::cli {
 
-/// As many threads as were asked for, or as the machine has; at most 256 unless the machine has more cores.
+/// As many threads as were asked for, or as the process may use processors; at most 256 unless it may use more.
 inline int thread_count(int asked) {
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int cores = usable_processors();
   return asked > 0 ? std::min(asked, std::max(256, cores)) : cores;
 }
 

@@ -22,6 +22,7 @@
 #include <pointskin/normals.hpp>
 #include <pointskin/octree.hpp>
 #include <pointskin/problems.hpp>
+#include <pointskin/processors.hpp>
 #include <pointskin/ranks.hpp>
 #include <pointskin/reconstruct.hpp>
 #include <pointskin/render.hpp>

@@ -1,6 +1,7 @@
 #include "exec/cpu.hpp"
 
 #include <pointskin/error.hpp>
+#include <pointskin/processors.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -40,7 +41,7 @@ struct Cpu::Workers {
   int threads;
 };
 
-static int available_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+static int available_threads() { return usable_processors(); }
 
 void Cpu::run_blocks(std::int64_t count, const std::function<void(std::int64_t)>& block) {
   std::atomic<std::int64_t> next{0};

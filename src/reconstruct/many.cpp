@@ -2,6 +2,7 @@
 
 #include <pointskin/cancel.hpp>
 #include <pointskin/error.hpp>
+#include <pointskin/processors.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -9,7 +10,6 @@
 #include <new>
 #include <numeric>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "exec/cancel.hpp"
@@ -91,8 +91,7 @@ std::vector<Device> devices_of(const Device& device) {
 
 int at_once_on(const Device& device) {
   if (device.kind == DeviceKind::cpu) return device.threads;
-  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  return std::clamp(cores, 2, kStreams * static_cast<int>(device.gpus().size()));
+  return std::clamp(usable_processors(), 2, kStreams * static_cast<int>(device.gpus().size()));
 }
 
 /// How many clouds of `order` are to have the whole device: on the CPU those that would still be worked on when all others are

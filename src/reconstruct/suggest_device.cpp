@@ -1,8 +1,8 @@
 #include <pointskin/error.hpp>
+#include <pointskin/processors.hpp>
 #include <pointskin/suggest_device.hpp>
 
 #include <algorithm>
-#include <thread>
 
 #include "exec/any_space.hpp"
 #include "exec/cpu.hpp"
@@ -33,10 +33,9 @@ Device suggest_device(const Cloud& cloud, const Options& options, int threads) {
   const Device cpu = Device::cpu(threads);
   if (!built_with_cuda() || cloud.size() == 0) return cpu;
   exec::Cpu ex(threads);
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   try {
     const detail::RunWork work = detail::guess_work(ex, cloud, options);
-    const double on_cpu = detail::seconds_on_cpu(work, std::min(ex.threads(), cores));
+    const double on_cpu = detail::seconds_on_cpu(work, std::min(ex.threads(), usable_processors()));
     return on_cpu <= detail::seconds_on_gpu(work) ? cpu : gpu_for(work, threads);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::interrupted) throw;

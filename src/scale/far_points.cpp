@@ -1,6 +1,7 @@
 #include "scale/far_points.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 
@@ -9,11 +10,6 @@
 #include "scale/near_cells.hpp"
 
 namespace pointskin::scale {
-namespace {
-
-constexpr const char* kLabel = "scale.far_points";
-
-}  // namespace
 
 std::vector<std::int32_t> find_far_points(exec::Cpu& ex, const BlockPlan& plan, const BlockRange& own,
                                           ArrayView<const Vec3f> points, ArrayView<const std::uint64_t> keys,
@@ -27,18 +23,17 @@ std::vector<std::int32_t> find_far_points(exec::Cpu& ex, const BlockPlan& plan, 
     const Vec3f& p = points[i];
     return !plan.has_all_around(own, octree::cell_key(octree::point_key(p.x, p.y, p.z), plan.level()));
   };
-  const exec::Buffer<std::int32_t> far = select(ex, kLabel, points.size, is_far);
+  const exec::Buffer<std::int32_t> far = select(ex, "scale.far_points", points.size, is_far);
   return {far.data(), far.data() + far.size()};
 }
 
 std::vector<SampleRun> samples_around(exec::Cpu& ex, const BlockPlan& plan, ArrayView<const Vec3f> points) {
   const NearCells cells(plan.level(), plan.cells());
-  std::vector<std::vector<std::int64_t>> of_points(static_cast<std::size_t>(points.size));
-  for_each_long(ex, kLabel, points.size,
-                [&](std::int64_t i) { of_points[static_cast<std::size_t>(i)] = cells.around(points[i]); });
-  std::vector<bool> is_near(plan.cells().size());
-  for (const std::vector<std::int64_t>& of_one : of_points)
-    for (const std::int64_t cell : of_one) is_near[static_cast<std::size_t>(cell)] = true;
+  std::vector<std::atomic<bool>> is_near(plan.cells().size());  // in the middle of a dome, all of its cells are
+  for_each_long(ex, "scale.far_points", points.size, [&](std::int64_t i) {
+    for (const std::int64_t cell : cells.around(points[i]))
+      is_near[static_cast<std::size_t>(cell)].store(true, std::memory_order_relaxed);
+  });
   std::vector<SampleRun> runs;
   for (std::size_t cell = 0; cell < is_near.size(); ++cell) {
     if (!is_near[cell]) continue;

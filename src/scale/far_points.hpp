@@ -22,7 +22,7 @@ std::vector<std::int32_t> find_far_points(exec::Cpu& ex, const BlockPlan& plan, 
                                           ArrayView<const Vec3f> points, ArrayView<const std::uint64_t> keys,
                                           ArrayView<const float> squared);
 
-/// The samples of the cells of level K among which the nearest one of each of these points is. Ascending. O(cells + points log cells)
+/// The samples of the cells of level K among which the nearest one of each of these points is. Ascending. A byte a cell of scratch.
 std::vector<SampleRun> samples_around(exec::Cpu& ex, const BlockPlan& plan, ArrayView<const Vec3f> points);
 
 /// The same samples in parts of at most `most` each, in their order.

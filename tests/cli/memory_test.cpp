@@ -191,10 +191,6 @@ TEST_F(ProcessMemory, TooSmallForAWholeIsNoReasonToIgnoreWhatBlocksCannotDo) {
     expect_error(run(cloud, "8", args), 2, "in blocks there is not yet");
     EXPECT_FALSE(std::filesystem::exists(output_)) << asked.front();
   }
-  Cloud labelled = sphere_cloud(400'000, 6);
-  labelled.attributes = {{"class", std::vector<std::uint8_t>(labelled.positions.size(), 2)}};
-  expect_error(run(write(labelled, "labelled.ply"), "8", {"--max-memory", "30M", "-q", "--keep-attributes"}), 2,
-               "in blocks there is not yet: labels of points such as class");
 }
 
 TEST_F(ProcessMemory, OfAutomaticDepthStaysBelowTheLimit) {

@@ -92,26 +92,14 @@ TEST_F(ReconstructFiles, ArePlannedWithManyAttributes) {
     for (double& value : values) value = random.unit();
     cloud.attributes.push_back({"value_" + std::to_string(i), values});
   }
-  start(cloud);
-  Options options = at_depth(8);
-  options.attributes = true;
-  expect_as_whole(options, 80 * kMegabyte);
-  const FilesPlan plan = plan_files({input_}, options, scale(80 * kMegabyte));
-  EXPECT_EQ(plan.blocks, files_.blocks);
-  EXPECT_GE(plan.memory_bytes, files_.run.device_peak_bytes);
+  expect_as_planned(cloud);
 }
 
 TEST_F(ReconstructFiles, ArePlannedWithManyLabels) {
   Cloud cloud = torus_cloud(60000, 1);
   for (int i = 0; i < 10; ++i)
     cloud.attributes.push_back({"label_" + std::to_string(i), std::vector<std::int32_t>(cloud.positions.size(), i)});
-  start(cloud);
-  Options options = at_depth(8);
-  options.attributes = true;
-  expect_as_whole(options, 80 * kMegabyte);
-  const FilesPlan plan = plan_files({input_}, options, scale(80 * kMegabyte));
-  EXPECT_EQ(plan.blocks, files_.blocks);
-  EXPECT_GE(plan.memory_bytes, files_.run.device_peak_bytes);
+  expect_as_planned(cloud);
 }
 
 TEST_F(ReconstructFiles, KeepsColoursAlone) {

@@ -49,6 +49,19 @@ class ReconstructFiles : public testing::Test {
     if (ranks_ > 1) expect_the_same_of_ranks(options, memory_bytes);
   }
 
+  /// With all attributes, in as many blocks and as little memory as a plan says.
+  void expect_as_planned(const Cloud& cloud) {
+    constexpr std::int64_t kMemory = 80 * kMegabyte;
+    start(cloud);
+    Options options;
+    options.depth = 8;
+    options.attributes = true;
+    expect_as_whole(options, kMemory);
+    const FilesPlan plan = plan_files({input_}, options, scale(kMemory));
+    EXPECT_EQ(plan.blocks, files_.blocks);
+    EXPECT_GE(plan.memory_bytes, files_.run.device_peak_bytes);
+  }
+
   /// What expect_as_whole() has found.
   void expect_the_same_of_ranks(const Options& options, std::int64_t memory_bytes) const {
     SCOPED_TRACE(std::to_string(ranks_) + " ranks");
